@@ -1,0 +1,1 @@
+"""Bytes to boundaries and grids and back, one module a format."""

@@ -1,0 +1,1 @@
+"""What a boundary and a grid are: curves, sampling, topologies, validation, quality."""

@@ -1,0 +1,32 @@
+"""Names for the arrays that everything passes around."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+"""float64 array; the docstring of its user says its shape."""
+
+Topology: TypeAlias = Literal["quad", "o", "c"]
+Side: TypeAlias = Literal["south", "east", "north", "west"]
+
+TOPOLOGIES: tuple[Topology, ...] = ("quad", "o", "c")
+SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
+
+
+def planar_nodes(ni: int, nj: int) -> Floats:
+    """Return an uninitialised (ni, nj, 2) array whose x and y planes are each contiguous.
+
+    Kernels run over one coordinate at a time; ``nodes[..., 0]`` of this layout is a C-contiguous
+    (ni, nj) array, so no copy stands between a kernel and a grid.
+    """
+    return np.moveaxis(np.empty((2, ni, nj)), 0, -1)
+
+
+def as_planar(nodes: Floats) -> Floats:
+    """Return `nodes` (ni, nj, 2) as float64 in planar layout, copied only when it is not so already."""
+    planes = np.ascontiguousarray(np.moveaxis(np.asarray(nodes, dtype=np.float64), -1, 0))
+    return np.moveaxis(planes, 0, -1)

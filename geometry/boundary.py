@@ -1,0 +1,164 @@
+"""A boundary: four edges of nodes that meet, and the curves they were sampled from.
+
+::
+
+                north (ni nodes)
+            d ----->------ c        south and north run along xi, west and east along eta;
+            |              |        the four corners a, b, c, d are shared bitwise.
+       west ^              ^ east   o: south is the body, north the far field, both closed;
+            |              |           west equals east and is only the starting cut.
+            a ----->------ b
+                south (ni nodes)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
+from geometry.curves import Curve, resample_like
+from geometry.errors import InputError
+from geometry.parts import Part, check_parts, default_parts
+from geometry.sampling import Sampling
+
+
+@dataclass(frozen=True, eq=False)
+class Boundary:
+    """Four edges of nodes; validates itself.
+
+    Parameters
+    ----------
+    south, north : (ni, 2) nodes along xi.
+    west, east : (nj, 2) nodes along eta.
+    topology : ``quad``, ``o`` or ``c``.
+    parts : named parts; empty means the defaults.
+    name : what the input called this shape.
+    wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
+        body between the nodes.
+
+    Raises
+    ------
+    InputError
+        an edge of the wrong shape, with a node that is not finite or repeated, edges that do not
+        meet, a left-handed outline.
+    """
+
+    south: Floats
+    north: Floats
+    west: Floats
+    east: Floats
+    topology: Topology = "quad"
+    parts: tuple[Part, ...] = ()
+    name: str = ""
+    wall: Curve | None = None
+
+    def __post_init__(self) -> None:
+        if self.topology not in TOPOLOGIES:
+            raise InputError(f"topology {self.topology!r} is not known", "use " + "/".join(TOPOLOGIES))
+        for side in SIDES:
+            object.__setattr__(self, side, _edge(side, getattr(self, side)))
+        for one, other in (("south", "north"), ("west", "east")):
+            n, m = len(getattr(self, one)), len(getattr(self, other))
+            if n != m:
+                raise InputError(f"{one} has {n} nodes and {other} has {m}", "opposite edges need equal counts")
+        self._check_corners()
+        object.__setattr__(self, "parts", tuple(self.parts) or default_parts(self.topology, self.ni, self.nj))
+        check_parts(self.parts, self.ni, self.nj)
+        self._check_orientation()
+
+    @property
+    def ni(self) -> int:
+        """Nodes along xi."""
+        return len(self.south)
+
+    @property
+    def nj(self) -> int:
+        """Nodes along eta."""
+        return len(self.west)
+
+    def outline(self) -> Floats:
+        """Return the closed outline (n, 2) south, east, north, west, first node not repeated."""
+        return np.concatenate([self.south[:-1], self.east[:-1], self.north[:0:-1], self.west[:0:-1]])
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return this boundary with the node counts of `sampling`.
+
+        Given nodes are used as they are when the counts are absent or equal; others resample the
+        curves through the nodes, corners kept.
+        """
+        ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
+        if (ni, nj) == (self.ni, self.nj):
+            return self
+        periodic = self.topology == "o"
+        edges = {
+            side: resample_like(getattr(self, side), n, closed=periodic and side in ("south", "north"))
+            for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
+        }
+        parts = tuple(_rescaled(part, self, ni, nj) for part in self.parts)
+        return replace(self, **edges, parts=parts)
+
+    def _check_corners(self) -> None:
+        corners = (
+            ("south", 0, "west", 0), ("south", -1, "east", 0), ("north", 0, "west", -1), ("north", -1, "east", -1),
+        )  # fmt: skip
+        for one, k, other, m in corners:
+            p, q = getattr(self, one)[k], getattr(self, other)[m]
+            if not np.array_equal(p, q):
+                raise InputError(
+                    f"{one} ends at ({p[0]:.6g}, {p[1]:.6g}) and {other} at ({q[0]:.6g}, {q[1]:.6g})",
+                    "neighbouring edges must share their corner",
+                )
+        if self.topology == "o":
+            for side in ("south", "north"):
+                edge = getattr(self, side)
+                if not np.array_equal(edge[0], edge[-1]):
+                    raise InputError(f"{side} of an O grid is not closed", "repeat its first node at the end")
+
+    def _check_orientation(self) -> None:
+        if self.topology == "quad":
+            if polygon_area(self.outline()) <= 0:
+                raise InputError(
+                    "the outline south, east, north, west runs clockwise or has no area",
+                    "swap south and north or reverse the edges",
+                )
+        elif self.topology == "o":
+            inner, outer = polygon_area(self.south[:-1]), polygon_area(self.north[:-1])
+            if inner >= 0 or outer >= 0:
+                raise InputError("an O grid's edges must run clockwise", "reverse south and north")
+            if abs(inner) >= abs(outer):
+                raise InputError("the far field does not enclose the body", "use a larger far field")
+
+
+def polygon_area(points: Floats) -> float:
+    """Return the signed area of a closed polygon (n, 2), positive when counter-clockwise.
+
+    Examples
+    --------
+    >>> polygon_area(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]))
+    2.0
+    """
+    x, y = (points - points[0]).T
+    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def _edge(side: str, points: Floats) -> Floats:
+    edge = np.ascontiguousarray(points, dtype=np.float64)
+    if edge.ndim != 2 or edge.shape[1] != 2 or len(edge) < 2:
+        raise InputError(f"{side} has shape {edge.shape}", "give (n, 2) with n at least 2")
+    bad = np.flatnonzero(~np.isfinite(edge).all(axis=1))
+    if bad.size:
+        raise InputError(f"{side} node {bad[0]} is not finite", "check the input for NaN or infinity")
+    same = np.flatnonzero((np.diff(edge, axis=0) == 0).all(axis=1))
+    if same.size:
+        x, y = edge[same[0]]
+        raise InputError(f"{side} nodes {same[0]} and {same[0] + 1} are the same point ({x:.6g}, {y:.6g})", "remove one")
+    return edge
+
+
+def _rescaled(part: Part, old: Boundary, ni: int, nj: int) -> Part:
+    had, has = (old.ni, ni) if part.side in ("south", "north") else (old.nj, nj)
+    scale = (has - 1) / (had - 1)
+    start = min(round(part.start * scale), has - 2)
+    return replace(part, start=start, stop=max(round(part.stop * scale), start + 1))

@@ -1,0 +1,1 @@
+"""Boundary to grid: algebraic, elliptic, neural; and the guard that repairs folds."""

@@ -1,0 +1,1 @@
+"""Elliptic (Winslow) grids by full multigrid."""

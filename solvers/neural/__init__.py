@@ -1,0 +1,1 @@
+"""The neural operator: boundary to grid in one pass, in numpy."""
