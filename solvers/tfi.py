@@ -1,0 +1,88 @@
+"""Transfinite interpolation: the grid that four edges span algebraically.
+
+Node (i, j) sits where the straight lines that join equal parameters on opposite edges cross, in the unit
+square of parameters::
+
+    u = s_i + (n_i - s_i) v      s, n: parameter along south and north at i
+    v = w_j + (e_j - w_j) u      w, e: parameter along west and east at j
+
+and its position is the Boolean sum of the two edge interpolations there (a, b, c, d the corners)::
+
+    x = (1-v) S_i + v N_i + (1-u) W_j + u E_j - (1-u)(1-v) a - u (1-v) b - u v c - (1-u) v d
+
+Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the crossing: Soni, AIAA 85-1526 (1985).
+"""
+
+from __future__ import annotations
+
+from typing import Literal, get_args
+
+import numpy as np
+
+from geometry.arrays import Floats, planar_nodes
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from solvers._tfi import fill
+
+Blending = Literal["linear", "arclength"]
+Four = tuple[Floats, Floats, Floats, Floats]
+
+
+def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
+    """Return the transfinite interpolation of `boundary`.
+
+    Parameters
+    ----------
+    boundary : quad, o or c.
+    blending : what the parameters along an edge are: ``linear`` i/(ni-1), or ``arclength`` the fraction of
+        the edge's length, which carries the spacing of the edges into the grid.
+
+    Returns
+    -------
+    Grid
+        (ni, nj, 2) nodes in the boundary's unit of length; its edges equal those of `boundary` bitwise.
+        It may be folded.
+
+    Raises
+    ------
+    InputError
+        an unknown blending.
+    """
+    nodes = planar_nodes(boundary.ni, boundary.nj)
+    edges = (boundary.south, boundary.north, boundary.west, boundary.east)
+    interpolate(nodes, edges, parameters(edges, blending))
+    return Grid(
+        nodes, boundary.topology, boundary.parts, boundary.name, {"method": "tfi", "blending": blending}
+    )
+
+
+def parameters(edges: Four, blending: Blending) -> Four:
+    """Return the parameters 0..1 along `edges` (south, north, west, east), each (n, 2) -> (n,)."""
+    if blending not in get_args(Blending):
+        raise InputError(f"blending {blending!r} is not known", "use " + "/".join(get_args(Blending)))
+    if blending == "linear":
+        south, north, west, east = (np.linspace(0.0, 1.0, len(edge)) for edge in edges)
+    else:
+        south, north, west, east = (arc_length_fraction(edge) for edge in edges)
+    return south, north, west, east
+
+
+def interpolate(nodes: Floats, edges: Four, along: Four) -> None:
+    """Fill planar `nodes` (ni, nj, 2) from `edges` (south, north, west, east) with parameters `along` them."""
+    xs, ys = (tuple(np.ascontiguousarray(edge[:, k]) for edge in edges) for k in (0, 1))
+    fill(nodes[..., 0], nodes[..., 1], xs, ys, along)  # type: ignore[arg-type]
+
+
+def arc_length_fraction(points: Floats) -> Floats:
+    """Return the length along the polyline `points` (n, 2) up to each point, over the whole: (n,), 0 to 1.
+
+    Examples
+    --------
+    >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
+    array([0. , 0.5, 1. ])
+    """
+    steps = np.hypot(*np.diff(points, axis=0).T)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    along /= along[-1]
+    return along
