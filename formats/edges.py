@@ -1,0 +1,109 @@
+"""The outer edges of a grid as a boundary, and the grid of a file whose topology nobody wrote down."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import TOPOLOGIES, Floats, Topology
+from geometry.boundary import Boundary, polygon_area
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.parts import Part
+
+
+def boundary_of(grid: Grid) -> Boundary:
+    """Return the four outer edges of `grid`, with its topology, parts and name.
+
+    Raises
+    ------
+    InputError
+        the edges are no boundary, e.g. two neighbouring nodes are the same point.
+    """
+    nodes = grid.nodes
+    return Boundary(
+        south=nodes[:, 0],
+        north=nodes[:, -1],
+        west=nodes[0],
+        east=nodes[-1],
+        topology=grid.topology,
+        parts=grid.parts,
+        name=grid.name,
+    )
+
+
+def recovered(nodes: Floats, name: str = "") -> Grid:
+    """Return the grid of nodes whose file says nothing about topology or orientation.
+
+    Left-handed nodes (most of the area negative) get i reversed. Columns 0 and ni-1 that are the same
+    make an O grid; rows 0 and nj-1 that are the same too, once turned by a quarter so that i runs
+    around. The smaller of the two loops is the body and becomes the south side. A south side that comes
+    back along its own first nodes makes a C grid.
+
+    Parameters
+    ----------
+    nodes : (ni, nj, 2).
+    """
+    nodes = right_handed(nodes)
+    if not _same(nodes[0], nodes[-1]) and _same(nodes[:, 0], nodes[:, -1]):
+        nodes = _quarter_turn(nodes)
+    if _same(nodes[0], nodes[-1]):
+        if abs(polygon_area(nodes[:-1, 0])) > abs(polygon_area(nodes[:-1, -1])):
+            nodes = nodes[::-1, ::-1]
+        return Grid(nodes, "o", name=name)
+    for turned in (nodes, nodes[::-1, ::-1]):
+        wake = wake_nodes(turned[:, 0])
+        if wake > 1:
+            ni, nj = turned.shape[:2]
+            return Grid(turned, "c", c_parts(ni, nj, wake), name)
+    return Grid(nodes, "quad", name=name)
+
+
+def right_handed(nodes: Floats) -> Floats:
+    """Return `nodes` (ni, nj, 2), i reversed when their area is negative.
+
+    The signed areas of the cells add up to that of the outline, so only the outline is looked at.
+    """
+    outline = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]])
+    return nodes[::-1] if polygon_area(outline) < 0 else nodes
+
+
+def wake_nodes(south: Floats) -> int:
+    """Return how many nodes at the start of `south` (ni, 2) are met again, in reverse, at its end."""
+    half = south[: len(south) // 2]
+    differs = (half != south[::-1][: len(half)]).any(axis=1)
+    return int(np.argmax(differs)) if differs.any() else 0
+
+
+def c_parts(ni: int, nj: int, wake: int) -> tuple[Part, ...]:
+    """Return the named parts of a C grid whose wake has `wake` nodes."""
+    return (
+        Part("wake", "south", 0, wake - 1),
+        Part("wall", "south", wake - 1, ni - wake),
+        Part("wake", "south", ni - wake, ni - 1),
+        Part("farfield", "north", 0, ni - 1),
+        Part("farfield", "east", 0, nj - 1),
+        Part("farfield", "west", 0, nj - 1),
+    )
+
+
+def known_topology(text: str) -> Topology:
+    """Return `text` as a topology.
+
+    Raises
+    ------
+    InputError
+        it is none.
+    """
+    for topology in TOPOLOGIES:
+        if text == topology:
+            return topology
+    raise InputError(f"topology {text[:20]!r} is not known", "use quad, o or c")
+
+
+def _same(one: Floats, other: Floats) -> bool:
+    return one.shape == other.shape and bool(np.array_equal(one, other))
+
+
+def _quarter_turn(nodes: Floats) -> Floats:
+    """Return `nodes` with i running where j ran; right-handed stays right-handed."""
+    return np.swapaxes(nodes, 0, 1)[:, ::-1]

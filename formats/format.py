@@ -1,0 +1,64 @@
+"""The record that describes a file format; every format module ends in one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from formats.source import Source
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.shape import Shape
+
+
+@dataclass(frozen=True)
+class Format:
+    """What a format is called, how it is recognised and what it can hold.
+
+    Parameters
+    ----------
+    name : what ``--from`` and ``--to`` call it.
+    suffixes : file endings, lower case with the dot.
+    description : a few words for help texts and tables.
+    read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
+        outer edges then serve) or cannot be read.
+    read_grids, write_grids, write_boundaries : None when the format cannot.
+    write_extruded : writes grids one cell thick in z, from 0 to the given height.
+    sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
+    names_parts : whether names of parts and the topology survive in it.
+    many : whether one file holds several grids or boundaries.
+    """
+
+    name: str
+    suffixes: tuple[str, ...]
+    description: str
+    read_shapes: Callable[[Source], Iterator[Shape]] | None = None
+    read_grids: Callable[[Source], Iterator[Grid]] | None = None
+    write_grids: Callable[[Path, Iterable[Grid]], None] | None = None
+    write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
+    write_extruded: Callable[[Path, Iterable[Grid], float], None] | None = None
+    sniff: Callable[[bytes], bool] | None = None
+    names_parts: bool = False
+    many: bool = False
+
+
+def only_one(grids: Iterable[Grid], what: str) -> Grid:
+    """Return the single grid of `grids`, for a format whose files hold one.
+
+    Raises
+    ------
+    InputError
+        there is none, or more than one.
+    """
+    given = iter(grids)
+    first = next(given, None)
+    if first is None:
+        raise InputError("there is no grid to write", "check the input")
+    if next(given, None) is not None:
+        raise InputError(
+            f"{what} holds one grid and there are several",
+            "use -o 'name-{index}' with that ending, or one .h5",
+        )
+    return first

@@ -1,0 +1,230 @@
+"""HDF5 datasets of many boundaries or grids of one size; layout version 1.
+
+::
+
+    attributes   format = "meshonet-boundary" or "meshonet-grid", version = 1, topology
+    south, north (n, ni, 2)   west, east (n, nj, 2)   float64, corners shared
+    nodes        (n, ni, nj, 2), grids only
+    names, split, parts, provenance   (n,) text, where there is any
+    parameters   (n, p), its attribute names (p,)
+
+Everything is chunked by sample and resizable along n; samples are appended one by one. `parts` and
+`provenance` are JSON; the first grid's provenance is repeated as attributes of the file, for reading
+by eye. https://docs.h5py.org
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from formats.edges import boundary_of
+from formats.facts import plain
+from formats.format import Format
+from formats.hdf5_check import Checked, checked
+from formats.source import Source
+from geometry.arrays import SIDES, Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.parts import Part
+
+if TYPE_CHECKING:
+    import h5py
+
+VERSION = 1
+Kind = Literal["meshonet-boundary", "meshonet-grid"]
+
+
+class Writer:
+    """A dataset being written; samples are in the file as soon as they are appended.
+
+    Parameters
+    ----------
+    path : file to make.
+    kind : what it will hold.
+    parameter_names : names of the numbers that go with each sample, if any do.
+
+    Raises
+    ------
+    InputError
+        when a sample differs from the first one in size or topology.
+    """
+
+    def __init__(self, path: Path, kind: Kind, parameter_names: Sequence[str] = ()) -> None:
+        import h5py
+
+        self._file = h5py.File(path, "w")
+        self._file.attrs.update(format=kind, version=VERSION)
+        self._count = 0
+        self._first: tuple[int, int, str] | None = None
+        if parameter_names:
+            self._row("parameters", np.empty(len(parameter_names)))
+            self._file["parameters"].attrs["names"] = list(parameter_names)
+
+    def __enter__(self) -> Writer:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+    def append(self, sample: Boundary | Grid, *, parameters: Floats | None = None, split: str = "") -> None:
+        """Add one sample.
+
+        Parameters
+        ----------
+        sample : a grid for a file of grids, else a boundary.
+        parameters : (p,) numbers that made it.
+        split : ``train``, ``test`` or nothing.
+        """
+        shape = (sample.ni, sample.nj, sample.topology)
+        if self._first is None:
+            self._first = shape
+            self._file.attrs["topology"] = sample.topology
+        if shape != self._first:
+            raise InputError(
+                "sample {} is {}x{} {} and the first is {}x{} {}".format(self._count, *shape, *self._first),
+                "one dataset has one size and topology: set --res and --topology, or write one file each",
+            )
+        edges = boundary_of(sample) if isinstance(sample, Grid) else sample
+        arrays: dict[str, Floats] = {side: getattr(edges, side) for side in SIDES}
+        if isinstance(sample, Grid):
+            arrays["nodes"] = sample.nodes
+            self._provenance(sample.provenance)
+        if parameters is not None:
+            arrays["parameters"] = parameters
+        for name, values in arrays.items():
+            self._row(name, values)[self._count] = values
+        self._text("names", sample.name)
+        self._text("split", split)
+        self._text("parts", json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.parts]))
+        self._count += 1
+
+    def _row(self, name: str, values: Floats) -> h5py.Dataset:
+        if name not in self._file:
+            shape = values.shape
+            self._file.create_dataset(name, (0, *shape), "f8", maxshape=(None, *shape), chunks=(1, *shape))
+        data = self._file[name]
+        if values.shape != data.shape[1:]:
+            raise InputError(
+                f"{name} of sample {self._count} has shape {values.shape}", f"the first has {data.shape[1:]}"
+            )
+        if len(data) <= self._count:
+            data.resize(self._count + 1, axis=0)
+        return data
+
+    def _text(self, name: str, text: str) -> None:
+        """Set the entry of this sample; a dataset of nothing but empty texts is never made."""
+        import h5py
+
+        if name not in self._file:
+            if not text:
+                return
+            self._file.create_dataset(name, (0,), h5py.string_dtype(), maxshape=(None,), chunks=(64,))
+        self._file[name].resize(self._count + 1, axis=0)
+        self._file[name][self._count] = text
+
+    def _provenance(self, facts: Mapping[str, Any]) -> None:
+        if not facts:
+            return
+        self._text("provenance", json.dumps(facts, default=plain))
+        if self._count == 0:
+            for key, value in facts.items():
+                name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
+                self._file.attrs[name] = (
+                    value if isinstance(value, str | int | float) else json.dumps(value, default=plain)
+                )
+
+
+def write_boundaries(path: Path, boundaries: Iterable[Boundary]) -> None:
+    """Write boundaries of one size and topology, each as it comes."""
+    _write(path, "meshonet-boundary", boundaries)
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write grids of one size and topology, each as it comes."""
+    _write(path, "meshonet-grid", grids)
+
+
+def read_shapes(source: Source) -> Iterator[Boundary]:
+    """Yield the boundaries; of a grid dataset, the grids' outer edges as they were stored."""
+    with checked(source) as data:
+        for k in range(data.count):
+            with data.place(k):
+                edges = [data.sample(side, k) for side in ("south", "north", "west", "east")]
+                yield Boundary(*edges, data.topology, _parts(data, k), data.text("names", k))
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grids.
+
+    Raises
+    ------
+    InputError
+        the dataset holds boundaries only, or is not right.
+    """
+    with checked(source) as data:
+        if "nodes" not in data:
+            raise InputError(
+                "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
+            )
+        for k in range(data.count):
+            with data.place(k):
+                facts = json.loads(data.text("provenance", k) or "{}")
+                if not isinstance(facts, dict):
+                    raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
+                yield Grid(
+                    data.sample("nodes", k), data.topology, _parts(data, k), data.text("names", k), facts
+                )
+
+
+def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str, ...]]:
+    """Return the names (p,), the parameters (n, p) and the split (n,) of a dataset; empty where absent."""
+    with checked(source) as data:
+        count = range(data.count)
+        if "parameters" not in data:
+            return (), np.empty((data.count, 0)), tuple(data.text("split", k) for k in count)
+        rows = np.array([data.sample("parameters", k) for k in count])
+        return data.parameter_names(), rows, tuple(data.text("split", k) for k in count)
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` starts as HDF5 files do."""
+    return head.startswith(b"\x89HDF\r\n\x1a\n")
+
+
+def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
+    with Writer(path, kind) as writer:
+        for sample in samples:
+            writer.append(sample)
+
+
+def _parts(data: Checked, k: int) -> tuple[Part, ...]:
+    try:
+        rows = json.loads(data.text("parts", k) or "[]")
+        return tuple(Part(str(name), side, int(start), int(stop)) for name, side, start, stop in rows)
+    except (ValueError, TypeError, RecursionError):
+        raise InputError(
+            "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
+        ) from None
+
+
+FORMAT = Format(
+    name="hdf5",
+    suffixes=(".h5", ".hdf5"),
+    description="HDF5 dataset of boundaries or grids",
+    read_shapes=read_shapes,
+    read_grids=read_grids,
+    write_grids=write_grids,
+    write_boundaries=write_boundaries,
+    sniff=sniff,
+    names_parts=True,
+    many=True,
+)

@@ -1,0 +1,159 @@
+"""An HDF5 dataset opened and checked: layout, shapes, types and sizes, before any memory is taken."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from formats.edges import known_topology
+from formats.source import Source, printable
+from geometry.arrays import SIDES, Floats, Topology
+from geometry.errors import InputError
+
+if TYPE_CHECKING:
+    import h5py
+
+_DEFLATE_LIMIT = 1032
+"""Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
+
+
+class Checked:
+    """What `checked` hands out.
+
+    Parameters
+    ----------
+    file : an open HDF5 file.
+
+    Attributes
+    ----------
+    count : number of samples n.
+    topology : the one all samples share.
+    """
+
+    def __init__(self, file: h5py.File) -> None:
+        self._file = file
+        self._text_cache: dict[str, Any] = {}
+        kind = _attribute(file, "format")
+        if kind not in ("meshonet-boundary", "meshonet-grid"):
+            raise InputError(
+                "is HDF5 but not a dataset of boundaries or grids",
+                "set its attribute format to 'meshonet-boundary' or 'meshonet-grid', and version and topology",
+            )
+        if _attribute(file, "version") != "1":
+            raise InputError(
+                f"has layout version {_attribute(file, 'version')!r}",
+                "this program reads version 1: get a newer one",
+            )
+        self.topology: Topology = known_topology(_attribute(file, "topology"))
+        self.count, ni = self._shape("south", 3)[:2]
+        nj = self._shape("west", 3)[1]
+        wanted = {"south": (ni, 2), "north": (ni, 2), "west": (nj, 2), "east": (nj, 2), "nodes": (ni, nj, 2)}
+        for name in SIDES if kind == "meshonet-boundary" else (*SIDES, "nodes"):
+            shape = self._shape(name, len(wanted[name]) + 1)
+            if shape != (self.count, *wanted[name]):
+                raise InputError(
+                    f"dataset {name!r} has shape {shape}",
+                    f"it must be {(self.count, *wanted[name])} as 'south' and 'west' say",
+                )
+        if self.count == 0:
+            raise InputError("holds no samples", "write at least one")
+        if "parameters" in self and self._shape("parameters", 2)[0] != self.count:
+            raise InputError("dataset 'parameters' has another count than 'south'", "give one row a sample")
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._file
+
+    def sample(self, name: str, k: int) -> Floats:
+        """Return row `k` of a checked numeric dataset as float64."""
+        return np.asarray(self._file[name][k], dtype=np.float64)
+
+    def text(self, name: str, k: int) -> str:
+        """Return text `k` of dataset `name`, empty when there is none."""
+        import h5py
+
+        if name not in self._text_cache:
+            data = self._dataset(name) if name in self else None
+            if data is not None and (data.ndim != 1 or h5py.check_string_dtype(data.dtype) is None):
+                raise InputError(f"dataset {name!r} is not a list of texts", "store strings, one a sample")
+            self._text_cache[name] = data
+        data = self._text_cache[name]
+        if data is None or k >= len(data):
+            return ""
+        value = data[k]
+        text = value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+        return printable(text) if name in ("names", "split") else text
+
+    def parameter_names(self) -> tuple[str, ...]:
+        """Return the names that go with the columns of 'parameters'."""
+        names = np.atleast_1d(self._dataset("parameters").attrs.get("names", []))
+        return tuple(
+            printable(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n)) for n in names
+        )
+
+    @contextlib.contextmanager
+    def place(self, k: int) -> Iterator[None]:
+        """Name sample `k` in errors raised inside."""
+        try:
+            yield
+        except InputError as error:
+            error.place = error.place or f"sample {k}"
+            raise
+        except (ValueError, RecursionError) as error:
+            raise InputError(str(error), "write the dataset again", place=f"sample {k}") from error
+
+    def _dataset(self, name: str) -> h5py.Dataset:
+        import h5py
+
+        link = self._file.get(name, getlink=True)
+        data = self._file.get(name) if isinstance(link, h5py.HardLink) else None
+        if not isinstance(data, h5py.Dataset):
+            raise InputError(
+                f"has no dataset {name!r}", "store south, north, west and east (and nodes for grids)"
+            )
+        if data.is_virtual or data.external:
+            raise InputError(f"dataset {name!r} lies in another file", "store it in this one")
+        return data
+
+    def _shape(self, name: str, ndim: int) -> tuple[int, ...]:
+        """Return the shape of a numeric dataset once its type, rank and stored size are plausible."""
+        data = self._dataset(name)
+        if data.dtype.kind not in "fiu" or data.ndim != ndim:
+            raise InputError(
+                f"dataset {name!r} is {data.dtype} with {data.ndim} axes", f"store float64 with {ndim} axes"
+            )
+        if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
+            raise InputError(
+                f"dataset {name!r} claims shape {data.shape} but holds next to nothing", "write it again"
+            )
+        return tuple(int(n) for n in data.shape)
+
+
+@contextlib.contextmanager
+def checked(source: Source) -> Iterator[Checked]:
+    """Open `source` as a dataset; what HDF5's library complains of becomes an InputError."""
+    import h5py
+
+    with contextlib.ExitStack() as stack:
+        try:
+            given = source.path or stack.enter_context(source.open())
+            file = stack.enter_context(h5py.File(given, "r", locking="best-effort"))
+        except (OSError, RuntimeError, ValueError, KeyError) as error:
+            raise InputError(
+                f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"
+            ) from error
+        try:
+            yield Checked(file)
+        except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+            raise InputError(f"HDF5 data is damaged ({_short(error)})", "write the file again") from error
+
+
+def _attribute(file: h5py.File, name: str) -> str:
+    value = file.attrs.get(name, "")
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def _short(error: Exception) -> str:
+    return printable(str(error).splitlines()[0] if str(error) else type(error).__name__)[:120]

@@ -1,0 +1,125 @@
+"""Files that appear whole or not at all, whatever stops the program."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import secrets
+import shutil
+import stat
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from formats.source import printable
+from geometry.errors import InputError
+
+PART_SUFFIX = ".meshonet-part"
+"""Ending of unfinished files, so that one left by a killed process can be recognised and removed."""
+
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
+
+
+@contextlib.contextmanager
+def whole_file(destination: str, *, make_folder: bool = False) -> Iterator[Path]:
+    """Give a path to write to; what is there becomes `destination` when the block ends without an error.
+
+    The path lies beside the destination, so that the last step is one atomic rename; for ``-``
+    (standard output) and for devices and pipes it lies in the system's temporary folder and its bytes
+    are copied out at the end. On any exception, KeyboardInterrupt and SystemExit included, it is
+    removed and the destination is as it was.
+
+    Parameters
+    ----------
+    destination : path, or ``-``.
+    make_folder : make the destination's folder when it is missing.
+
+    Raises
+    ------
+    InputError
+        the destination is a folder, its folder is missing or may not be written, the disc is full.
+
+    Examples
+    --------
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     with whole_file(f"{folder}/a.txt") as path:
+    ...         _ = path.write_text("whole")
+    ...     os.listdir(folder)
+    ['a.txt']
+    """
+    name = printable(destination)
+    with _told(name):
+        stream = destination == "-" or _is_stream(Path(destination))
+        part = _part_in_tmp() if stream else _part_beside(Path(destination), name, make_folder)
+    try:
+        with _told(name, _FULL):
+            yield part
+        with _told(name):
+            if stream:
+                _copy_out(part, destination)
+            else:
+                part.replace(os.path.realpath(destination))
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def _told(name: str, only: set[int] | None = None) -> Iterator[None]:
+    """Turn an operating-system error (one of `only`) into one that names the destination."""
+    try:
+        yield
+    except OSError as error:
+        if only is not None and error.errno not in only:
+            raise
+        why = error.strerror or str(error)
+        raise InputError(
+            f"cannot be written ({why})", "free space or choose another place", source=name
+        ) from error
+
+
+def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
+    target = Path(os.path.realpath(destination))
+    if target.is_dir():
+        raise InputError("is a folder", "name a file in it", source=name)
+    if make_folder:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    if not target.parent.is_dir():
+        raise InputError(
+            "its folder does not exist",
+            f"make it: mkdir -p {printable(str(destination.parent))}",
+            source=name,
+        )
+    part = target.with_name(f".{target.name[:150]}.{os.getpid()}-{secrets.token_hex(4)}{PART_SUFFIX}")
+    # made here, not by tempfile, so that the permissions are those of the umask as for any new file
+    os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+    return part
+
+
+def _part_in_tmp() -> Path:
+    handle, name = tempfile.mkstemp(suffix=PART_SUFFIX)
+    os.close(handle)
+    return Path(name)
+
+
+def _is_stream(path: Path) -> bool:
+    try:
+        mode = path.stat().st_mode
+    except OSError:
+        return False
+    return not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
+def _copy_out(part: Path, destination: str) -> None:
+    with part.open("rb") as finished:
+        if destination != "-":
+            with Path(destination).open("wb") as stream:
+                shutil.copyfileobj(finished, stream, 1 << 20)
+            return
+        try:
+            shutil.copyfileobj(finished, sys.stdout.buffer, 1 << 20)
+            sys.stdout.buffer.flush()
+        except BrokenPipeError:
+            # the reader (head, say) had enough; the interpreter's own flush at exit must not complain either
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

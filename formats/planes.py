@@ -1,0 +1,73 @@
+"""A plane grid out of a three-dimensional file: one plane, or two copies of one, in any index direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.errors import InputError
+
+_SAME = 1e-6
+"""Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""
+
+
+def planar(coordinates: Sequence[Floats]) -> Floats:
+    """Return nodes (ni, nj, 2) of a plane grid, the constant index and the constant coordinate dropped.
+
+    Parameters
+    ----------
+    coordinates : x, y[, z], each (n1, n2, n3), any unit; memory order does not matter.
+
+    Raises
+    ------
+    InputError
+        the grid is truly three-dimensional, or its plane is curved.
+    """
+    dims = coordinates[0].shape
+    told = "x".join(str(n) for n in dims)
+    for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
+        if dims[axis] > 2:
+            break
+        first = [np.take(c, 0, axis) for c in coordinates]
+        if min(first[0].shape) < 2:
+            raise InputError(
+                f"a grid of {told} nodes has no cells", "give at least 2 nodes in two directions"
+            )
+        if dims[axis] == 1:
+            return np.stack(_without_constant(first, told), axis=-1)
+        second = [np.take(c, 1, axis) for c in coordinates]
+        kept = _without_shift(first, second)
+        if kept:
+            return np.stack(kept, axis=-1)
+    raise InputError(
+        f"a grid of {told} nodes is three-dimensional",
+        "give a plane one: one plane, or two copies of one, in some direction",
+    )
+
+
+def _without_constant(plane: list[Floats], told: str) -> list[Floats]:
+    """Return the two coordinates of a plane that vary."""
+    if len(plane) == 2:
+        return plane
+    spans = [float(np.ptp(c)) for c in plane]
+    flat = [k for k in (2, 1, 0) if not spans[k] > _SAME * max(spans)]
+    if not flat:
+        raise InputError(
+            f"the {told} nodes lie on a curved or tilted surface", "give a grid in a coordinate plane"
+        )
+    return [c for k, c in enumerate(plane) if k != flat[0]]
+
+
+def _without_shift(first: list[Floats], second: list[Floats]) -> list[Floats]:
+    """Return the two coordinates in which two planes agree when the third only steps; else nothing."""
+    size = max(float(np.ptp(c)) for c in first)
+    for k in (2, 1, 0):
+        if k >= len(first):
+            continue
+        flat = max(float(np.ptp(first[k])), float(np.ptp(second[k]))) <= _SAME * size
+        others = [m for m in range(len(first)) if m != k]
+        if flat and all(np.allclose(first[m], second[m], rtol=0, atol=_SAME * size) for m in others):
+            return [first[m] for m in others]
+    return []

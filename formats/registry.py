@@ -1,0 +1,198 @@
+"""Which format a file is in: by ``--from``/``--to``, by its ending, by its content.
+
+The table below is all that is known without loading a format's module, so that starting the program
+costs nothing for formats that are not used.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from formats.edges import boundary_of
+from formats.format import Format
+from formats.source import Source, open_source, printable
+from geometry.errors import InputError, MeshonetError
+from geometry.grid import Grid
+from geometry.shape import Shape
+
+Kind = Literal["grids", "boundaries"]
+
+
+class Row(NamedTuple):
+    """A format's module and file endings; the endings repeat its record's, and a test holds them equal."""
+
+    module: str
+    suffixes: tuple[str, ...]
+
+
+TABLE: dict[str, Row] = {
+    "hdf5": Row("formats.hdf5", (".h5", ".hdf5")),
+    "vts": Row("formats.vts", (".vts",)),
+}
+"""Formats by name. Where several share an ending, writing takes the first, reading looks at the content."""
+
+_DESIGNATION = "naca:"
+
+
+def format_named(name: str) -> Format:
+    """Return the format that ``--from`` or ``--to`` names.
+
+    Raises
+    ------
+    InputError
+        no such format; the message lists those there are.
+    """
+    row = TABLE.get(name.lower().lstrip("."))
+    if row is None:
+        raise InputError(f"format {printable(name)!r} is not known", "use one of " + ", ".join(TABLE))
+    return _record(name.lower().lstrip("."), row)
+
+
+def formats() -> tuple[Format, ...]:
+    """Return every format; loads their modules, though not the libraries these call."""
+    return tuple(_record(name, row) for name, row in TABLE.items())
+
+
+def format_of(source: Source, fmt: str | None = None) -> Format:
+    """Return the format of a source to be read.
+
+    Raises
+    ------
+    InputError
+        neither the ending nor the content tells.
+    """
+    if fmt:
+        return format_named(fmt)
+    claimed = _by_suffix(source.suffix)
+    if len(claimed) == 1:
+        return claimed[0]
+    head = source.head()
+    for found in claimed or formats():
+        if found.sniff is not None and found.sniff(head):
+            return found
+    if claimed:
+        return claimed[0]
+    what = f"ending {source.suffix!r} is" if source.suffix else "content is"
+    raise InputError(
+        f"its {what} not of a known format", f"name it with --from; {_known()}", source=source.name
+    )
+
+
+def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
+    """Return the format to write `path_text` in; standard output is HDF5 unless `fmt` says otherwise.
+
+    Raises
+    ------
+    InputError
+        the ending is not known, or the format cannot be written with what `kind` says.
+    """
+    suffix = Path(path_text).suffix.lower()
+    if fmt or path_text == "-":
+        claimed: tuple[Format, ...] = (format_named(fmt or "hdf5"),)
+    else:
+        claimed = _by_suffix(suffix)
+        if not claimed:
+            what = (
+                f"ending {printable(suffix)!r} is not known"
+                if suffix
+                else "name has no ending to tell the format by"
+            )
+            raise InputError(
+                f"its {what}", f"choose the format with --to; {_known()}", source=printable(path_text)
+            )
+    for found in claimed:
+        if getattr(found, f"write_{kind}") is not None:
+            return found
+    able = ", ".join(found.name for found in formats() if getattr(found, f"write_{kind}") is not None)
+    raise InputError(
+        f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
+    )
+
+
+def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
+    """Yield what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
+
+    The outer edges of a grid are boundaries, so a grid file serves too.
+
+    Raises
+    ------
+    InputError
+        a source that cannot be opened, is of no known format, or is not right; named with its place.
+    """
+    if text.lower().startswith(_DESIGNATION) and not Path(text).exists():
+        from geometry.naca import naca
+
+        yield naca(text[len(_DESIGNATION) :])
+        return
+    source = open_source(text)
+    found = format_of(source, fmt)
+    with _blamed(source):
+        if found.read_shapes is not None:
+            yield from found.read_shapes(source)
+        elif found.read_grids is not None:
+            for grid in found.read_grids(source):
+                yield boundary_of(grid)
+        else:
+            raise _unreadable(found)
+
+
+def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
+    """Yield the grids of a path or of ``-``.
+
+    Raises
+    ------
+    InputError
+        as `read_shapes`; also a file that holds boundaries only.
+    """
+    source = open_source(text)
+    found = format_of(source, fmt)
+    with _blamed(source):
+        if found.read_grids is not None:
+            yield from found.read_grids(source)
+        elif found.read_shapes is not None:
+            raise InputError(
+                "holds a boundary, not a grid",
+                f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
+            )
+        else:
+            raise _unreadable(found)
+
+
+class _blamed:  # noqa: N801  (a context manager; contextlib's form would swallow the generator's own close)
+    """Names the source in errors that do not, and turns the system's errors into ours."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+
+    def __enter__(self) -> None:
+        return None
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
+        if isinstance(error, InputError):
+            error.source = error.source or self.source.name
+        elif isinstance(error, (OSError, MemoryError)) and not isinstance(error, MeshonetError):
+            told = getattr(error, "strerror", None) or str(error) or type(error).__name__
+            raise InputError(f"cannot be read ({told})", "check the file", source=self.source.name) from error
+
+
+def _record(name: str, row: Row) -> Format:
+    module = importlib.import_module(row.module)
+    records: tuple[Format, ...] = getattr(module, "FORMATS", None) or (module.FORMAT,)
+    return next(record for record in records if record.name == name)
+
+
+def _by_suffix(suffix: str) -> tuple[Format, ...]:
+    return tuple(_record(name, row) for name, row in TABLE.items() if suffix and suffix in row.suffixes)
+
+
+def _known() -> str:
+    return "known endings: " + " ".join(sorted({suffix for row in TABLE.values() for suffix in row.suffixes}))
+
+
+def _unreadable(found: Format) -> InputError:
+    return InputError(
+        f"{found.name} files can only be written", "give a grid or a boundary in another format"
+    )

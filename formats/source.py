@@ -1,0 +1,116 @@
+"""Where bytes come from: a file, standard input, or memory, under the name the user gave it."""
+
+from __future__ import annotations
+
+import io
+import stat
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from geometry.errors import InputError
+
+HEAD_BYTES = 65536
+"""How much of a file a format sees when it is asked whether the file is one of its own."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """Named bytes; either `path` or `data` is set.
+
+    Parameters
+    ----------
+    name : what to call it in messages, printable.
+    path : a regular file.
+    data : the bytes themselves, for standard input, pipes and tests.
+    """
+
+    name: str
+    path: Path | None = None
+    data: bytes | None = None
+
+    @property
+    def stem(self) -> str:
+        """File name without folder and ending; what a shape is called when its file does not say."""
+        return (
+            printable(self.path.stem) if self.path else "stdin" if self.name == "-" else Path(self.name).stem
+        )
+
+    @property
+    def suffix(self) -> str:
+        """File ending in lower case, dot included, or nothing."""
+        return self.path.suffix.lower() if self.path else Path(self.name).suffix.lower()
+
+    @property
+    def size(self) -> int:
+        """Length in bytes; every count that a header claims is compared with it before memory is taken."""
+        return len(self.data) if self.data is not None else self._file().stat().st_size
+
+    def read_bytes(self) -> bytes:
+        """Return everything."""
+        return self.data if self.data is not None else self._file().read_bytes()
+
+    def open(self) -> BinaryIO:
+        """Return a seekable binary stream; the caller closes it."""
+        return io.BytesIO(self.data) if self.data is not None else self._file().open("rb")
+
+    def head(self, count: int = HEAD_BYTES) -> bytes:
+        """Return the first `count` bytes, or all when there are fewer."""
+        with self.open() as stream:
+            return stream.read(count)
+
+    def _file(self) -> Path:
+        if self.path is None:
+            raise InputError("has neither a path nor data", "give one of them", source=self.name)
+        return self.path
+
+
+def open_source(text: str) -> Source:
+    """Return the source that a user named: a path, or ``-`` for standard input.
+
+    Standard input and pipes are read to their end, since formats need to look back and forth.
+
+    Raises
+    ------
+    InputError
+        no such file, a folder, a file that may not be read, nothing in it.
+    """
+    try:
+        source = _opened(text)
+    except FileNotFoundError:
+        raise InputError("no such file", "check the path", source=printable(text)) from None
+    except PermissionError:
+        raise InputError("may not be read", "check its permissions", source=printable(text)) from None
+    except (OSError, ValueError) as error:
+        told = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError(f"cannot be opened ({told})", "check the path", source=printable(text)) from None
+    if source.size == 0:
+        raise InputError("is empty", "give a file with a boundary or a grid in it", source=source.name)
+    return source
+
+
+def printable(text: str) -> str:
+    r"""Return `text` with control characters and undecodable bytes written as escapes.
+
+    Names come from files and go to terminals; an escape sequence in one must not act there.
+
+    Examples
+    --------
+    >>> print(printable("a\x1b[31m.dat"))
+    a\x1b[31m.dat
+    """
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def _opened(text: str) -> Source:
+    if text == "-":
+        return Source("-", data=sys.stdin.buffer.read())
+    path = Path(text)
+    mode = path.stat().st_mode
+    if stat.S_ISDIR(mode):
+        raise InputError("is a folder", "name a file in it", source=printable(text))
+    with path.open("rb") as stream:
+        if stat.S_ISREG(mode):
+            return Source(printable(text), path=path)
+        return Source(printable(text), data=stream.read())

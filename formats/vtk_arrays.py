@@ -1,0 +1,161 @@
+"""Data arrays of VTK XML files: ascii, base64 inline, appended raw or base64, compressed by zlib or LZMA."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formats.source import printable
+from geometry.errors import InputError
+
+_KINDS = {
+    "Float32": "f4", "Float64": "f8", "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2",
+    "Int32": "i4", "UInt32": "u4", "Int64": "i8", "UInt64": "u8",
+}  # fmt: skip
+_CUT = "the file is cut short or its sizes are wrong: write it again"
+_MOST_SHRINKING = 1 << 15
+"""LZMA shrinks zeros some ten thousand times, zlib a thousand; a claim far beyond is refused."""
+
+
+@dataclass(frozen=True)
+class Encoding:
+    """How a file stores its arrays.
+
+    Parameters
+    ----------
+    order : ``<`` or ``>``, byte order.
+    header : ``u4`` or ``u8``, type of the length words before an array.
+    compressor : the file's attribute of that name, empty for none.
+    appended : bytes after the mark ``_``.
+    base64 : whether these are base64.
+    offsets : where the arrays in `appended` start, and its end, sorted.
+    """
+
+    order: str
+    header: str
+    compressor: str
+    appended: memoryview
+    base64: bool
+    offsets: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Encoded:
+    """One array of a file: its VTK type, how many numbers it must have, and where they are."""
+
+    kind: str
+    count: int
+    form: str
+    text: str
+    offset: int
+
+
+def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
+    """Return the numbers of `array` (count,), viewing the file's bytes where it can.
+
+    Raises
+    ------
+    InputError
+        unknown type or form, fewer or more numbers than there should be, LZ4.
+    """
+    if array.kind not in _KINDS:
+        raise InputError(f"number type {printable(array.kind)!r} is not known", "write Float64 or Float32")
+    dtype = np.dtype(encoding.order + _KINDS[array.kind])
+    size = array.count * dtype.itemsize
+    if array.form == "ascii":
+        return _ascii(array, dtype)
+    if array.form == "binary":
+        raw = memoryview(_unbase64(array.text.encode("ascii", "replace")))
+    elif array.form == "appended" and array.offset < len(encoding.appended):
+        raw = encoding.appended[array.offset :]
+        if encoding.base64:
+            end = next(stop for stop in encoding.offsets if stop > array.offset)
+            raw = memoryview(_unbase64(bytes(encoding.appended[array.offset : end])))
+    else:
+        raise InputError(f"format {printable(array.form)!r} at offset {array.offset} cannot be read", _CUT)
+    data = _decompressed(raw, size, encoding) if encoding.compressor else _sized(raw, size, encoding)
+    return np.frombuffer(data, dtype)
+
+
+def _ascii(array: Encoded, dtype: np.dtype[Any]) -> NDArray[Any]:
+    if array.count > len(array.text):
+        raise InputError(f"should have {array.count} numbers and has fewer", _CUT)
+    words = array.text.split()
+    if len(words) != array.count:
+        raise InputError(f"should have {array.count} numbers and has {len(words)}", _CUT)
+    try:
+        return np.array(words, dtype=np.float64 if dtype.kind == "f" else np.int64)
+    except (ValueError, OverflowError) as error:
+        raise InputError(printable(str(error))[:120], "write the file again") from None
+
+
+def _unbase64(text: bytes) -> bytes:
+    """Decode base64 that may be several pieces in a row (length words, data), each with its padding."""
+    text = b"".join(text.split())
+    try:
+        return b"".join(base64.b64decode(piece, validate=True) for piece in re.findall(rb"[^=]+=*", text))
+    except (binascii.Error, ValueError):
+        raise InputError("its base64 data is damaged", "write the file again") from None
+
+
+def _words(raw: memoryview, first: int, count: int, encoding: Encoding) -> list[int]:
+    """Return length words `first` to `first + count` at the start of an array."""
+    dtype = np.dtype(encoding.order + encoding.header)
+    if len(raw) < (first + count) * dtype.itemsize:
+        raise InputError("its length words are missing", _CUT)
+    return [int(word) for word in np.frombuffer(raw, dtype, count, first * dtype.itemsize)]
+
+
+def _sized(raw: memoryview, size: int, encoding: Encoding) -> memoryview:
+    (told,) = _words(raw, 0, 1, encoding)
+    start = int(encoding.header[1])
+    if told != size or len(raw) < start + size:
+        raise InputError(
+            f"should be {size} bytes, is said to be {told} and {len(raw) - start} are left", _CUT
+        )
+    return raw[start : start + size]
+
+
+def _decompressed(raw: memoryview, size: int, encoding: Encoding) -> bytearray:
+    """Return `size` bytes; the words say: how many blocks, block size, last block size, each compressed size."""
+    inflate = _inflater(encoding.compressor)
+    count, block, last = _words(raw, 0, 3, encoding)
+    full = count - 1 if last else count
+    if count > len(raw) or full * block + last != size or size > _MOST_SHRINKING * len(raw):
+        raise InputError(f"should be {size} bytes and its blocks say {full * block + last}", _CUT)
+    sizes = _words(raw, 3, count, encoding)
+    at = (3 + count) * int(encoding.header[1])
+    data = bytearray()
+    for k, packed in enumerate(sizes):
+        wanted = last if last and k == count - 1 else block
+        try:
+            piece = inflate(raw[at : at + packed], wanted)
+        except Exception as error:  # zlib.error and lzma.LZMAError share no base of their own
+            raise InputError(f"block {k} cannot be decompressed ({error})", "write the file again") from error
+        if len(piece) != wanted:
+            raise InputError(f"block {k} has {len(piece)} bytes instead of {wanted}", _CUT)
+        data += piece
+        at += packed
+    return data
+
+
+def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
+    """Return the function (packed bytes, most bytes to give back) -> bytes of a compressor."""
+    if compressor == "vtkZLibDataCompressor":
+        return lambda packed, most: zlib.decompressobj().decompress(packed, most)
+    if compressor == "vtkLZMADataCompressor":
+        from lzma import LZMADecompressor
+
+        return lambda packed, most: LZMADecompressor().decompress(packed, most)
+    raise InputError(
+        f"compressor {printable(compressor)!r} cannot be read",
+        "write it with zlib (vtkZLibDataCompressor) or none",
+    )
