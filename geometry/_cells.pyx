@@ -1,0 +1,91 @@
+"""Compiled half of `geometry.quality`: one pass over the cells of a grid.
+
+``x`` and ``y`` are the (ni, nj) C-contiguous planes of a grid's nodes.
+"""
+
+from libc.stdint cimport int64_t
+
+import numpy as np
+
+
+cdef extern from "cells_kernel.h":
+    int METRICS
+    ptrdiff_t cells_folded_in_row(const double *x, const double *y, ptrdiff_t nj, ptrdiff_t cells) nogil
+    ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room) nogil
+    void cells_areas(const double *x, const double *y, ptrdiff_t nj, double *area) nogil
+    void cells_row(const double *x, const double *y, ptrdiff_t nj, const double *before, const double *here, const double *after, double *out) nogil
+    void cells_reduce(const double *row, ptrdiff_t cells, double *low, double *high, double *sum) nogil
+
+
+def count_folded(const double[:, ::1] x, const double[:, ::1] y):
+    """Return how many cells have a corner Jacobian that is not positive."""
+    cdef ptrdiff_t ni = x.shape[0], nj = x.shape[1], i, folded = 0
+    with nogil:
+        for i in range(ni - 1):
+            folded += cells_folded_in_row(&x[i, 0], &y[i, 0], nj, nj - 1)
+    return folded
+
+
+def folded_cells(const double[:, ::1] x, const double[:, ::1] y, ptrdiff_t room):
+    """Return (n, 2) indices of folded cells in order of (i, j), `room` at the most."""
+    cdef int64_t[:, ::1] pairs = np.empty((max(room, 1), 2), dtype=np.int64)
+    cdef ptrdiff_t found
+    with nogil:
+        found = cells_list_folded(&x[0, 0], &y[0, 0], x.shape[0], x.shape[1], &pairs[0, 0], room)
+    return np.asarray(pairs)[:min(found, room)]
+
+
+def measure(const double[:, ::1] x, const double[:, ::1] y, bint periodic, double[:, ::1] summary,
+            int64_t[:, :, ::1] where, int keep, double[:, ::1] kept):
+    """Run over all cells once.
+
+    summary (METRICS, 3): min, mean, max of each metric. where (METRICS, 2, 2): cell (i, j) of the min and of
+    the max, first in order. keep: the metric whose values go to `kept` (ni-1, nj-1), or -1 for none.
+    """
+    cdef ptrdiff_t ni = x.shape[0], nj = x.shape[1], cells = nj - 1, i, j, k
+    cdef double[:, ::1] areas = np.empty((4, nj + 1))
+    cdef double[:, ::1] rows = np.empty((METRICS, cells))
+    cdef double low, high, total
+    cdef double *before
+    cdef double *here
+    cdef double *after
+    with nogil:
+        # areas of the rows of cells i-1, i, i+1 take turns in buffers 0 to 2; buffer 3 is the row across the seam
+        cells_areas(&x[0, 0], &y[0, 0], nj, &areas[0, 0])
+        cells_areas(&x[ni - 2, 0], &y[ni - 2, 0], nj, &areas[3, 0])
+        before = &areas[3, 0] if periodic else &areas[0, 0]
+        for i in range(ni - 1):
+            here = &areas[i % 3, 0]
+            if i < ni - 2:
+                after = &areas[(i + 1) % 3, 0]
+                cells_areas(&x[i + 1, 0], &y[i + 1, 0], nj, after)
+            elif periodic:
+                cells_areas(&x[0, 0], &y[0, 0], nj, &areas[3, 0])
+                after = &areas[3, 0]
+            else:
+                after = here
+            cells_row(&x[i, 0], &y[i, 0], nj, before, here, after, &rows[0, 0])
+            before = here
+            for k in range(METRICS):
+                cells_reduce(&rows[k, 0], cells, &low, &high, &total)
+                if i == 0 or low < summary[k, 0]:
+                    summary[k, 0] = low
+                    note(&rows[k, 0], cells, low, i, &where[k, 0, 0])
+                if i == 0 or high > summary[k, 2]:
+                    summary[k, 2] = high
+                    note(&rows[k, 0], cells, high, i, &where[k, 1, 0])
+                summary[k, 1] = total if i == 0 else summary[k, 1] + total
+            if keep >= 0:
+                for j in range(cells):
+                    kept[i, j] = rows[keep, j]
+        for k in range(METRICS):
+            summary[k, 1] /= (ni - 1) * cells
+
+
+cdef inline void note(const double *row, ptrdiff_t cells, double value, ptrdiff_t i, int64_t *where) noexcept nogil:
+    """Store where in a row `value` stands first."""
+    cdef ptrdiff_t j = 0
+    while j < cells - 1 and row[j] != value:
+        j += 1
+    where[0] = i
+    where[1] = j

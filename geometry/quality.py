@@ -1,0 +1,134 @@
+"""How good a grid is: folded cells, and the metrics of `geometry.metrics` summarised.
+
+A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry import _cells
+from geometry.arrays import Floats, as_planar
+from geometry.errors import BadCell, InputError
+from geometry.grid import Grid
+from geometry.metrics import METRICS, NAMES
+
+
+@dataclass(frozen=True)
+class Summary:
+    """One metric over all cells.
+
+    Parameters
+    ----------
+    min, mean, max : over all cells.
+    worst : the cell (i, j) with the worst value, the first of them.
+    p01, p99 : 1st and 99th percentile, None when they were not asked for.
+    """
+
+    min: float
+    mean: float
+    max: float
+    worst: tuple[int, int]
+    p01: float | None = None
+    p99: float | None = None
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Quality of a grid: how many cells it has, how many are folded, and every metric by name."""
+
+    cells: int
+    folded: int
+    metrics: Mapping[str, Summary]
+
+    def __getitem__(self, name: str) -> Summary:
+        """Return the summary of one metric."""
+        return self.metrics[name]
+
+
+def count_folded(nodes: Floats) -> int:
+    """Return how many cells of `nodes` (ni, nj, 2) are folded.
+
+    Fastest, and free of copies, in the planar layout of `geometry.arrays`.
+
+    Examples
+    --------
+    >>> square = np.stack(np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij"), axis=-1)
+    >>> count_folded(square), count_folded(square[::-1])
+    (0, 2)
+    """
+    return int(_cells.count_folded(*_planes(nodes)))
+
+
+def folded_cells(nodes: Floats) -> NDArray[np.int64]:
+    """Return (n, 2) indices (i, j) of the folded cells of `nodes` (ni, nj, 2), in order of i, then j."""
+    x, y = _planes(nodes)
+    cells: NDArray[np.int64] = _cells.folded_cells(x, y, _cells.count_folded(x, y))
+    return cells
+
+
+def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
+    """Return the folded cells of `nodes` (ni, nj, 2), `limit` at the most, least scaled Jacobian first."""
+    x, y = _planes(nodes)
+    i, j = folded_cells(nodes).T
+    corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
+    points = np.stack([np.stack([x[at], y[at]], axis=-1) for at in corners])
+    edges = np.roll(points, -1, axis=0) - points
+    before = np.roll(edges, 1, axis=0)
+    jacobian = before[..., 0] * edges[..., 1] - before[..., 1] * edges[..., 0]
+    lengths = np.hypot(*np.moveaxis(edges, -1, 0)) * np.hypot(*np.moveaxis(before, -1, 0))
+    scaled = np.divide(jacobian, lengths, out=np.zeros_like(jacobian), where=lengths > 0).min(
+        axis=0, initial=1.0
+    )
+    centre = points.mean(axis=0)
+    order = np.argsort(scaled, kind="stable")[:limit]
+    return [BadCell(int(i[k]), int(j[k]), float(centre[k, 0]), float(centre[k, 1])) for k in order]
+
+
+def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
+    """Return the quality of `grid`.
+
+    Parameters
+    ----------
+    grid : any topology; neighbours across the seam count for ``o``.
+    percentiles : also find the 1st and 99th percentile of every metric, by linear interpolation between
+        cells. They need a sort of all cells and take several times as long as the rest.
+    """
+    x, y = grid.x, grid.y
+    table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
+    _cells.measure(x, y, grid.topology == "o", table, where, -1, np.empty((0, 0)))
+    metrics = {}
+    for k, metric in enumerate(METRICS):
+        low, mean, high = (float(value) for value in table[k])
+        i, j = where[k, 0 if metric.worst == "min" else 1]
+        ends: list[float | None] = [None, None]
+        if percentiles:
+            values = per_cell(grid, metric.name).ravel()
+            ends = [float(value) for value in np.percentile(values, [1, 99], overwrite_input=True)]
+        metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
+    return Quality((grid.ni - 1) * (grid.nj - 1), count_folded(grid.nodes), metrics)
+
+
+def per_cell(grid: Grid, name: str) -> Floats:
+    """Return the metric `name` of every cell, (ni-1, nj-1).
+
+    Raises
+    ------
+    InputError
+        there is no such metric.
+    """
+    if name not in NAMES:
+        raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
+    cells = np.empty((grid.ni - 1, grid.nj - 1))
+    table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
+    _cells.measure(grid.x, grid.y, grid.topology == "o", table, where, NAMES.index(name), cells)
+    return cells
+
+
+def _planes(nodes: Floats) -> Sequence[Floats]:
+    planar = as_planar(nodes)
+    return planar[..., 0], planar[..., 1]
