@@ -51,10 +51,9 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
-    interpolate(nodes, edges, parameters(edges, blending))
-    return Grid(
-        nodes, boundary.topology, boundary.parts, boundary.name, {"method": "tfi", "blending": blending}
-    )
+    interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
+    facts = {"method": "tfi", "blending": blending}
+    return Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
 
 
 def parameters(edges: Four, blending: Blending) -> Four:
@@ -68,10 +67,11 @@ def parameters(edges: Four, blending: Blending) -> Four:
     return south, north, west, east
 
 
-def interpolate(nodes: Floats, edges: Four, along: Four) -> None:
-    """Fill planar `nodes` (ni, nj, 2) from `edges` (south, north, west, east) with parameters `along` them."""
-    xs, ys = (tuple(np.ascontiguousarray(edge[:, k]) for edge in edges) for k in (0, 1))
-    fill(nodes[..., 0], nodes[..., 1], xs, ys, along)  # type: ignore[arg-type]
+def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
+    """Fill the planes `x` and `y` (ni, nj) from `edges` (south, north, west, east) with parameters `along` them."""
+    south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
+    xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
+    fill(x, y, xs, ys, along)
 
 
 def arc_length_fraction(points: Floats) -> Floats:

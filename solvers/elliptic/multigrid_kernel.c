@@ -1,0 +1,466 @@
+/* Kernels of the multigrid solver for Winslow's equations
+
+       L(x) = α x_ξξ - 2β x_ξη + γ x_ηη = f,    α = x_η·x_η,  β = x_ξ·x_η,  γ = x_ξ·x_ξ,    x = (x, y),
+
+   by central differences. x and y share their coefficients, so a line of nodes is one tridiagonal matrix with
+   two right sides. Signs: the matrix of a line has diagonal -(east + west + north + south) < 0. */
+#include "multigrid_kernel.h"
+#include "clones.h"
+#include <math.h>
+#include <string.h>
+
+/* Rows i-1, i and i+1 of both coordinates. */
+typedef struct {
+    const double *restrict xw, *restrict xc, *restrict xe;
+    const double *restrict yw, *restrict yc, *restrict ye;
+} Rows;
+
+/* Stencil of L at one node: weights of the four neighbours and the cross terms 2β x_ξη, 2β y_ξη. */
+typedef struct {
+    double east, west, north, south, cross_x, cross_y;
+} Stencil;
+
+MESHONET_INLINE Stencil stencil(const Rows *r, ptrdiff_t j, double forward, double backward, double centred,
+                                const Differences *eta)
+{
+    const double ej = eta->centred[j];
+    const double x_xi = centred * (r->xe[j] - r->xw[j]), x_eta = ej * (r->xc[j + 1] - r->xc[j - 1]);
+    const double y_xi = centred * (r->ye[j] - r->yw[j]), y_eta = ej * (r->yc[j + 1] - r->yc[j - 1]);
+    const double alpha = x_eta * x_eta + y_eta * y_eta;
+    const double beta = x_xi * x_eta + y_xi * y_eta;
+    const double gamma = x_xi * x_xi + y_xi * y_xi;
+    const double twice = 2.0 * beta * centred * ej;
+    Stencil s;
+    s.east = forward * alpha;
+    s.west = backward * alpha;
+    s.north = eta->forward[j] * gamma;
+    s.south = eta->backward[j] * gamma;
+    s.cross_x = twice * (r->xe[j + 1] - r->xe[j - 1] - r->xw[j + 1] + r->xw[j - 1]);
+    s.cross_y = twice * (r->ye[j + 1] - r->ye[j - 1] - r->yw[j + 1] + r->yw[j - 1]);
+    return s;
+}
+
+MESHONET_INLINE Rows rows_at(const Level *g, ptrdiff_t i)
+{
+    const ptrdiff_t ld = g->mj + 1, west = i > 0 ? i - 1 : g->mi - 1, east = i + 1;
+    const Rows r = {g->x + west * ld, g->x + i * ld, g->x + east * ld,
+                    g->y + west * ld, g->y + i * ld, g->y + east * ld};
+    return r;
+}
+
+enum { LANES = 8, BLOCK = 32 };
+
+static ptrdiff_t padded(ptrdiff_t n)
+{
+    return (n + 8) / 8 * 8 + 8;
+}
+
+size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj)
+{
+    const size_t eta_lines = (size_t)(5 * LANES * padded(mj));
+    const size_t xi_lines = (size_t)(4 * BLOCK * (mi + 1));
+    const size_t rows = (size_t)(8 * padded(mj));
+    size_t most = eta_lines > xi_lines ? eta_lines : xi_lines;
+    return (most > rows ? most : rows) + 64;
+}
+
+/* ---- eta lines: i fixed, unknowns along j; neighbouring lines of one colour are independent ---- */
+
+typedef struct {
+    double *lower, *upper, *diagonal, *bx, *by; /* LANES rows of `stride` each */
+    ptrdiff_t stride;
+} EtaSystem;
+
+/* Assemble the tridiagonal system of eta line i in lane k. */
+MESHONET_INLINE void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+{
+    const Rows r = rows_at(g, i);
+    const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
+    const Differences eta = g->eta;
+    const ptrdiff_t mj = g->mj;
+    double *restrict lower = s->lower + k * s->stride, *restrict upper = s->upper + k * s->stride;
+    double *restrict diagonal = s->diagonal + k * s->stride;
+    double *restrict bx = s->bx + k * s->stride, *restrict by = s->by + k * s->stride;
+    const double *restrict fx = forced ? g->fx + i * (mj + 1) : g->x, *restrict fy = forced ? g->fy + i * (mj + 1) : g->y;
+    for (ptrdiff_t j = 1; j < mj; j++) {
+        const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
+        lower[j] = c.south;
+        upper[j] = c.north;
+        diagonal[j] = -(c.east + c.west + c.north + c.south);
+        bx[j] = c.cross_x - c.east * r.xe[j] - c.west * r.xw[j] + (forced ? fx[j] : 0.0);
+        by[j] = c.cross_y - c.east * r.ye[j] - c.west * r.yw[j] + (forced ? fy[j] : 0.0);
+    }
+    upper[0] = 0.0, bx[0] = r.xc[0], by[0] = r.yc[0];
+}
+
+/* Solve `lanes` systems side by side (their recurrences overlap) and write lines i, i + 2, ... */
+MESHONET_INLINE void eta_solve(const Level *g, ptrdiff_t i, const EtaSystem *s, int lanes)
+{
+    const ptrdiff_t ld = g->mj + 1, mj = g->mj, st = s->stride;
+    double up[LANES], px[LANES], py[LANES];
+    for (int k = 0; k < lanes; k++)
+        up[k] = 0.0, px[k] = s->bx[k * st], py[k] = s->by[k * st];
+    for (ptrdiff_t j = 1; j < mj; j++)
+        for (int k = 0; k < lanes; k++) {
+            const ptrdiff_t q = k * st + j;
+            const double low = s->lower[q], w = 1.0 / (s->diagonal[q] - low * up[k]);
+            s->upper[q] = up[k] = s->upper[q] * w;
+            s->bx[q] = px[k] = (s->bx[q] - low * px[k]) * w;
+            s->by[q] = py[k] = (s->by[q] - low * py[k]) * w;
+        }
+    double *x = g->x + i * ld, *y = g->y + i * ld;
+    for (int k = 0; k < lanes; k++)
+        px[k] = x[2 * k * ld + mj], py[k] = y[2 * k * ld + mj];
+    for (ptrdiff_t j = mj - 1; j > 0; j--)
+        for (int k = 0; k < lanes; k++) {
+            const ptrdiff_t q = k * st + j;
+            x[2 * k * ld + j] = px[k] = s->bx[q] - s->upper[q] * px[k];
+            y[2 * k * ld + j] = py[k] = s->by[q] - s->upper[q] * py[k];
+        }
+}
+
+MESHONET_INLINE void eta_colour(const Level *g, int forced, int colour)
+{
+    const ptrdiff_t stride = padded(g->mj);
+    double *b = g->scratch;
+    const EtaSystem s = {b, b + LANES * stride, b + 2 * LANES * stride, b + 3 * LANES * stride, b + 4 * LANES * stride, stride};
+    ptrdiff_t i = (g->periodic ? 0 : 1) + colour;
+    for (; i + 2 * (LANES - 1) < g->mi; i += 2 * LANES) {
+        for (int k = 0; k < LANES; k++)
+            eta_assemble(g, i + 2 * k, &s, k, forced);
+        eta_solve(g, i, &s, LANES);
+    }
+    for (; i < g->mi; i += 2) {
+        eta_assemble(g, i, &s, 0, forced);
+        eta_solve(g, i, &s, 1);
+    }
+    if (g->periodic && colour == 0) {
+        memcpy(g->x + g->mi * (g->mj + 1), g->x, (size_t)(g->mj + 1) * sizeof(double));
+        memcpy(g->y + g->mi * (g->mj + 1), g->y, (size_t)(g->mj + 1) * sizeof(double));
+    }
+}
+
+/* ---- xi lines: j fixed, unknowns along i; a block of lines of one colour advances together ---- */
+
+/* One tridiagonal row of each line of the block. */
+typedef struct {
+    double lower, upper, diagonal, bx, by;
+} XiRow;
+
+MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff_t j, int forced)
+{
+    const Stencil c = stencil(r, j, g->xi.forward[i], g->xi.backward[i], g->xi.centred[i], &g->eta);
+    XiRow t;
+    t.lower = c.west;
+    t.upper = c.east;
+    t.diagonal = -(c.east + c.west + c.north + c.south);
+    t.bx = c.cross_x - c.north * r->xc[j + 1] - c.south * r->xc[j - 1];
+    t.by = c.cross_y - c.north * r->yc[j + 1] - c.south * r->yc[j - 1];
+    if (forced) {
+        t.bx += g->fx[i * (g->mj + 1) + j];
+        t.by += g->fy[i * (g->mj + 1) + j];
+    }
+    return t;
+}
+
+/* Fixed ends: lines j0, j0 + 2, ... (n of them) between rows 0 and mi. */
+MESHONET_INLINE void xi_block(const Level *g, ptrdiff_t j0, int n, int forced)
+{
+    const ptrdiff_t mi = g->mi, ld = g->mj + 1;
+    double *up = g->scratch, *px = up + BLOCK * (mi + 1), *py = px + BLOCK * (mi + 1);
+    for (int k = 0; k < n; k++)
+        up[k] = 0.0, px[k] = g->x[j0 + 2 * k], py[k] = g->y[j0 + 2 * k];
+    for (ptrdiff_t i = 1; i < mi; i++) {
+        const Rows r = rows_at(g, i);
+        double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
+        const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        for (int k = 0; k < n; k++) {
+            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
+            const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
+            u[k] = t.upper * w;
+            bx[k] = (t.bx - t.lower * bx1[k]) * w;
+            by[k] = (t.by - t.lower * by1[k]) * w;
+        }
+    }
+    double ex[BLOCK], ey[BLOCK];
+    for (int k = 0; k < n; k++)
+        ex[k] = g->x[mi * ld + j0 + 2 * k], ey[k] = g->y[mi * ld + j0 + 2 * k];
+    for (ptrdiff_t i = mi - 1; i > 0; i--) {
+        const double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
+        double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
+        for (int k = 0; k < n; k++) {
+            x[2 * k] = ex[k] = bx[k] - u[k] * ex[k];
+            y[2 * k] = ey[k] = by[k] - u[k] * ey[k];
+        }
+    }
+}
+
+/* Periodic lines: with X_0 = 0 one solution of rows 1 .. mi-1 meets the right side and another, p, has X_0 = 1
+   and no right side; row 0 then says which combination X = q + X_0 p is the line. */
+MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int forced)
+{
+    const ptrdiff_t mi = g->mi, ld = g->mj + 1;
+    double *up = g->scratch, *qx = up + BLOCK * (mi + 1), *qy = qx + BLOCK * (mi + 1), *p = qy + BLOCK * (mi + 1);
+    XiRow closing[BLOCK];
+    const Rows r0 = rows_at(g, 0);
+    for (int k = 0; k < n; k++) {
+        closing[k] = xi_row(g, &r0, 0, j0 + 2 * k, forced);
+        up[k] = qx[k] = qy[k] = 0.0, p[k] = 1.0;
+        qx[mi * BLOCK + k] = qy[mi * BLOCK + k] = 0.0, p[mi * BLOCK + k] = 1.0;
+    }
+    for (ptrdiff_t i = 1; i < mi; i++) {
+        const Rows r = rows_at(g, i);
+        double *restrict u = up + i * BLOCK, *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK;
+        double *restrict bp = p + i * BLOCK;
+        const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        const double *restrict bp1 = bp - BLOCK;
+        for (int k = 0; k < n; k++) {
+            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
+            const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
+            u[k] = t.upper * w;
+            bx[k] = (t.bx - t.lower * bx1[k]) * w;
+            by[k] = (t.by - t.lower * by1[k]) * w;
+            bp[k] = -t.lower * bp1[k] * w;
+        }
+    }
+    for (ptrdiff_t i = mi - 1; i > 0; i--) {
+        const double *restrict u = up + i * BLOCK;
+        double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
+        for (int k = 0; k < n; k++) {
+            bx[k] -= u[k] * bx[k + BLOCK];
+            by[k] -= u[k] * by[k + BLOCK];
+            bp[k] -= u[k] * bp[k + BLOCK];
+        }
+    }
+    double x0[BLOCK], y0[BLOCK];
+    const ptrdiff_t last = (mi - 1) * BLOCK;
+    for (int k = 0; k < n; k++) {
+        const XiRow t = closing[k];
+        const double w = 1.0 / (t.diagonal + t.lower * p[last + k] + t.upper * p[BLOCK + k]);
+        x0[k] = (t.bx - t.lower * qx[last + k] - t.upper * qx[BLOCK + k]) * w;
+        y0[k] = (t.by - t.lower * qy[last + k] - t.upper * qy[BLOCK + k]) * w;
+        g->x[j0 + 2 * k] = g->x[mi * ld + j0 + 2 * k] = x0[k];
+        g->y[j0 + 2 * k] = g->y[mi * ld + j0 + 2 * k] = y0[k];
+    }
+    for (ptrdiff_t i = 1; i < mi; i++) {
+        const double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
+        double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
+        for (int k = 0; k < n; k++) {
+            x[2 * k] = bx[k] + x0[k] * bp[k];
+            y[2 * k] = by[k] + y0[k] * bp[k];
+        }
+    }
+}
+
+MESHONET_INLINE void xi_colour(const Level *g, int forced, int colour)
+{
+    const ptrdiff_t lines = (g->mj - 1 - colour + 1) / 2;
+    for (ptrdiff_t first = 0; first < lines; first += BLOCK) {
+        const int n = lines - first < BLOCK ? (int)(lines - first) : BLOCK;
+        const ptrdiff_t j0 = 1 + colour + 2 * first;
+        if (g->periodic)
+            xi_block_periodic(g, j0, n, forced);
+        else
+            xi_block(g, j0, n, forced);
+    }
+}
+
+MESHONET_CLONES
+static void smooth_free(const Level *g)
+{
+    eta_colour(g, 0, 0), eta_colour(g, 0, 1);
+    xi_colour(g, 0, 0), xi_colour(g, 0, 1);
+}
+
+MESHONET_CLONES
+static void smooth_forced(const Level *g)
+{
+    eta_colour(g, 1, 0), eta_colour(g, 1, 1);
+    xi_colour(g, 1, 0), xi_colour(g, 1, 1);
+}
+
+void multigrid_smooth(const Level *level, int forced)
+{
+    if (forced)
+        smooth_forced(level);
+    else
+        smooth_free(level);
+}
+
+/* ---- residual, restriction, correction ---- */
+
+/* rx, ry [1 .. mj-1] = f - L(x) along row i. */
+MESHONET_INLINE void residual_row(const Level *g, ptrdiff_t i, int forced, double *restrict rx, double *restrict ry)
+{
+    const Rows r = rows_at(g, i);
+    const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
+    const Differences eta = g->eta;
+    const double *restrict fx = forced ? g->fx + i * (g->mj + 1) : g->x;
+    const double *restrict fy = forced ? g->fy + i * (g->mj + 1) : g->y;
+    for (ptrdiff_t j = 1; j < g->mj; j++) {
+        const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
+        const double x = r.xc[j], y = r.yc[j];
+        rx[j] = c.cross_x - c.east * (r.xe[j] - x) - c.west * (r.xw[j] - x) - c.north * (r.xc[j + 1] - x) -
+                c.south * (r.xc[j - 1] - x) + (forced ? fx[j] : 0.0);
+        ry[j] = c.cross_y - c.east * (r.ye[j] - y) - c.west * (r.yw[j] - y) - c.north * (r.yc[j + 1] - y) -
+                c.south * (r.yc[j - 1] - y) + (forced ? fy[j] : 0.0);
+    }
+}
+
+MESHONET_INLINE double squares(const double *restrict a, const double *restrict b, ptrdiff_t first, ptrdiff_t last)
+{
+    double sum = 0.0;
+    for (ptrdiff_t j = first; j < last; j++)
+        sum += a[j] * a[j] + b[j] * b[j];
+    return sum;
+}
+
+MESHONET_CLONES
+static double residual_free(const Level *g)
+{
+    double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
+    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
+        residual_row(g, i, 0, rx, ry);
+        sum += squares(rx, ry, 1, g->mj);
+    }
+    return sum;
+}
+
+MESHONET_CLONES
+static double residual_forced(const Level *g)
+{
+    double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
+    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
+        residual_row(g, i, 1, rx, ry);
+        sum += squares(rx, ry, 1, g->mj);
+    }
+    return sum;
+}
+
+double multigrid_residual(const Level *level, int forced)
+{
+    return forced ? residual_forced(level) : residual_free(level);
+}
+
+static ptrdiff_t finer(ptrdiff_t coarse, ptrdiff_t last)
+{
+    return 2 * coarse < last ? 2 * coarse : last;
+}
+
+MESHONET_INLINE void inject_row(const Level *fine, const Level *coarse, ptrdiff_t I)
+{
+    const ptrdiff_t ld = fine->mj + 1, LD = coarse->mj + 1, i = finer(I, fine->mi);
+    const double *restrict x = fine->x + i * ld, *restrict y = fine->y + i * ld;
+    double *restrict X = coarse->x + I * LD, *restrict Y = coarse->y + I * LD;
+    for (ptrdiff_t J = 0; J < coarse->mj; J++)
+        X[J] = x[2 * J], Y[J] = y[2 * J];
+    X[coarse->mj] = x[fine->mj], Y[coarse->mj] = y[fine->mj];
+    memcpy(coarse->x0 + I * LD, X, (size_t)LD * sizeof(double));
+    memcpy(coarse->y0 + I * LD, Y, (size_t)LD * sizeof(double));
+}
+
+/* ax, ay += weight * residual of the fine row i */
+MESHONET_INLINE void add_row(double weight, const double *restrict rx, const double *restrict ry, double *restrict ax,
+                             double *restrict ay, ptrdiff_t mj)
+{
+    for (ptrdiff_t j = 1; j < mj; j++)
+        ax[j] += weight * rx[j], ay[j] += weight * ry[j];
+}
+
+MESHONET_INLINE void restrict_residual(const Level *g, const Level *coarse, int forced)
+{
+    const ptrdiff_t width = padded(g->mj), first = g->periodic ? 0 : 1, mj = g->mj;
+    double *ax = g->scratch, *ay = ax + width, *rx = ay + width, *ry = rx + width;
+    double *ox = ry + width, *oy = ox + width; /* the odd row below, shared by two coarse rows */
+    const Transfer *along = &g->xi_coarse, across = g->eta_coarse;
+    if (g->periodic && along->before[0] != 0.0)
+        residual_row(g, g->mi - 1, forced, ox, oy);
+    else if (!g->periodic)
+        residual_row(g, 1, forced, ox, oy);
+    for (ptrdiff_t I = first; I < coarse->mi; I++) {
+        memset(ax, 0, 2 * (size_t)width * sizeof(double));
+        if (along->before[I] != 0.0)
+            add_row(along->before[I], ox, oy, ax, ay, mj);
+        residual_row(g, 2 * I, forced, rx, ry);
+        add_row(along->at[I], rx, ry, ax, ay, mj);
+        if (along->after[I] != 0.0) {
+            residual_row(g, 2 * I + 1, forced, ox, oy);
+            add_row(along->after[I], ox, oy, ax, ay, mj);
+        }
+        double *restrict F = coarse->fx + I * (coarse->mj + 1), *restrict G = coarse->fy + I * (coarse->mj + 1);
+        for (ptrdiff_t J = 1; J < coarse->mj; J++) {
+            const ptrdiff_t j = 2 * J;
+            F[J] = across.before[J] * ax[j - 1] + across.at[J] * ax[j] + across.after[J] * ax[j + 1];
+            G[J] = across.before[J] * ay[j - 1] + across.at[J] * ay[j] + across.after[J] * ay[j + 1];
+        }
+    }
+}
+
+/* f += L(x) on the coarse level */
+MESHONET_INLINE double add_operator(const Level *g)
+{
+    double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
+    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
+        double *restrict fx = g->fx + i * (g->mj + 1), *restrict fy = g->fy + i * (g->mj + 1);
+        residual_row(g, i, 0, rx, ry);
+        for (ptrdiff_t j = 1; j < g->mj; j++)
+            fx[j] -= rx[j], fy[j] -= ry[j];
+        sum += squares(fx, fy, 1, g->mj);
+    }
+    return sum;
+}
+
+MESHONET_CLONES
+double multigrid_restrict(const Level *fine, const Level *coarse, int forced)
+{
+    for (ptrdiff_t I = 0; I <= coarse->mi; I++)
+        inject_row(fine, coarse, I);
+    if (forced)
+        restrict_residual(fine, coarse, 1);
+    else
+        restrict_residual(fine, coarse, 0);
+    return add_operator(coarse);
+}
+
+/* ex, ey [0 .. MJ] = (1 - w) (X - X0) of row I + w times that of row I + 1 */
+MESHONET_INLINE void difference_row(const Level *coarse, ptrdiff_t I, double w, double *restrict ex, double *restrict ey)
+{
+    const ptrdiff_t LD = coarse->mj + 1, a = I * LD, b = w != 0.0 ? a + LD : a;
+    const double *restrict X = coarse->x, *restrict Y = coarse->y, *restrict X0 = coarse->x0, *restrict Y0 = coarse->y0;
+    for (ptrdiff_t J = 0; J < LD; J++) {
+        ex[J] = (1.0 - w) * (X[a + J] - X0[a + J]) + w * (X[b + J] - X0[b + J]);
+        ey[J] = (1.0 - w) * (Y[a + J] - Y0[a + J]) + w * (Y[b + J] - Y0[b + J]);
+    }
+}
+
+MESHONET_CLONES
+double multigrid_correct(const Level *fine, const Level *coarse)
+{
+    const ptrdiff_t mj = fine->mj, ld = mj + 1;
+    const double *restrict right = fine->eta_coarse.right;
+    double sum = 0.0, *restrict ex = fine->scratch, *restrict ey = ex + padded(mj);
+    for (ptrdiff_t i = fine->periodic ? 0 : 1; i < fine->mi; i++) {
+        double *restrict x = fine->x + i * ld, *restrict y = fine->y + i * ld;
+        difference_row(coarse, i / 2, i % 2 ? fine->xi_coarse.right[i] : 0.0, ex, ey);
+        if (i % 2 == 0)
+            sum += squares(ex, ey, 1, coarse->mj);
+        x[1] += (1.0 - right[1]) * ex[0] + right[1] * ex[1];
+        y[1] += (1.0 - right[1]) * ey[0] + right[1] * ey[1];
+        for (ptrdiff_t J = 1; 2 * J + 1 < mj; J++) {
+            const double w = right[2 * J + 1];
+            x[2 * J] += ex[J];
+            y[2 * J] += ey[J];
+            x[2 * J + 1] += (1.0 - w) * ex[J] + w * ex[J + 1];
+            y[2 * J + 1] += (1.0 - w) * ey[J] + w * ey[J + 1];
+        }
+        if (mj % 2) { /* the last interior node is a coarse node of its own */
+            x[mj - 1] += ex[mj / 2];
+            y[mj - 1] += ey[mj / 2];
+        }
+    }
+    if (fine->periodic) {
+        memcpy(fine->x + fine->mi * ld, fine->x, (size_t)ld * sizeof(double));
+        memcpy(fine->y + fine->mi * ld, fine->y, (size_t)ld * sizeof(double));
+    }
+    return sum;
+}
