@@ -68,7 +68,7 @@ def parameters(edges: Four, blending: Blending) -> Four:
 
 
 def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
-    """Fill the planes `x` and `y` (ni, nj) from `edges` (south, north, west, east) with parameters `along` them."""
+    """Fill `x` and `y` (ni, nj) from `edges` (south, north, west, east) with parameters `along` them."""
     south, north, west, east = (np.ascontiguousarray(edge.T) for edge in edges)
     xs, ys = ((south[k], north[k], west[k], east[k]) for k in (0, 1))
     fill(x, y, xs, ys, along)

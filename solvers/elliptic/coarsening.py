@@ -19,7 +19,7 @@ from geometry.arrays import Floats
 
 @dataclass(frozen=True, eq=False)
 class Direction:
-    """Positions (n,) of the nodes of one direction, in steps of the finest level; `periodic`: the last is the first.
+    """Positions (n,) of the nodes of one direction, in finest steps; `periodic`: the last node is the first.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class Direction:
         return 2.0 / (both * after), 2.0 / (both * before), 1.0 / both
 
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return the weights (right, before, at, after) of interpolation (n,) and restriction (coarse n,) each.
+        """Return the weights (right (n,); before, at, after (coarse n,)) of interpolation and restriction.
 
         Interpolation is linear; restriction is its transpose, scaled by the lengths that nodes stand for,
         so that a constant residual stays what it is.

@@ -81,7 +81,7 @@ class Multigrid:
         return float(np.sqrt(level.residual(False) / level.x.size))
 
     def nested_iteration(self) -> float:
-        """Fill the finest level from the coarser ones; return the residual of its transfinite interpolation."""
+        """Fill the finest level from the coarser ones; return the residual of its interpolated edges."""
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)
@@ -126,4 +126,3 @@ def _thinned(four: Four, xi: Direction, eta: Direction) -> Four:
     south, north, west, east = four
     i, j = xi.kept(), eta.kept()
     return south[i], north[i], west[j], east[j]
-

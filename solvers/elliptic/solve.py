@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -64,7 +62,9 @@ def solve(
         grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
         spent = {"grid": time.perf_counter() - begun}
         return Solution(grid, "winslow", residual=residual, cycles=cycles, seconds=spent, notes=notes)
-    raise SolverError(f"Winslow's equations diverged from every start ({'; '.join(notes)}); use more nodes or tfi")
+    raise SolverError(
+        f"Winslow's equations diverged from every start ({'; '.join(notes)}); use more nodes or tfi"
+    )
 
 
 def _attempt(
@@ -105,4 +105,6 @@ def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid
         raise InputError(f"{max_cycles} cycles are too few", "allow at least 1")
     if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
         had = f"{initial.ni}x{initial.nj}"
-        raise InputError(f"the initial grid has {had} nodes, not {boundary.ni}x{boundary.nj}", "give equal counts")
+        raise InputError(
+            f"the initial grid has {had} nodes, not {boundary.ni}x{boundary.nj}", "give equal counts"
+        )
