@@ -158,8 +158,11 @@ def read_shapes(source: Source) -> Iterator[Boundary]:
     with checked(source) as data:
         for k in range(data.count):
             with data.place(k):
-                edges = [data.sample(side, k) for side in ("south", "north", "west", "east")]
-                yield Boundary(*edges, data.topology, _parts(data, k), data.text("names", k))
+                south, north, west, east = (
+                    data.sample(side, k) for side in ("south", "north", "west", "east")
+                )
+                name = data.text("names", k)
+                yield Boundary(south, north, west, east, data.topology, _parts(data, k), name)
 
 
 def read_grids(source: Source) -> Iterator[Grid]:

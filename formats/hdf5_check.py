@@ -40,7 +40,7 @@ class Checked:
         if kind not in ("meshonet-boundary", "meshonet-grid"):
             raise InputError(
                 "is HDF5 but not a dataset of boundaries or grids",
-                "set its attribute format to 'meshonet-boundary' or 'meshonet-grid', and version and topology",
+                "set its attributes format ('meshonet-boundary' or 'meshonet-grid'), version and topology",
             )
         if _attribute(file, "version") != "1":
             raise InputError(

@@ -31,6 +31,9 @@ class Row(NamedTuple):
 TABLE: dict[str, Row] = {
     "hdf5": Row("formats.hdf5", (".h5", ".hdf5")),
     "vts": Row("formats.vts", (".vts",)),
+    "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
+    "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),
+    "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),
 }
 """Formats by name. Where several share an ending, writing takes the first, reading looks at the content."""
 

@@ -125,7 +125,7 @@ def _sized(raw: memoryview, size: int, encoding: Encoding) -> memoryview:
 
 
 def _decompressed(raw: memoryview, size: int, encoding: Encoding) -> bytearray:
-    """Return `size` bytes; the words say: how many blocks, block size, last block size, each compressed size."""
+    """Return `size` bytes; the words say: block count, block size, last block size, compressed sizes."""
     inflate = _inflater(encoding.compressor)
     count, block, last = _words(raw, 0, 3, encoding)
     full = count - 1 if last else count

@@ -125,7 +125,7 @@ def _points(piece: Element, encoding: Encoding) -> Floats:
 
 
 def _assembled(pieces: list[Element], whole: Extent, encoding: Encoding) -> Floats:
-    """Return the points of a grid stored in several pieces; a node in none stays NaN, which `Grid` refuses."""
+    """Return the points of a grid stored in pieces; a node in none stays NaN, which `Grid` refuses."""
     dims = _dims(whole)
     parts = [(_extent(piece, "Extent"), _points(piece, encoding)) for piece in pieces]
     if dims[0] * dims[1] * dims[2] > sum(points.size for _, points in parts):

@@ -1,0 +1,40 @@
+"""Plot3D grids: read in every variant, written as text, C binary or Fortran records.
+
+https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from formats.format import Format
+from formats.plot3d.read import read_grids, sniff
+from formats.plot3d.write import Put, put_binary, put_fortran, put_text, write
+from geometry.grid import Grid
+
+
+def _format(name: str, suffixes: tuple[str, ...], description: str, put: Put) -> Format:
+    def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+        write(path, grids, put)
+
+    def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
+        write(path, grids, put, thickness)
+
+    return Format(
+        name=name,
+        suffixes=suffixes,
+        description=description,
+        read_grids=read_grids,
+        write_grids=write_grids,
+        write_extruded=write_extruded,
+        sniff=sniff,
+        many=True,
+    )
+
+
+FORMATS = (
+    _format("plot3d-ascii", (".p3d", ".xyz", ".fmt", ".x", ".dat"), "Plot3D text", put_text),
+    _format("plot3d-binary", (".bin", ".xyz", ".p3d"), "Plot3D C binary, float64", put_binary),
+    _format("plot3d-fortran", (".ufmt", ".unf"), "Plot3D Fortran records, float64", put_fortran),
+)

@@ -1,0 +1,109 @@
+"""Plot3D as bytes: C binary or Fortran records, either byte order, float32 or float64.
+
+Fortran frames each record with its length before and after. Once the frames are taken away, both kinds
+are the same stream: integers of 4 bytes, then floats, then the integers of iblank.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from math import prod
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formats.plot3d.layouts import Candidate, Layout, layouts
+from geometry.arrays import Floats
+from geometry.errors import InputError
+
+_NAMES = {"<": "little endian", ">": "big endian"}
+
+
+def candidates(data: bytes) -> list[Candidate]:
+    """Return every layout whose length in bytes is exactly the file's.
+
+    Raises
+    ------
+    InputError
+        none is.
+    """
+    found: list[Candidate] = []
+    tried: list[str] = []
+    for order in "<>":
+        records = _unframed(data, order)
+        if records is not None:
+            found += _fitting(b"".join(records), order, "Fortran records", len(records), tried)
+    if found:
+        return found
+    for order in "<>":
+        found += _fitting(data, order, "C binary", 0, tried)
+    if not found:
+        near = f" (a header could be dims {', '.join(tried[:3])})" if tried else ""
+        raise InputError(
+            f"has {len(data)} bytes and no binary Plot3D layout fits{near}",
+            "the file is cut short, or is something else: name its format with --from",
+        )
+    return found
+
+
+def _fitting(stream: bytes, order: str, told: str, records: int, tried: list[str]) -> list[Candidate]:
+    integers = np.frombuffer(stream, np.dtype(order + "i4"), len(stream) // 4)
+
+    def integer(k: int) -> int | None:
+        return int(integers[k]) if k < len(integers) else None
+
+    found = []
+    for layout, size in itertools.product(layouts(integer), (8, 4)):
+        length = 4 * layout.header + layout.nodes * (size * layout.axes + 4 * int(layout.iblank))
+        if length == len(stream):
+            dtype = np.dtype(f"{order}f{size}")
+            found.append(
+                _candidate(layout, stream, dtype, f"{told}, {_NAMES[order]}, float{8 * size}", records)
+            )
+        elif 2 <= max(map(max, layout.dims)) <= 100_000 and not layout.iblank and size == 8:
+            tried.append("x".join(map(str, layout.dims[0])))
+    return found
+
+
+def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], told: str, records: int) -> Candidate:
+    sizes = [prod(dims) * (layout.axes * dtype.itemsize + 4 * int(layout.iblank)) for dims in layout.dims]
+    starts = list(itertools.accumulate(sizes, initial=4 * layout.header))
+    # one record a plane, x y z of each plane together: the "planes" form, which matters for two planes
+    headers = 2 if layout.counted else 1
+    by_planes = layout.axes == 3 and len(layout.dims) == 1 and layout.dims[0][2] == 2 == records - headers
+
+    def block(k: int) -> Sequence[Floats]:
+        nodes, at = prod(layout.dims[k]), starts[k]
+        values: NDArray[Any] = np.frombuffer(stream, dtype, layout.axes * nodes, at)
+        if by_planes:
+            arrays = list(values.reshape(2, 3, -1).swapaxes(0, 1).reshape(3, -1).astype(np.float64))
+        else:
+            arrays = list(values.reshape(layout.axes, -1).astype(np.float64))
+        if layout.iblank:
+            flags = np.frombuffer(stream, dtype.byteorder + "i4", nodes, at + values.nbytes)
+            arrays.append(flags.astype(np.float64))
+        return arrays
+
+    return Candidate(layout, block, told)
+
+
+def _unframed(data: bytes, order: str) -> list[memoryview] | None:
+    """Return the records of a Fortran file, or None when the length words do not lead to its end.
+
+    gfortran splits a record of more than 2 GiB: a negative first word says that more follows.
+    """
+    view, at = memoryview(data), 0
+    records: list[memoryview] = []
+    while at < len(view):
+        if at + 8 > len(view):
+            return None
+        (word,) = np.frombuffer(view, order + "i4", 1, at)
+        length = abs(int(word))
+        end = at + 4 + length
+        if end + 4 > len(view) or abs(int(np.frombuffer(view, order + "i4", 1, end)[0])) != length:
+            return None
+        records.append(view[at + 4 : end])
+        at = end + 4
+    return records or None

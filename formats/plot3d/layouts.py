@@ -1,0 +1,145 @@
+"""The ways a Plot3D grid file can be laid out, and which of them a file's numbers fit.
+
+A file is a header of integers, ``[count] ni nj [nk]`` for every block, and then for every block all x,
+all y, [all z] and [iblank], i fastest. Nothing in it says whether there is a count, a third direction or
+an iblank array, so every layout is tried and those whose length is exactly the file's are kept.
+https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import prod
+
+import numpy as np
+
+from formats.planes import planar
+from geometry.arrays import Floats
+from geometry.errors import InputError
+
+Dims = tuple[int, ...]
+Header = Callable[[int], "int | None"]
+"""Returns header integer k, or None past the end or where the number is no integer."""
+_MOST_BLOCKS = 100_000
+
+
+@dataclass(frozen=True)
+class Layout:
+    """One way to read a file.
+
+    Parameters
+    ----------
+    counted : whether the number of blocks stands first.
+    axes : 2 or 3, numbers in each block's dims and coordinate arrays.
+    iblank : whether an integer a node follows the coordinates.
+    dims : of every block.
+    """
+
+    counted: bool
+    axes: int
+    iblank: bool
+    dims: tuple[Dims, ...]
+
+    @property
+    def header(self) -> int:
+        """Integers before the first coordinate."""
+        return int(self.counted) + self.axes * len(self.dims)
+
+    @property
+    def nodes(self) -> int:
+        """Nodes of all blocks."""
+        return sum(prod(dims) for dims in self.dims)
+
+
+def layouts(integer: Header) -> Iterator[Layout]:
+    """Yield the layouts whose header is plausible: a sensible count, every dimension at least 1."""
+    for counted, axes in itertools.product((True, False), (3, 2)):
+        blocks = integer(0) if counted else 1
+        if blocks is None or not 1 <= blocks <= _MOST_BLOCKS:
+            continue
+        found = _dims(integer, blocks, axes, int(counted))
+        if found:
+            for iblank in (False, True):
+                yield Layout(counted, axes, iblank, found)
+
+
+def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ...]:
+    dims = []
+    for block in range(blocks):
+        at = start + axes * block
+        sizes = [integer(at + k) for k in range(axes)]
+        if any(size is None or size < 1 for size in sizes):
+            return ()
+        dims.append(tuple(size for size in sizes if size is not None))
+    return tuple(dims)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A layout that fits the file's length, and how to get a block's arrays out of it.
+
+    Parameters
+    ----------
+    layout : the layout.
+    arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
+    told : the number type and byte order, for messages.
+    """
+
+    layout: Layout
+    arrays: Callable[[int], Sequence[Floats]]
+    told: str = ""
+
+    def plane(self, block: int) -> Floats:
+        """Return nodes (ni, nj, 2) of a block.
+
+        Raises
+        ------
+        InputError
+            the block is not plane.
+        """
+        dims = (*self.layout.dims[block], 1)[:3]
+        arrays = self.arrays(block)[: self.layout.axes]
+        return planar([np.asarray(values).reshape(dims, order="F") for values in arrays])
+
+    def regularity(self) -> float:
+        """Return the share of cells whose area has the prevailing sign; negative when the reading is unusable.
+
+        The right reading of a file has nearly all its cells one way round; a wrong one is noise.
+        """
+        cells = good = 0
+        for block in range(len(self.layout.dims)):
+            values = self.arrays(block)[: self.layout.axes]
+            if not all(_sane(v) for v in values):
+                return -2.0
+            if self.layout.iblank and not _is_iblank(self.arrays(block)[-1]):
+                return -2.0
+            try:
+                nodes = self.plane(block)
+            except InputError:
+                return -1.0
+            area = _areas(nodes)
+            cells += area.size
+            good += max(int((area > 0).sum()), int((area < 0).sum()))
+        return good / cells
+
+
+def best(candidates: list[Candidate]) -> Candidate:
+    """Return the most regular of some candidates (at least one), the earlier one among equals."""
+    return candidates[0] if len(candidates) == 1 else max(candidates, key=Candidate.regularity)
+
+
+def _sane(values: Floats) -> bool:
+    """Say whether `values` can be coordinates: finite, and no specks as integers read as floats are."""
+    largest = float(np.abs(values).max())
+    return bool(np.isfinite(largest)) and (largest == 0 or 1e-30 < largest < 1e30)
+
+
+def _is_iblank(values: Floats) -> bool:
+    return bool((values == np.round(values)).all() and np.abs(values).max() <= _MOST_BLOCKS)
+
+
+def _areas(nodes: Floats) -> Floats:
+    one, other = nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
+    return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]

@@ -1,0 +1,133 @@
+"""Plot3D as text: free format, commas, repeat counts ``r*v`` (in the dims too), Fortran ``D`` exponents."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Sequence
+from math import prod
+
+import numpy as np
+
+from formats.plot3d.layouts import Candidate, Layout, layouts
+from formats.source import printable
+from geometry.arrays import Floats
+from geometry.errors import InputError
+
+_FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
+_NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)
+_MOST_REPEATED = 4
+"""Numbers a byte of file, repeats expanded; constant planes and iblank stay far below."""
+
+
+def candidates(data: bytes) -> list[Candidate]:
+    """Return every layout that has as many numbers as the file.
+
+    Raises
+    ------
+    InputError
+        a word that is no number; no layout fits.
+    """
+    values = _numbers(data)
+
+    def integer(k: int) -> int | None:
+        number = float(values[k]) if k < len(values) else 0.5
+        return int(number) if number.is_integer() else None
+
+    tried = list(layouts(integer))
+    fitting = [layout for layout in tried if _length(layout) == len(values)]
+    if not fitting:
+        raise _misfit(tried, len(values))
+    return [_candidate(layout, values) for layout in fitting]
+
+
+def _candidate(layout: Layout, values: Floats) -> Candidate:
+    arrays = layout.axes + int(layout.iblank)
+    starts = np.cumsum([layout.header, *(arrays * prod(dims) for dims in layout.dims)])
+
+    def block(k: int) -> Sequence[Floats]:
+        return list(values[starts[k] : starts[k + 1]].reshape(arrays, -1))
+
+    return Candidate(layout, block, "ASCII")
+
+
+def _length(layout: Layout) -> int:
+    return layout.header + layout.nodes * (layout.axes + int(layout.iblank))
+
+
+def _misfit(tried: list[Layout], found: int) -> InputError:
+    if not tried:
+        return InputError(
+            "does not start with the dims of a Plot3D grid",
+            "start it with [count of blocks] ni nj [nk], or name another format with --from",
+        )
+    near = min(
+        (layout for layout in tried if not layout.iblank), key=lambda layout: abs(_length(layout) - found)
+    )
+    dims = ", ".join("x".join(map(str, dims)) for dims in near.dims[:3])
+    return InputError(
+        f"has {found} numbers and no Plot3D layout fits (nearest: dims {dims}, {_length(near)} numbers)",
+        "the file is cut short or its dims are wrong: write it again",
+    )
+
+
+def _numbers(data: bytes) -> Floats:
+    """Return every number of the file, repeats expanded.
+
+    The usual spelling is parsed in one go; only what that refuses is looked at word by word.
+    """
+    plain = data.translate(_FREE_FORMAT)
+    counts = None
+    if b"*" in plain:
+        plain, counts = _repeats(plain)
+        if int(counts.sum()) > _MOST_REPEATED * len(data):
+            raise InputError("repeats a number too often for its size", "write the values out")
+    values = _parsed(plain)
+    if values is None:
+        values = _parsed(b" ".join(_spelled(word, data) for word in plain.split()))
+    if values is None:
+        raise InputError("has a word that is not a number", "write numbers only")
+    return values if counts is None else np.repeat(values, counts)
+
+
+def _parsed(text: bytes) -> Floats | None:
+    """Return the numbers of blank-separated `text`, or None when there is something else in it."""
+    with warnings.catch_warnings():
+        # numpy announces text it cannot parse by a DeprecationWarning that is to become a ValueError
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, dtype=np.float64, sep=" ")
+        except (DeprecationWarning, ValueError):
+            return None
+
+
+def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int64]]]:
+    """Return `text` with every ``r*v`` as ``v``, and how often each word stands."""
+    words = text.split()
+    counts = np.ones(len(words), np.int64)
+    for k, word in enumerate(words):
+        if b"*" in word:
+            times, _, value = word.partition(b"*")
+            if not times.isdigit() or len(times) > 12 or not value:
+                raise _not_a_number(word, text)
+            counts[k], words[k] = int(times), value
+    return b" ".join(words), counts
+
+
+def _spelled(word: bytes, data: bytes) -> bytes:
+    """Return `word` with the exponent letter that Fortran drops before three digits: 0.1234-102."""
+    match = _NUMBER.fullmatch(word)
+    if match is None:
+        raise _not_a_number(word, data)
+    mantissa, signed, unsigned = match.groups()
+    return mantissa + b"e" + (signed or unsigned or b"0")
+
+
+def _not_a_number(word: bytes, data: bytes) -> InputError:
+    line = data[: max(data.translate(_FREE_FORMAT).find(word), 0)].count(b"\n") + 1
+    told = printable(word[:40].decode("latin-1"))
+    return InputError(
+        f"{told!r} is not a number",
+        "write numbers only, or name another format with --from",
+        place=f"line {line}",
+    )

@@ -1,0 +1,113 @@
+"""Writing Plot3D: 17 significant digits or float64, so that no wall cell is lost to rounding."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.errors import InputError
+from geometry.grid import Grid
+
+_LINE = 4
+"""Numbers a line of text."""
+_BLOCK = 1 << 16
+"""Numbers formatted at a time."""
+
+Put = Callable[[BinaryIO, Sequence["Block"]], None]
+
+
+class Block:
+    """One grid as Plot3D stores it: dims, and x, y[, z] with i fastest.
+
+    Parameters
+    ----------
+    grid : the grid.
+    thickness : height of a second plane; None for a plane grid without z.
+    """
+
+    def __init__(self, grid: Grid, thickness: float | None) -> None:
+        self.grid, self.thickness = grid, thickness
+        self.dims = (grid.ni, grid.nj) if thickness is None else (grid.ni, grid.nj, 2)
+
+    def arrays(self) -> Iterator[Floats]:
+        """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
+        planes = 1 if self.thickness is None else 2
+        for axis in (0, 1):
+            flat = self.grid.nodes[..., axis].ravel(order="F")
+            yield flat if planes == 1 else np.tile(flat, 2)
+        if self.thickness is not None:
+            yield np.repeat((0.0, self.thickness), self.grid.ni * self.grid.nj)
+
+    @property
+    def bytes(self) -> int:
+        """Bytes of all coordinates."""
+        planes = 2 if self.thickness is None else 6
+        return 8 * planes * self.grid.ni * self.grid.nj
+
+
+def write(path: Path, grids: Iterable[Grid], put: Put, thickness: float | None = None) -> None:
+    """Write the blocks of `grids` with one of the ways below.
+
+    Raises
+    ------
+    InputError
+        there is no grid.
+    """
+    blocks = [Block(grid, thickness) for grid in grids]
+    if not blocks:
+        raise InputError("there is no grid to write", "check the input")
+    with path.open("wb") as stream:
+        put(stream, blocks)
+
+
+def put_text(stream: BinaryIO, blocks: Sequence[Block]) -> None:
+    """Write text: the count of blocks, the dims of each on a line, then the numbers."""
+    head = [str(len(blocks)), *(" ".join(map(str, block.dims)) for block in blocks)]
+    stream.write(("\n".join(head) + "\n").encode())
+    line = " ".join(["%.16e"] * _LINE) + "\n"
+    for block in blocks:
+        for values in block.arrays():
+            for start in range(0, len(values), _BLOCK):
+                part = values[start : start + _BLOCK].tolist()
+                lines, rest = divmod(len(part), _LINE)
+                text = line * lines + " ".join(["%.16e"] * rest) + "\n" * bool(rest)
+                stream.write((text % tuple(part)).encode())
+
+
+def put_binary(stream: BinaryIO, blocks: Sequence[Block]) -> None:
+    """Write C binary, little endian, float64."""
+    stream.write(_counts(blocks))
+    for block in blocks:
+        for values in block.arrays():
+            stream.write(values.astype("<f8", copy=False).data)
+
+
+def put_fortran(stream: BinaryIO, blocks: Sequence[Block]) -> None:
+    """Write Fortran records, little endian, float64: count, dims, one record a block."""
+    _record(stream, struct.pack("<i", len(blocks)))
+    _record(stream, _counts(blocks)[4:])
+    for block in blocks:
+        if block.bytes >= 1 << 31:
+            raise InputError(
+                "a block of 2 GiB or more does not fit in a Fortran record", "write plot3d-binary"
+            )
+        marker = struct.pack("<i", block.bytes)
+        stream.write(marker)
+        for values in block.arrays():
+            stream.write(values.astype("<f8", copy=False).data)
+        stream.write(marker)
+
+
+def _counts(blocks: Sequence[Block]) -> bytes:
+    sizes = [size for block in blocks for size in block.dims]
+    return struct.pack(f"<{1 + len(sizes)}i", len(blocks), *sizes)
+
+
+def _record(stream: BinaryIO, data: bytes) -> None:
+    marker = struct.pack("<i", len(data))
+    stream.write(marker + data + marker)
