@@ -31,6 +31,8 @@ class Row(NamedTuple):
 TABLE: dict[str, Row] = {
     "hdf5": Row("formats.hdf5", (".h5", ".hdf5")),
     "vts": Row("formats.vts", (".vts",)),
+    "vtk": Row("formats.vtk_legacy", (".vtk",)),
+    "vtk-ascii": Row("formats.vtk_legacy", (".vtk",)),
     "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),
     "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),

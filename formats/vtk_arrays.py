@@ -49,10 +49,10 @@ class Encoding:
 
 @dataclass(frozen=True)
 class Encoded:
-    """One array of a file: its VTK type, how many numbers it must have, and where they are."""
+    """One array of a file: its VTK type, how many numbers it must have (None: any), and where they are."""
 
     kind: str
-    count: int
+    count: int | None
     form: str
     text: str
     offset: int
@@ -69,7 +69,7 @@ def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
     if array.kind not in _KINDS:
         raise InputError(f"number type {printable(array.kind)!r} is not known", "write Float64 or Float32")
     dtype = np.dtype(encoding.order + _KINDS[array.kind])
-    size = array.count * dtype.itemsize
+    size = None if array.count is None else array.count * dtype.itemsize
     if array.form == "ascii":
         return _ascii(array, dtype)
     if array.form == "binary":
@@ -86,10 +86,10 @@ def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
 
 
 def _ascii(array: Encoded, dtype: np.dtype[Any]) -> NDArray[Any]:
-    if array.count > len(array.text):
+    if array.count is not None and array.count > len(array.text):
         raise InputError(f"should have {array.count} numbers and has fewer", _CUT)
     words = array.text.split()
-    if len(words) != array.count:
+    if array.count not in (None, len(words)):
         raise InputError(f"should have {array.count} numbers and has {len(words)}", _CUT)
     try:
         return np.array(words, dtype=np.float64 if dtype.kind == "f" else np.int64)
@@ -114,23 +114,23 @@ def _words(raw: memoryview, first: int, count: int, encoding: Encoding) -> list[
     return [int(word) for word in np.frombuffer(raw, dtype, count, first * dtype.itemsize)]
 
 
-def _sized(raw: memoryview, size: int, encoding: Encoding) -> memoryview:
+def _sized(raw: memoryview, size: int | None, encoding: Encoding) -> memoryview:
     (told,) = _words(raw, 0, 1, encoding)
     start = int(encoding.header[1])
-    if told != size or len(raw) < start + size:
+    if size not in (None, told) or len(raw) < start + told:
         raise InputError(
-            f"should be {size} bytes, is said to be {told} and {len(raw) - start} are left", _CUT
+            f"should be {size} bytes, is said to be {told}, and {len(raw) - start} are left", _CUT
         )
-    return raw[start : start + size]
+    return raw[start : start + told]
 
 
-def _decompressed(raw: memoryview, size: int, encoding: Encoding) -> bytearray:
+def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> bytearray:
     """Return `size` bytes; the words say: block count, block size, last block size, compressed sizes."""
     inflate = _inflater(encoding.compressor)
     count, block, last = _words(raw, 0, 3, encoding)
-    full = count - 1 if last else count
-    if count > len(raw) or full * block + last != size or size > _MOST_SHRINKING * len(raw):
-        raise InputError(f"should be {size} bytes and its blocks say {full * block + last}", _CUT)
+    told = (count - 1 if last else count) * block + last
+    if count > len(raw) or size not in (None, told) or told > _MOST_SHRINKING * len(raw):
+        raise InputError(f"should be {size} bytes and its blocks say {told}", _CUT)
     sizes = _words(raw, 3, count, encoding)
     at = (3 + count) * int(encoding.header[1])
     data = bytearray()

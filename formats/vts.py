@@ -116,10 +116,10 @@ def _head(grid: Grid, planes: int, cells: Mapping[str, NDArray[Any]]) -> str:
 
 
 def _field_data(grid: Grid) -> list[str]:
-    """Return the FieldData element; VTK spells a string array as its bytes, each string ended by a zero."""
+    """Return the FieldData element; VTK spells strings as signed bytes, each string ended by a zero."""
     lines = ["    <FieldData>"]
     for name, texts in facts_of(grid).items():
-        codes = " ".join(str(code) for text in texts for code in (*text.encode(), 0))
+        codes = " ".join(map(str, np.frombuffer("".join(text + "\0" for text in texts).encode(), np.int8)))
         tag = f'Array type="String" Name="{name}" NumberOfTuples="{len(texts)}" format="ascii"'
         lines.append(f"      <{tag}>{codes}</Array>")
     return [*lines, "    </FieldData>"]

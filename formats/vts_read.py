@@ -42,7 +42,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
         points = _points(pieces[0], encoding)
     else:
         points = _assembled(pieces, whole, encoding)
-    facts = {name: _texts(field) for name, field in _fields(dataset)}
+    facts = {array.get("Name", ""): _texts(array, encoding) for array in dataset.iterfind("FieldData/Array")}
     yield grid_with(planar([points[..., k].T for k in range(3)]), facts, source.stem)
 
 
@@ -168,16 +168,19 @@ def _child(element: Element, name: str) -> Element:
     return child
 
 
-def _fields(dataset: Element) -> Iterator[tuple[str, Element]]:
-    for array in dataset.iterfind("FieldData/*"):
-        if array.get("type") == "String" and array.get("format") == "ascii":
-            yield array.get("Name", ""), array
+def _texts(array: Element, encoding: Encoding) -> list[str]:
+    """Return the strings of a string array: bytes, each string ended by 0; none when it is not right.
 
-
-def _texts(array: Element) -> list[str]:
-    """Return the strings of an ascii-coded string array; one that is not right counts as absent."""
+    Such arrays hold extras only, so a foreign one must not stop a grid from being read.
+    """
     try:
-        codes = bytes(int(word) for word in (array.text or "").split())
-    except ValueError:
+        if array.get("format") == "ascii":
+            codes = bytes(int(word) % 256 for word in (array.text or "").split())
+        else:
+            offset = int(array.get("offset", "0"))
+            codes = decode(
+                Encoded("Int8", None, array.get("format", ""), array.text or "", offset), encoding
+            ).tobytes()
+    except (ValueError, InputError):
         return []
     return [text.decode("utf-8", "replace") for text in codes.split(b"\0")[:-1]]

@@ -104,7 +104,7 @@ class Candidate:
         return planar([np.asarray(values).reshape(dims, order="F") for values in arrays])
 
     def regularity(self) -> float:
-        """Return the share of cells whose area has the prevailing sign; negative when the reading is unusable.
+        """Return the share of cells whose area has the prevailing sign; negative when it makes no sense.
 
         The right reading of a file has nearly all its cells one way round; a wrong one is noise.
         """

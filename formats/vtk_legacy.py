@@ -1,0 +1,105 @@
+"""Legacy VTK structured grids, ``.vtk``, binary (big endian) or text.
+
+Topology, name, parts and provenance go into a FIELD of bytes, which VTK and meshio pass over.
+https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from formats.facts import facts_of
+from formats.format import Format, only_one
+from formats.vtk_legacy_read import read_grids, sniff
+from geometry.grid import Grid
+
+_BLOCK_NODES = 1 << 15
+
+
+def write(path: Path, grid: Grid, heights: tuple[float, ...] = (0.0,), *, text: bool = False) -> None:
+    """Write one grid; `heights` is z of each plane, `text` asks for ASCII with 17 significant digits."""
+    with path.open("wb") as stream:
+        form = "ASCII" if text else "BINARY"
+        stream.write(
+            f"# vtk DataFile Version 3.0\nstructured grid\n{form}\nDATASET STRUCTURED_GRID\n".encode()
+        )
+        _write_facts(stream, grid, text=text)
+        stream.write(f"DIMENSIONS {grid.ni} {grid.nj} {len(heights)}\n".encode())
+        stream.write(f"POINTS {grid.ni * grid.nj * len(heights)} double\n".encode())
+        for height in heights:
+            _write_points(stream, grid, height, text=text)
+        stream.write(b"\n")
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`, binary."""
+    write(path, only_one(grids, "a .vtk file"))
+
+
+def write_grids_text(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`, as text."""
+    write(path, only_one(grids, "a .vtk file"), text=True)
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
+    """Write the one grid of `grids`, one cell thick in z, binary."""
+    write(path, only_one(grids, "a .vtk file"), (0.0, thickness))
+
+
+def write_extruded_text(path: Path, grids: Iterable[Grid], thickness: float) -> None:
+    """Write the one grid of `grids`, one cell thick in z, as text."""
+    write(path, only_one(grids, "a .vtk file"), (0.0, thickness), text=True)
+
+
+def _write_points(stream: BinaryIO, grid: Grid, height: float, *, text: bool) -> None:
+    """Write a plane's points, i fastest, some rows at a time."""
+    rows = max(1, _BLOCK_NODES // grid.ni)
+    for start in range(0, grid.nj, rows):
+        part = grid.nodes[:, start : start + rows].swapaxes(0, 1).reshape(-1, 2)
+        block = np.empty((len(part), 3), ">f8")
+        block[:, :2], block[:, 2] = part, height
+        if text:
+            stream.write((("%.16e %.16e %.16e\n" * len(block)) % tuple(block.ravel().tolist())).encode())
+        else:
+            stream.write(block.data)
+
+
+def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
+    """Write topology, name and parts as a FIELD of UTF-8 bytes, one text a line.
+
+    VTK has strings here too, but meshio cannot read a file that holds them.
+    """
+    facts = {name: "\n".join(texts).encode() for name, texts in facts_of(grid).items()}
+    stream.write(f"FIELD FieldData {len(facts)}\n".encode())
+    for name, codes in facts.items():
+        stream.write(f"{name} 1 {len(codes)} unsigned_char\n".encode())
+        stream.write(" ".join(map(str, codes)).encode() if text else codes)
+        stream.write(b"\n")
+
+
+FORMATS = (
+    Format(
+        name="vtk",
+        suffixes=(".vtk",),
+        description="legacy VTK structured grid, binary",
+        read_grids=read_grids,
+        write_grids=write_grids,
+        write_extruded=write_extruded,
+        sniff=sniff,
+        names_parts=True,
+    ),
+    Format(
+        name="vtk-ascii",
+        suffixes=(".vtk",),
+        description="legacy VTK structured grid, text",
+        read_grids=read_grids,
+        write_grids=write_grids_text,
+        write_extruded=write_extruded_text,
+        sniff=sniff,
+        names_parts=True,
+    ),
+)
