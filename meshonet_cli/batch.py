@@ -1,0 +1,190 @@
+"""Members of a batch: from inputs to named items, and from results to files."""
+
+from __future__ import annotations
+
+import re
+import string
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, Literal, Protocol, TypeVar
+
+from formats.output import whole_file
+from formats.registry import format_for_output
+from geometry.errors import InputError
+from meshonet_cli.session import Session
+
+FIELDS = ("stem", "index", "name")
+
+
+class Named(Protocol):
+    """What inputs hold: shapes and grids have names."""
+
+    @property
+    def name(self) -> str:
+        """What the input calls it."""
+        ...
+
+
+T = TypeVar("T", bound=Named)
+
+
+@dataclass(frozen=True)
+class Item(Generic[T]):
+    """One member of a batch.
+
+    Parameters
+    ----------
+    index : counted from 0 over all inputs.
+    source : the input as the user wrote it.
+    what : the shape or grid.
+    seconds : spent on reading it.
+    only : whether its source holds nothing else.
+    """
+
+    index: int
+    source: str
+    what: T
+    seconds: float
+    only: bool = True
+
+    @property
+    def label(self) -> str:
+        """How messages call it."""
+        return self.source if self.only else f"{self.source}[{self.what.name or self.index}]"
+
+    @property
+    def stem(self) -> str:
+        """The input's file name without folder and ending."""
+        return "stdin" if self.source == "-" else Path(self.source).stem.replace(":", "")
+
+
+def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
+    """Yield every member of every source; a source that cannot be read is told of and passed over.
+
+    Raises
+    ------
+    InputError
+        standard input is named twice, or is a terminal.
+    """
+    if sources.count("-") > 1:
+        raise InputError("standard input is named twice", "name - once", source="-")
+    if "-" in sources and sys.stdin.isatty():
+        raise InputError("standard input is the terminal", "pipe a boundary or a grid into it", source="-")
+    index = 0
+    for source in sources:
+        with session.member(source):
+            begun = time.perf_counter()
+            found = read(source)
+            item = next(found, None)
+            if item is None:
+                raise InputError(
+                    "holds nothing", "give a file with a boundary or a grid in it", source=source
+                )
+            only = True
+            while item is not None:
+                spent = time.perf_counter() - begun
+                begun = time.perf_counter()
+                following = next(found, None)
+                only = only and following is None
+                session.begin(source, len(sources) if len(sources) > 1 else None)
+                yield Item(index, source, item, spent, only)
+                index += 1
+                item = following
+
+
+class Destination:
+    """Where results go: one file, one file each, or standard output.
+
+    Parameters
+    ----------
+    text : path, path with ``{stem}``, ``{index}`` or ``{name}`` in it, or ``-``.
+    fmt : format to write, or None to go by the ending.
+    kind : what will be written.
+
+    Raises
+    ------
+    InputError
+        an unknown field or ending, or a format that cannot be written.
+    """
+
+    def __init__(self, text: str, fmt: str | None, kind: Literal["grids", "boundaries"]) -> None:
+        self.text, self.kind = text, kind
+        self.each = _has_fields(text)
+        self.format = format_for_output(text, fmt, kind)
+        self._taken: dict[str, str] = {}
+        if text == "-" and sys.stdout.isatty():
+            raise InputError("standard output is the terminal", "pipe it on, or write to a file", source="-o")
+
+    def path(self, item: Item[Any]) -> str:
+        """Return the path of one member.
+
+        Raises
+        ------
+        InputError
+            an earlier member has the same path.
+        """
+        if not self.each:
+            return self.text
+        name = re.sub(r"[^\w.+-]+", "_", item.what.name).strip("._") or item.stem
+        path = self.text.format(stem=item.stem, index=item.index, name=name)
+        if path in self._taken:
+            raise InputError(
+                f"would overwrite {path} of {self._taken[path]}",
+                f"put {{index}} into -o {self.text}",
+                source=item.label,
+            )
+        self._taken[path] = item.label
+        return path
+
+    def check_room(self, sources: Sequence[str]) -> None:
+        """Raise InputError when several inputs would go into a file that holds one."""
+        if len(sources) > 1 and not self.holds_many:
+            raise InputError(
+                f"{len(sources)} inputs and one {self.format.name} file, which holds one",
+                f"use -o '{_pattern(self.text)}' or one .h5",
+                source=self.text,
+            )
+
+    @property
+    def holds_many(self) -> bool:
+        """Whether more than one member can go there."""
+        return self.each or self.format.many
+
+    def check_only(self, item: Item[Any]) -> None:
+        """Raise InputError when `item` is one of several and there is room for one."""
+        if not (item.only or self.holds_many):
+            raise InputError(
+                f"holds several and a {self.format.name} file one",
+                f"use -o '{_pattern(self.text, 'index')}' or one .h5",
+                source=item.source,
+            )
+
+    def write(self, path: str, what: Iterable[Any]) -> None:
+        """Write `what` to `path`, whole or not at all."""
+        put = getattr(self.format, f"write_{self.kind}")
+        with whole_file(path, make_folder=self.each) as part:
+            put(part, what)
+
+
+def _pattern(text: str, field: str = "stem") -> str:
+    path = Path(text)
+    return str(path.with_name(f"{path.stem}-{{{field}}}{path.suffix}")) if text != "-" else f"{{{field}}}.vts"
+
+
+def _has_fields(text: str) -> bool:
+    try:
+        fields = [field for _, field, _, _ in string.Formatter().parse(text) if field is not None]
+        text.format(stem="", index=0, name="")
+    except (ValueError, KeyError, IndexError, AttributeError):
+        fields = [""]
+    unknown = [field for field in fields if field not in FIELDS]
+    if unknown:
+        raise InputError(
+            f"{text!r} has a field that is not known",
+            "use {stem}, {index} or {name}; write {{ and }} for braces",
+            source="-o",
+        )
+    return bool(fields)

@@ -1,0 +1,50 @@
+"""``meshonet infer``."""
+
+from __future__ import annotations
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet infer airfoil.dat --res 800 -o grid.vts",
+    "meshonet infer naca:2412 --fail-on 'max_angle>178' --json -o naca2412.h5",
+    "meshonet infer airfoils/*.dat --res 200 -o 'grids/{stem}.vts'",
+)
+
+
+def infer(
+    boundary: o.Boundaries,
+    output: o.Output,
+    res: o.Resolution = None,
+    topology: o.TopologyOption = "auto",
+    spacing: o.SpacingOption = "auto",
+    le_spacing: o.LeSpacing = None,
+    te_spacing: o.TeSpacing = None,
+    far_field: o.FarField = 15.0,
+    corners: o.Corners = "auto",
+    normalise: o.Normalise = False,
+    allow_invalid: o.AllowInvalid = False,
+    fail_on: o.FailOn = None,
+    from_format: o.From = None,
+    to_format: o.To = None,
+    skip_existing: o.SkipExisting = False,
+    as_json: o.AsJson = False,
+    quiet: o.Quiet = False,
+    debug: o.Debug = False,
+) -> int:
+    """Make grids with an operator: the best grid for its time, from any boundary, with no settings needed."""
+    from meshonet_cli.batch import Destination
+    from meshonet_cli.gates import parse_gates
+    from meshonet_cli.gridding import Recipe, make_grids
+    from meshonet_cli.session import Session
+    from solvers.elliptic.solve import solve
+
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    recipe = Recipe(
+        o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
+        solve,
+        allow_invalid,
+        parse_gates(fail_on),
+    )
+    session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    destination = Destination(output, to_format, "grids")
+    return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)

@@ -1,0 +1,69 @@
+"""``meshonet solve-pde``."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import typer
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
+    "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
+)
+MethodName = Literal["winslow"]
+
+
+def solve_pde(
+    boundary: o.Boundaries,
+    output: o.Output,
+    res: o.Resolution = None,
+    method: Annotated[MethodName, typer.Option("--method", help="Equations to solve.")] = "winslow",
+    tol: Annotated[
+        float | None,
+        typer.Option(
+            "--tol", metavar="T", show_default=False,
+            help="Stop at this residual relative to that of the interpolated start. [default: where more cycles "
+            "change the grid by less than a finer one would]",
+        ),
+    ] = None,
+    max_cycles: Annotated[int, typer.Option("--max-cycles", metavar="N", help="Multigrid cycles at the most.")] = 30,
+    initial: Annotated[
+        str | None, typer.Option("--initial", metavar="GRID", help="Grid to start from.", show_default=False)
+    ] = None,
+    topology: o.TopologyOption = "auto",
+    spacing: o.SpacingOption = "auto",
+    le_spacing: o.LeSpacing = None,
+    te_spacing: o.TeSpacing = None,
+    far_field: o.FarField = 15.0,
+    corners: o.Corners = "auto",
+    normalise: o.Normalise = False,
+    allow_invalid: o.AllowInvalid = False,
+    fail_on: o.FailOn = None,
+    from_format: o.From = None,
+    to_format: o.To = None,
+    skip_existing: o.SkipExisting = False,
+    as_json: o.AsJson = False,
+    quiet: o.Quiet = False,
+    debug: o.Debug = False,
+) -> int:  # fmt: skip
+    """Make smooth grids by solving an elliptic equation, to any tolerance."""
+    from functools import partial
+
+    from meshonet_cli.batch import Destination
+    from meshonet_cli.gates import parse_gates
+    from meshonet_cli.gridding import Recipe, initial_grid, make_grids
+    from meshonet_cli.session import Session
+    from solvers.elliptic.solve import solve
+
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    recipe = Recipe(
+        o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
+        partial(solve, tol=tol, max_cycles=max_cycles, initial=initial_grid(initial)),
+        allow_invalid,
+        parse_gates(fail_on),
+    )
+    session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    destination = Destination(output, to_format, "grids")
+    return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)

@@ -1,0 +1,59 @@
+"""``meshonet tfi``."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+import typer
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet tfi duct.csv --res 80x40 -o duct.vts",
+    "meshonet sample-boundary naca:2412 -o - | meshonet tfi - -o - | meshonet quality -",
+)
+BlendingName = Literal["arclength", "linear"]
+
+
+def tfi(
+    boundary: o.Boundaries,
+    output: o.Output,
+    res: o.Resolution = None,
+    blending: Annotated[
+        BlendingName, typer.Option("--blending", help="Parameter along the edges.")
+    ] = "arclength",
+    topology: o.TopologyOption = "auto",
+    spacing: o.SpacingOption = "auto",
+    le_spacing: o.LeSpacing = None,
+    te_spacing: o.TeSpacing = None,
+    far_field: o.FarField = 15.0,
+    corners: o.Corners = "auto",
+    normalise: o.Normalise = False,
+    allow_invalid: o.AllowInvalid = False,
+    fail_on: o.FailOn = None,
+    from_format: o.From = None,
+    to_format: o.To = None,
+    skip_existing: o.SkipExisting = False,
+    as_json: o.AsJson = False,
+    quiet: o.Quiet = False,
+    debug: o.Debug = False,
+) -> int:
+    """Make grids by transfinite interpolation: algebraic, instant, and as good as the boundary is simple."""
+    from meshonet_cli.batch import Destination
+    from meshonet_cli.gates import parse_gates
+    from meshonet_cli.gridding import Recipe, make_grids
+    from meshonet_cli.session import Session
+    from solvers.solution import Solution
+    from solvers.tfi import tfi as interpolate
+
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    recipe = Recipe(
+        o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
+        lambda edges: Solution(interpolate(edges, blending), "tfi"),
+        allow_invalid,
+        parse_gates(fail_on),
+        "try meshonet solve-pde, which unfolds, or --allow-invalid",
+    )
+    session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    destination = Destination(output, to_format, "grids")
+    return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)

@@ -1,0 +1,91 @@
+"""Gates: conditions on the quality of a grid that end the program with exit code 1."""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from geometry.errors import InputError
+from geometry.metrics import NAMES
+from geometry.quality import Quality
+
+_COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
+_STATISTICS = ("min", "mean", "max", "p01", "p99")
+_GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Gate:
+    """A condition that a grid must not fulfil: ``METRIC[.STATISTIC] OPERATOR VALUE``.
+
+    Parameters
+    ----------
+    text : as the user wrote it.
+    metric : a metric of `geometry.metrics`, or ``folded``, the count of folded cells.
+    statistic : min, mean, max, p01 or p99 of the metric over all cells.
+    compare : ``>``, ``>=``, ``<`` or ``<=``.
+    limit : in the metric's unit.
+    """
+
+    text: str
+    metric: str
+    statistic: str
+    compare: str
+    limit: float
+
+    def broken(self, quality: Quality) -> str | None:
+        """Return what to tell the user when `quality` fulfils the condition, else None."""
+        value = quality.folded if self.metric == "folded" else getattr(quality[self.metric], self.statistic)
+        if not _COMPARE[self.compare](value, self.limit):
+            return None
+        what = "folded" if self.metric == "folded" else f"{self.metric}.{self.statistic}"
+        return f"{what} is {value:.6g}, and --fail-on '{self.text}'"
+
+
+def parse_gate(text: str) -> Gate:
+    """Return the gate that `text` describes.
+
+    Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
+
+    Raises
+    ------
+    InputError
+        `text` is no gate, or names an unknown metric or statistic.
+
+    Examples
+    --------
+    >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
+    ('max', 'p01')
+    """
+    found = _GATE.fullmatch(text)
+    try:
+        limit = float(found[4]) if found else None
+    except ValueError:
+        limit = None
+    if found is None or limit is None or limit != limit:
+        raise InputError(
+            f"{text!r} is not a gate",
+            "write METRIC>VALUE or METRIC<VALUE, e.g. 'max_angle>170'",
+            source="--fail-on",
+        )
+    metric, statistic, compare = found[1], found[2], found[3]
+    if metric not in (*NAMES, "folded"):
+        raise InputError(
+            f"metric {metric!r} is not known", "use one of folded, " + ", ".join(NAMES), source="--fail-on"
+        )
+    if statistic and (statistic not in _STATISTICS or metric == "folded"):
+        known = "no statistic with folded" if metric == "folded" else "one of " + ", ".join(_STATISTICS)
+        raise InputError(f"statistic {statistic!r} is not known", f"use {known}", source="--fail-on")
+    return Gate(text, metric, statistic or ("max" if compare in (">", ">=") else "min"), compare, limit)
+
+
+def parse_gates(texts: Iterable[str] | None) -> tuple[Gate, ...]:
+    """Return the gates of all ``--fail-on`` options."""
+    return tuple(parse_gate(text) for text in texts or ())
+
+
+def need_percentiles(gates: Iterable[Gate]) -> bool:
+    """Say whether a gate looks at a percentile, which costs a sort of all cells."""
+    return any(gate.statistic in ("p01", "p99") for gate in gates)

@@ -1,0 +1,205 @@
+"""What `tfi`, `solve-pde` and `infer` have in common: boundaries in, checked grids out, each told about."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import chain
+from pathlib import Path
+
+from formats.registry import read_grids, read_shapes
+from geometry.boundary import Boundary
+from geometry.errors import InputError, NoValidGridError
+from geometry.grid import Grid
+from geometry.quality import count_folded, measure, worst_cells
+from geometry.sampling import Sampling
+from geometry.shape import Shape
+from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.gates import Gate, need_percentiles
+from meshonet_cli.provenance import provenance
+from meshonet_cli.report import Report
+from meshonet_cli.session import Session
+from solvers.solution import Solution
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a boundary becomes a grid.
+
+    Parameters
+    ----------
+    sampling : node counts and spacing of the boundary.
+    method : the solver.
+    allow_invalid : whether a folded grid is a result.
+    gates : conditions that end the program with 1.
+    advice : what to try when the grid is folded.
+    """
+
+    sampling: Sampling
+    method: Callable[[Boundary], Solution]
+    allow_invalid: bool = False
+    gates: tuple[Gate, ...] = ()
+    advice: str = "use --allow-invalid to write it all the same"
+    facts: dict[str, object] = field(default_factory=dict)
+
+    def grid(self, item: Item[Shape]) -> tuple[Grid, Report]:
+        """Return the grid of one shape and what there is to tell of it.
+
+        Raises
+        ------
+        NoValidGridError
+            cells are folded, and that was not allowed.
+        """
+        clock = Clock(read=item.seconds)
+        boundary = item.what.boundary(self.sampling)
+        clock.lap("boundary")
+        solution = self.method(boundary)
+        clock.lap("grid", inside={"guard": solution.seconds.get("guard", 0.0)})
+        grid = solution.grid
+        folded = count_folded(grid.nodes)
+        if folded and not self.allow_invalid:
+            cells = (grid.ni - 1) * (grid.nj - 1)
+            problem = f"{folded} of {cells} cells are folded by {solution.method}; {self.advice}"
+            raise NoValidGridError(problem, worst_cells(grid.nodes))
+        clock.lap("guard")
+        quality = measure(grid, percentiles=need_percentiles(self.gates))
+        clock.lap("quality")
+        report = Report(
+            input=item.label,
+            output=None,
+            method=solution.method,
+            ni=grid.ni,
+            nj=grid.nj,
+            topology=grid.topology,
+            quality=quality,
+            model=solution.model,
+            path=solution.path,
+            residual=solution.residual,
+            cycles=solution.cycles,
+            seconds=clock.seconds,
+            notes=solution.notes,
+        )
+        return grid.with_provenance(**provenance(), **self.facts), report
+
+
+def make_grids(
+    sources: Sequence[str], recipe: Recipe, destination: Destination, session: Session, *,
+    fmt: str | None = None, skip_existing: bool = False,
+) -> int:  # fmt: skip
+    """Turn every boundary of `sources` into a grid in `destination` and return the exit code.
+
+    Parameters
+    ----------
+    fmt : format of the sources, or None to go by endings and content.
+    skip_existing : pass over members whose own file is there.
+
+    Raises
+    ------
+    InputError
+        several members and room for one.
+    """
+    destination.check_room(sources)
+    session.check_output(destination.text)
+    found = items(sources, lambda source: read_shapes(source, fmt), session)
+    if destination.each or not destination.holds_many:
+        _one_file_each(found, recipe, destination, session, skip_existing)
+    else:
+        grids = _streamed(found, recipe, destination, session)
+        first = next(grids, None)
+        if first is not None:
+            destination.write(destination.text, chain([first], grids))
+    return session.finish(batch=session.members > 1)
+
+
+def _one_file_each(
+    found: Iterator[Item[Shape]],
+    recipe: Recipe,
+    destination: Destination,
+    session: Session,
+    skip_existing: bool,
+) -> None:
+    for item in found:
+        with session.member(item.label):
+            destination.check_only(item)
+            path = destination.path(item)
+            if skip_existing and path != "-" and Path(path).exists():
+                session.skip(item.label, path)
+                continue
+            grid, report = recipe.grid(item)
+            with report.timed("write"):
+                destination.write(path, [grid])
+            _tell(report, path, recipe, session)
+
+
+def _streamed(
+    found: Iterator[Item[Shape]], recipe: Recipe, destination: Destination, session: Session
+) -> Iterator[Grid]:
+    """Yield the grids for one file; each is told of when the writer comes back for the next one."""
+    size: tuple[int, int, str] | None = None
+    for item in found:
+        made = None
+        with session.member(item.label):
+            made = recipe.grid(item)
+            size = same_size(made[0], size)
+        if made is None:
+            continue
+        grid, report = made
+        with report.timed("write"):
+            yield grid
+        _tell(report, destination.text, recipe, session)
+
+
+def same_size(grid: Grid, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
+    """Return the size of `grid`, which must be `size` unless that is None.
+
+    Raises
+    ------
+    InputError
+        it is another one.
+    """
+    own = (grid.ni, grid.nj, grid.topology)
+    if size is not None and own != size:
+        raise InputError(
+            "{}x{} {} does not fit a dataset of {}x{} {}".format(*own, *size),
+            "set --res and --topology, or write one file each",
+        )
+    return own
+
+
+def _tell(report: Report, path: str, recipe: Recipe, session: Session) -> None:
+    report.output = path
+    report.seconds["total"] = sum(report.seconds.values())
+    session.done += 1
+    if report.quality.folded:
+        session.warn(f"{report.input}: {report.quality.folded} folded cells are in {path}")
+    if session.as_json:
+        session.result(report.as_json())
+    else:
+        session.note(report.line() if session.members > 1 else report.lines())
+        for note in report.notes:
+            session.note(f"  note: {note}")
+    session.gate(report.input, [told for gate in recipe.gates if (told := gate.broken(report.quality))])
+
+
+class Clock:
+    """Wall-clock seconds by stage."""
+
+    def __init__(self, **spent: float) -> None:
+        self.seconds = dict(spent)
+        self._last = time.perf_counter()
+
+    def lap(self, stage: str, inside: dict[str, float] | None = None) -> None:
+        """Add the time since the last lap to `stage`; stages `inside` it were timed by it and are taken out."""
+        now = time.perf_counter()
+        spent = now - self._last
+        for name, part in (inside or {}).items():
+            self.seconds[name] = self.seconds.get(name, 0.0) + part
+            spent -= part
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+        self._last = now
+
+
+def initial_grid(text: str | None) -> Grid | None:
+    """Return the grid of the file `text`, or None for None."""
+    return None if text is None else next(read_grids(text))

@@ -1,0 +1,177 @@
+"""Options that several commands share, each said once."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+if TYPE_CHECKING:
+    from geometry.sampling import Sampling
+
+# the library's own choices, repeated here because its modules load numpy; a test holds them equal
+TopologyName = Literal["auto", "quad", "o"]
+SpacingName = Literal["auto", "uniform", "cosine", "tanh", "curvature"]
+
+Boundaries = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="BOUNDARY...",
+        help="Files that hold a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
+        show_default=False,
+    ),
+]
+Grids = Annotated[
+    list[str],
+    typer.Argument(metavar="GRID...", help="Grid files, or - for standard input.", show_default=False),
+]
+Output = Annotated[
+    str,
+    typer.Option(
+        "-o", "--output", metavar="FILE", show_default=False,
+        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, {index}) "
+        "or one .h5.",
+    ),
+]  # fmt: skip
+From = Annotated[
+    str | None,
+    typer.Option(
+        "--from",
+        metavar="FORMAT",
+        help="Format of the input, when its ending does not say.",
+        show_default=False,
+    ),
+]
+To = Annotated[
+    str | None,
+    typer.Option(
+        "--to",
+        metavar="FORMAT",
+        help="Format of the output, when its ending does not say.",
+        show_default=False,
+    ),
+]
+Resolution = Annotated[
+    str | None,
+    typer.Option(
+        "--res", metavar="N|NIxNJ", show_default=False,
+        help="Nodes: N x N, or NI along xi (around a body) by NJ along eta (away from it). [default: the nodes "
+        "of the input, or 200x100]",
+    ),
+]  # fmt: skip
+TopologyOption = Annotated[
+    TopologyName, typer.Option("--topology", help="Kind of grid: four-sided, or O around a body.")
+]
+SpacingOption = Annotated[
+    SpacingName, typer.Option("--spacing", help="Spacing of the nodes along the walls.")
+]
+LeSpacing = Annotated[
+    float | None,
+    typer.Option(
+        "--le-spacing", metavar="H", help="Wall cell at the leading edge, in chords.", show_default=False
+    ),
+]
+TeSpacing = Annotated[
+    float | None,
+    typer.Option(
+        "--te-spacing", metavar="H", help="Wall cell at the trailing edge, in chords.", show_default=False
+    ),
+]
+FarField = Annotated[
+    float, typer.Option("--far-field", metavar="R", help="Distance of the far field, in chords.")
+]
+Corners = Annotated[
+    str,
+    typer.Option(
+        "--corners", metavar="auto|I,J,K,L",
+        help="Points of an outline, counted from 0, that become the corners of a four-sided grid, south-west first.",
+    ),
+]  # fmt: skip
+Normalise = Annotated[
+    bool, typer.Option("--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).")
+]
+AllowInvalid = Annotated[
+    bool, typer.Option("--allow-invalid", help="Write the grid even when cells are folded.")
+]
+FailOn = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fail-on", metavar="GATE", show_default=False,
+        help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable.",
+    ),
+]  # fmt: skip
+SkipExisting = Annotated[
+    bool, typer.Option("--skip-existing", help="Pass over inputs whose output file is there.")
+]
+AsJson = Annotated[
+    bool, typer.Option("--json", help="Print one JSON object on standard output for each result.")
+]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of errors.")]
+
+
+def sampling(
+    res: str | None, topology: TopologyName, spacing: SpacingName, corners: str, **rest: Any
+) -> Sampling:
+    """Return the sampling settings that the options describe; `rest` goes to `Sampling` as it is.
+
+    Raises
+    ------
+    InputError
+        a value that cannot be read or is out of range.
+    """
+    from geometry.sampling import Sampling
+
+    ni, nj = resolution(res) if res else (None, None)
+    return Sampling(ni, nj, topology=topology, spacing=spacing, corners=four_corners(corners), **rest)
+
+
+def resolution(text: str) -> tuple[int, int]:
+    """Return the node counts (ni, nj) of ``N`` or ``NIxNJ``.
+
+    Raises
+    ------
+    InputError
+        `text` is neither.
+
+    Examples
+    --------
+    >>> resolution("200"), resolution("400x100")
+    ((200, 200), (400, 100))
+    """
+    found = re.fullmatch(r"\s*(\d{1,9})\s*(?:[xX]\s*(\d{1,9})\s*)?", text, re.ASCII)
+    if found is None:
+        from geometry.errors import InputError
+
+        raise InputError(
+            f"{text!r} is not a number of nodes", "use N or NIxNJ, e.g. 200 or 400x100", source="--res"
+        )
+    ni = int(found[1])
+    return ni, int(found[2] or ni)
+
+
+def four_corners(text: str) -> tuple[int, int, int, int] | None:
+    """Return the four indices of ``I,J,K,L``, or None for ``auto``.
+
+    Raises
+    ------
+    InputError
+        `text` is neither.
+
+    Examples
+    --------
+    >>> four_corners("0,10,20,30"), four_corners("auto")
+    ((0, 10, 20, 30), None)
+    """
+    if text == "auto":
+        return None
+    words = text.split(",")
+    if len(words) != 4 or not all(re.fullmatch(r"\s*\d{1,9}\s*", word, re.ASCII) for word in words):
+        from geometry.errors import InputError
+
+        raise InputError(
+            f"{text!r} is not four points", "use auto or I,J,K,L, e.g. 0,40,60,100", source="--corners"
+        )
+    a, b, c, d = (int(word) for word in words)
+    return a, b, c, d

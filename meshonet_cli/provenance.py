@@ -1,0 +1,34 @@
+"""How a file was made, as facts that travel in it."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Sequence
+
+from meshonet_cli.version import VERSION
+
+
+def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
+    """Return the program's version and command line, without the output's name.
+
+    The name is left out so that the same input and settings give the same bytes wherever they are written.
+
+    Parameters
+    ----------
+    arguments : of the program, its name not among them; None means those it was started with.
+
+    Examples
+    --------
+    >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
+    "meshonet tfi 'a b.csv' --res 80"
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    kept = []
+    while words:
+        word = words.pop(0)
+        if word in ("-o", "--output"):
+            words[:1] = []
+        elif not (word.startswith("--output=") or (word.startswith("-o") and len(word) > 2)):
+            kept.append(word)
+    return {"software": f"meshonet {VERSION}", "command": shlex.join(["meshonet", *kept])}

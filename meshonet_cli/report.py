@@ -1,0 +1,169 @@
+"""What is told about a result: as JSON, and as a few lines for people."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from geometry.quality import Quality
+
+
+@dataclass
+class Report:
+    """The story of one grid; the fields are those of the JSON that CLI.md promises.
+
+    `seconds` holds wall-clock seconds by stage: read, boundary, grid (from boundary nodes in memory to grid
+    nodes in memory), guard, quality, write, and total.
+    """
+
+    input: str
+    output: str | None
+    method: str
+    ni: int
+    nj: int
+    topology: str
+    quality: Quality
+    model: str | None = None
+    path: tuple[str, ...] = ()
+    residual: float | None = None
+    cycles: int | None = None
+    seconds: dict[str, float] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @contextlib.contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Add the time that the block takes to `stage`."""
+        begun = time.perf_counter()
+        yield
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        return {
+            "input": self.input,
+            "output": self.output,
+            "method": self.method,
+            "model": self.model,
+            "ni": self.ni,
+            "nj": self.nj,
+            "topology": self.topology,
+            "folded": self.quality.folded,
+            "path": list(self.path),
+            "residual": self.residual,
+            "cycles": self.cycles,
+            "quality": quality_json(self.quality),
+            "seconds": {stage: round(spent, 6) for stage, spent in self.seconds.items()},
+            "notes": list(self.notes),
+        }
+
+    def lines(self) -> str:
+        """Return the report of a single grid for people."""
+        angle = self.quality["max_angle"]
+        i, j = angle.worst
+        stages = ", ".join(
+            f"{stage} {_span(spent)}" for stage, spent in self.seconds.items() if stage != "total"
+        )
+        rows = {
+            "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
+            "residual": f"{self.residual:.1e} of the start, {self.cycles} cycles"
+            if self.residual is not None
+            else "",
+            "folded": f"{self.quality.folded} of {self.quality.cells} cells",
+            "max angle": f"{angle.max:.1f} degrees at i={i}, j={j}; mean {angle.mean:.1f}",
+            "time": f"{_span(self.seconds['total'])}: {stages}",
+        }
+        head = f"{self.input} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"
+        return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text)])
+
+    def line(self) -> str:
+        """Return the report of a member of a batch for people."""
+        angle = self.quality["max_angle"].max
+        return (
+            f"{self.input} -> {self.output}: {self.ni} x {self.nj} {self.topology}, {self.quality.folded} folded, "
+            f"max angle {angle:.1f}, {self.method}{_after(self.path)}, {_span(self.seconds['total'])}"
+        )
+
+
+def quality_json(quality: Quality) -> dict[str, Any]:
+    """Return the quality of a grid as JSON; percentiles are left out when they were not computed."""
+    told: dict[str, Any] = {"cells": quality.cells, "folded": quality.folded}
+    for name, summary in quality.metrics.items():
+        row: dict[str, Any] = {"min": summary.min, "mean": summary.mean, "max": summary.max}
+        if summary.p01 is not None:
+            row |= {"p01": summary.p01, "p99": summary.p99}
+        told[name] = row | {"worst": list(summary.worst)}
+    return told
+
+
+def quality_table(quality: Quality) -> str:
+    """Return the quality of a grid as a table for people; it needs the percentiles."""
+    from geometry.metrics import METRICS
+
+    head = ["metric", "min", "p01", "mean", "p99", "max", "worst at i, j"]
+    rows = [head]
+    for metric in METRICS:
+        row = quality[metric.name]
+        figures = [row.min, row.p01, row.mean, row.p99, row.max]
+        name = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
+        rows.append(
+            [
+                name,
+                *("-" if value is None else figure(value) for value in figures),
+                "{}, {}".format(*row.worst),
+            ]
+        )
+    return aligned(rows)
+
+
+def aligned(rows: list[list[str]]) -> str:
+    """Return `rows` as lines with columns aligned, the first to the left and the others to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    lines = []
+    for row in rows:
+        cells = [
+            row[0].ljust(widths[0]),
+            *(text.rjust(width) for text, width in zip(row[1:], widths[1:], strict=True)),
+        ]
+        lines.append("  ".join(cells).rstrip())
+    return "\n".join(lines)
+
+
+def figure(value: float) -> str:
+    """Return a number as a table shows it.
+
+    Examples
+    --------
+    >>> figure(90.12345), figure(0.000123456), figure(1234567.0), figure(0.0)
+    ('90.12', '0.0001235', '1.235e+06', '0')
+    """
+    return f"{value:.4g}"
+
+
+def explained(error: Exception, name: str = "") -> str:
+    """Return the line or two that tell a user of `error`, which happened to the member `name`."""
+    from geometry.errors import InputError, MeshonetError
+
+    if isinstance(error, InputError):
+        error.source = error.source or name
+        return str(error)
+    where = f"{name}: " if name else ""
+    if isinstance(error, MeshonetError):
+        return f"{where}{error}"
+    if isinstance(error, MemoryError):
+        return f"{where}not enough memory ({error}); use a smaller --res".replace(" ()", "")
+    if isinstance(error, OSError):
+        file = f"{error.filename}: " if error.filename else where
+        return f"{file}{error.strerror or error}; check the path, its permissions and the free space"
+    return f"{where}internal error: {type(error).__name__}: {error}; this is a bug, --debug shows where"
+
+
+def _after(path: tuple[str, ...]) -> str:
+    return f", then {', '.join(path)}" if path else ""
+
+
+def _span(seconds: float) -> str:
+    return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"

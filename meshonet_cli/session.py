@@ -1,0 +1,132 @@
+"""One run of a command over its members: what is told, where it goes, and the worst outcome so far."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import sys
+import time
+import traceback
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from formats.source import printable
+from geometry.errors import InputError, MeshonetError
+from meshonet_cli.report import explained
+
+GATE_NOT_MET = 1
+
+
+class Session:
+    """Says what happens and remembers the worst exit code.
+
+    Results for programs (``--json``) and tables go to standard output, everything else to standard error.
+
+    Parameters
+    ----------
+    quiet : no progress and no reports, only warnings and errors.
+    as_json : one JSON object a member on standard output, in place of reports.
+    debug : tracebacks of failing members too.
+    output : the ``--output`` of the command; results cannot share standard output with JSON.
+    """
+
+    def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
+        self.quiet, self.as_json, self.debug = quiet, as_json, debug
+        self.worst = 0
+        self.members = self.done = self.failed = self.skipped = 0
+        self._begun = time.perf_counter()
+        self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
+        self._bar_shown = False
+
+    @contextlib.contextmanager
+    def member(self, name: str) -> Iterator[None]:
+        """Report an error of the block as that of the member `name`, and go on after it."""
+        try:
+            yield
+        except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
+            raise
+        except Exception as error:
+            self.fail(name, error)
+
+    def fail(self, name: str, error: Exception) -> None:
+        """Tell of a member that failed."""
+        self.failed += 1
+        code = error.exit_code if isinstance(error, MeshonetError) else 2
+        self.worst = max(self.worst, code)
+        told = explained(error, name)
+        if self.debug:
+            self._write("".join(traceback.format_exception(error)).rstrip())
+        self._write(f"error: {told}")
+        if self.as_json:
+            self.result({"input": name, "output": None, "error": told, "exit_code": code})
+
+    def gate(self, name: str, problems: Sequence[str]) -> None:
+        """Tell of gates that a member did not meet."""
+        for problem in problems:
+            self.worst = max(self.worst, GATE_NOT_MET)
+            self._write(f"gate not met: {name}: {problem}")
+
+    def warn(self, text: str) -> None:
+        """Tell of something the user should know even when quiet."""
+        self._write(f"warning: {text}")
+
+    def note(self, text: str) -> None:
+        """Tell what happened, unless quiet or speaking JSON."""
+        if not (self.quiet or self.as_json):
+            self._write(text)
+
+    def result(self, facts: Mapping[str, Any]) -> None:
+        """Print one JSON object on standard output, at once, so that a reader in a pipe can follow."""
+        self.print(json.dumps(facts))
+
+    def print(self, text: str) -> None:
+        """Print on standard output."""
+        self._clear()
+        print(text, flush=True)  # noqa: T201
+
+    def check_output(self, output: str) -> None:
+        """Raise InputError when results and JSON would share standard output."""
+        if self.as_json and output == "-":
+            raise InputError(
+                "--json and -o - both want standard output", "write the result to a file", source="-o"
+            )
+
+    def begin(self, name: str, count: int | None = None) -> None:
+        """Show on a terminal which member of how many (None: not known) is at work."""
+        self.members += 1
+        if not self._bar or (count is None and self.members == 1):
+            return
+        done = self.members - 1
+        spent = time.perf_counter() - self._begun
+        left = f", {(count - done) * spent / done:.0f} s left" if count and done else ""
+        of = f"{self.members}/{count}" if count else f"{self.members}"
+        width = os.get_terminal_size(sys.stderr.fileno()).columns - 1
+        self._clear()
+        sys.stderr.write(f"[{of}] {printable(name)}{left}"[:width])
+        sys.stderr.flush()
+        self._bar_shown = True
+
+    def skip(self, name: str, path: str) -> None:
+        """Tell of a member whose result is there already."""
+        self.skipped += 1
+        self.note(f"{name} -> {path}: there already")
+
+    def finish(self, *, batch: bool) -> int:
+        """Tell how a batch went and return the exit code."""
+        self._clear()
+        if batch and not (self.quiet or self.as_json):
+            spent = time.perf_counter() - self._begun
+            parts = [f"{self.done} done", f"{self.skipped} there already" if self.skipped else "",
+                     f"{self.failed} failed" if self.failed else ""]  # fmt: skip
+            self._write(", ".join(part for part in parts if part) + f" in {spent:.2f} s")
+        return self.worst
+
+    def _write(self, text: str) -> None:
+        self._clear()
+        print(text, file=sys.stderr)  # noqa: T201
+
+    def _clear(self) -> None:
+        if self._bar_shown:
+            sys.stderr.write("\r\x1b[2K")
+            self._bar_shown = False
