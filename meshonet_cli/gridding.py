@@ -190,7 +190,7 @@ class Clock:
         self._last = time.perf_counter()
 
     def lap(self, stage: str, inside: dict[str, float] | None = None) -> None:
-        """Add the time since the last lap to `stage`; stages `inside` it were timed by it and are taken out."""
+        """Add the time since the last lap to `stage`, less what stages `inside` it took."""
         now = time.perf_counter()
         spent = now - self._last
         for name, part in (inside or {}).items():

@@ -14,52 +14,47 @@ if TYPE_CHECKING:
 TopologyName = Literal["auto", "quad", "o"]
 SpacingName = Literal["auto", "uniform", "cosine", "tanh", "curvature"]
 
+# fmt: off
 Boundaries = Annotated[
     list[str],
     typer.Argument(
-        metavar="BOUNDARY...",
-        help="Files that hold a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
-        show_default=False,
+        metavar="BOUNDARY", show_default=False,
+        help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
     ),
 ]
 Grids = Annotated[
-    list[str],
-    typer.Argument(metavar="GRID...", help="Grid files, or - for standard input.", show_default=False),
+    list[str], typer.Argument(metavar="GRID", show_default=False, help="Grid file, or - for standard input.")
 ]
 Output = Annotated[
     str,
     typer.Option(
         "-o", "--output", metavar="FILE", show_default=False,
-        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, {index}) "
-        "or one .h5.",
+        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
+        "{index}) or one .h5.",
     ),
-]  # fmt: skip
+]
 From = Annotated[
     str | None,
     typer.Option(
-        "--from",
-        metavar="FORMAT",
-        help="Format of the input, when its ending does not say.",
-        show_default=False,
+        "--from", metavar="FORMAT", show_default=False,
+        help="Format of the input, when neither its ending nor its content says.",
     ),
 ]
 To = Annotated[
     str | None,
     typer.Option(
-        "--to",
-        metavar="FORMAT",
-        help="Format of the output, when its ending does not say.",
-        show_default=False,
+        "--to", metavar="FORMAT", show_default=False,
+        help="Format of the output, when its ending does not say. Standard output is hdf5 unless told.",
     ),
 ]
 Resolution = Annotated[
     str | None,
     typer.Option(
         "--res", metavar="N|NIxNJ", show_default=False,
-        help="Nodes: N x N, or NI along xi (around a body) by NJ along eta (away from it). [default: the nodes "
-        "of the input, or 200x100]",
+        help="Nodes: N x N, or NI along xi (around a body) by NJ along eta (away from it). "
+        "[default: the nodes of the input, or 200x100 around a curve]",
     ),
-]  # fmt: skip
+]
 TopologyOption = Annotated[
     TopologyName, typer.Option("--topology", help="Kind of grid: four-sided, or O around a body.")
 ]
@@ -69,13 +64,13 @@ SpacingOption = Annotated[
 LeSpacing = Annotated[
     float | None,
     typer.Option(
-        "--le-spacing", metavar="H", help="Wall cell at the leading edge, in chords.", show_default=False
+        "--le-spacing", metavar="H", show_default=False, help="Wall cell at the leading edge, in chords."
     ),
 ]
 TeSpacing = Annotated[
     float | None,
     typer.Option(
-        "--te-spacing", metavar="H", help="Wall cell at the trailing edge, in chords.", show_default=False
+        "--te-spacing", metavar="H", show_default=False, help="Wall cell at the trailing edge, in chords."
     ),
 ]
 FarField = Annotated[
@@ -85,9 +80,10 @@ Corners = Annotated[
     str,
     typer.Option(
         "--corners", metavar="auto|I,J,K,L",
-        help="Points of an outline, counted from 0, that become the corners of a four-sided grid, south-west first.",
+        help="Points of an outline, counted from 0, that become the corners of a four-sided grid, "
+        "south-west first.",
     ),
-]  # fmt: skip
+]
 Normalise = Annotated[
     bool, typer.Option("--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).")
 ]
@@ -100,15 +96,16 @@ FailOn = Annotated[
         "--fail-on", metavar="GATE", show_default=False,
         help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable.",
     ),
-]  # fmt: skip
+]
 SkipExisting = Annotated[
-    bool, typer.Option("--skip-existing", help="Pass over inputs whose output file is there.")
+    bool, typer.Option("--skip-existing", help="Pass over inputs whose output file is there already.")
 ]
 AsJson = Annotated[
     bool, typer.Option("--json", help="Print one JSON object on standard output for each result.")
 ]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print warnings and errors only.")]
+Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print warnings and errors only.")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of errors.")]
+# fmt: on
 
 
 def sampling(

@@ -83,8 +83,9 @@ class Report:
         """Return the report of a member of a batch for people."""
         angle = self.quality["max_angle"].max
         return (
-            f"{self.input} -> {self.output}: {self.ni} x {self.nj} {self.topology}, {self.quality.folded} folded, "
-            f"max angle {angle:.1f}, {self.method}{_after(self.path)}, {_span(self.seconds['total'])}"
+            f"{self.input} -> {self.output}: {self.ni} x {self.nj} {self.topology}, "
+            f"{self.quality.folded} folded, max angle {angle:.1f}, "
+            f"{self.method}{_after(self.path)}, {_span(self.seconds['total'])}"
         )
 
 

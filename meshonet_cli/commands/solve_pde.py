@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -12,23 +12,23 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
 )
-MethodName = Literal["winslow"]
 
 
 def solve_pde(
     boundary: o.Boundaries,
     output: o.Output,
     res: o.Resolution = None,
-    method: Annotated[MethodName, typer.Option("--method", help="Equations to solve.")] = "winslow",
     tol: Annotated[
         float | None,
         typer.Option(
             "--tol", metavar="T", show_default=False,
-            help="Stop at this residual relative to that of the interpolated start. [default: where more cycles "
-            "change the grid by less than a finer one would]",
+            help="Stop at this residual, relative to that of the interpolated start. [default: where more "
+            "cycles change the grid by less than a finer one would]",
         ),
     ] = None,
-    max_cycles: Annotated[int, typer.Option("--max-cycles", metavar="N", help="Multigrid cycles at the most.")] = 30,
+    max_cycles: Annotated[
+        int, typer.Option("--max-cycles", metavar="N", help="Multigrid cycles at the most.")
+    ] = 30,
     initial: Annotated[
         str | None, typer.Option("--initial", metavar="GRID", help="Grid to start from.", show_default=False)
     ] = None,
