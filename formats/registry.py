@@ -33,6 +33,8 @@ TABLE: dict[str, Row] = {
     "vts": Row("formats.vts", (".vts",)),
     "vtk": Row("formats.vtk_legacy", (".vtk",)),
     "vtk-ascii": Row("formats.vtk_legacy", (".vtk",)),
+    "gmsh": Row("formats.gmsh", (".msh",)),
+    "gmsh-ascii": Row("formats.gmsh", (".msh",)),
     "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),
     "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),

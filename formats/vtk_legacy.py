@@ -7,6 +7,7 @@ https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
@@ -35,24 +36,14 @@ def write(path: Path, grid: Grid, heights: tuple[float, ...] = (0.0,), *, text: 
         stream.write(b"\n")
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`, binary."""
-    write(path, only_one(grids, "a .vtk file"))
+def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:
+    """Write the one grid of `grids`."""
+    write(path, only_one(grids, "a .vtk file"), text=text)
 
 
-def write_grids_text(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`, as text."""
-    write(path, only_one(grids, "a .vtk file"), text=True)
-
-
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write the one grid of `grids`, one cell thick in z, binary."""
-    write(path, only_one(grids, "a .vtk file"), (0.0, thickness))
-
-
-def write_extruded_text(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write the one grid of `grids`, one cell thick in z, as text."""
-    write(path, only_one(grids, "a .vtk file"), (0.0, thickness), text=True)
+def write_extruded(path: Path, grids: Iterable[Grid], thickness: float, *, text: bool = False) -> None:
+    """Write the one grid of `grids`, one cell thick in z."""
+    write(path, only_one(grids, "a .vtk file"), (0.0, thickness), text=text)
 
 
 def _write_points(stream: BinaryIO, grid: Grid, height: float, *, text: bool) -> None:
@@ -97,8 +88,8 @@ FORMATS = (
         suffixes=(".vtk",),
         description="legacy VTK structured grid, text",
         read_grids=read_grids,
-        write_grids=write_grids_text,
-        write_extruded=write_extruded_text,
+        write_grids=partial(write_grids, text=True),
+        write_extruded=partial(write_extruded, text=True),
         sniff=sniff,
         names_parts=True,
     ),

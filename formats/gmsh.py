@@ -1,0 +1,97 @@
+"""Gmsh ``.msh`` 2.2: quadrilaterals with merged seams, and the boundary's parts as physical groups.
+
+Written through meshio, binary unless asked otherwise: fifteen times quicker than text, which converters
+such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format-version-2
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from formats.format import Format, only_one
+from formats.source import printable
+from formats.unstructured import Indices, Unstructured, unstructured
+from geometry.arrays import Floats
+from geometry.grid import Grid
+
+INTERIOR = "fluid"
+"""Name of the group of all cells."""
+
+
+def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:
+    """Write the one grid of `grids`: quads, and lines in groups named as its parts."""
+    mesh = unstructured(only_one(grids, "a .msh file"))
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    groups = [("line", name, edges) for name, edges in mesh.edges.items()]
+    _write(path, points, 1, groups, ("quad", mesh.quads), text=text)
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], thickness: float, *, text: bool = False) -> None:
+    """Write the one grid of `grids` one cell thick: hexahedra, and faces in groups."""
+    mesh = unstructured(only_one(grids, "a .msh file"))
+    points, faces, hexahedra = _extruded(mesh, thickness)
+    groups = [("quad", name, quads) for name, quads in faces.items()]
+    _write(path, points, 2, groups, ("hexahedron", hexahedra), text=text)
+
+
+def _extruded(mesh: Unstructured, thickness: float) -> tuple[Floats, dict[str, Indices], Indices]:
+    """Return points (2n, 3), outward faces by name, hexahedra (m, 8) of a layer from z = 0 to `thickness`."""
+    count = len(mesh.points)
+    planes = [np.column_stack([mesh.points, np.full(count, height)]) for height in (0.0, thickness)]
+    faces = {name: np.column_stack([edges, edges[:, ::-1] + count]) for name, edges in mesh.edges.items()}
+    faces["back"], faces["front"] = mesh.quads[:, ::-1], mesh.quads + count
+    return np.concatenate(planes), faces, np.concatenate([mesh.quads, mesh.quads + count], axis=1)
+
+
+def _write(
+    path: Path,
+    points: Floats,
+    dimension: int,
+    groups: list[tuple[str, str, Indices]],
+    interior: tuple[str, Indices],
+    *,
+    text: bool,
+) -> None:
+    """Write groups (cell kind, name, cells) of `dimension`, and the interior one dimension up."""
+    import meshio
+
+    inside = INTERIOR if all(name != INTERIOR for _, name, _ in groups) else f"{INTERIOR}-cells"
+    cells = [(kind, block) for kind, _, block in groups] + [interior]
+    names = [(_quotable(name), dimension) for _, name, _ in groups] + [(inside, dimension + 1)]
+    tags = [np.full(len(block), tag) for tag, (_, block) in enumerate(cells, start=1)]
+    mesh = meshio.Mesh(
+        points,
+        cells,
+        field_data={name: np.array([tag, dim]) for tag, (name, dim) in enumerate(names, start=1)},
+        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+    )
+    meshio.gmsh.write(str(path), mesh, fmt_version="2.2", binary=not text, float_fmt=".16e")
+
+
+def _quotable(name: str) -> str:
+    """Return a name that can stand between double quotes."""
+    return printable(name).replace('"', "'")
+
+
+FORMATS = (
+    Format(
+        name="gmsh",
+        suffixes=(".msh",),
+        description="Gmsh 2.2 mesh, binary, parts as physical groups",
+        write_grids=write_grids,
+        write_extruded=write_extruded,
+        names_parts=True,
+    ),
+    Format(
+        name="gmsh-ascii",
+        suffixes=(".msh",),
+        description="Gmsh 2.2 mesh, text, parts as physical groups",
+        write_grids=partial(write_grids, text=True),
+        write_extruded=partial(write_extruded, text=True),
+        names_parts=True,
+    ),
+)

@@ -1,0 +1,82 @@
+"""A structured grid as an unstructured one: seams merged, cells and named edges by node number."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formats.edges import wake_nodes
+from geometry.arrays import Floats, Side
+from geometry.grid import Grid
+
+Indices: TypeAlias = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Unstructured:
+    """Nodes without doubles, quadrilaterals and the named boundary.
+
+    Parameters
+    ----------
+    points : (n, 2), unit of the grid.
+    quads : (m, 4) node numbers, counter-clockwise for a right-handed grid, i fastest.
+    edges : (k, 2) node numbers of each named part, the domain on the left.
+    """
+
+    points: Floats
+    quads: Indices
+    edges: dict[str, Indices]
+
+
+def unstructured(grid: Grid) -> Unstructured:
+    """Return `grid` with the nodes along its O cut or C wake merged.
+
+    Edges inside the domain (the cut, the wake) belong to no part; an outer edge that nobody named is
+    called by its side.
+    """
+    number = _numbers(grid)
+    used, first = np.unique(number.ravel(order="F"), return_index=True)
+    number = np.searchsorted(used, number)
+    points = np.stack([grid.x.ravel(order="F")[first], grid.y.ravel(order="F")[first]], axis=-1)
+    corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    quads = np.stack([corner.ravel(order="F") for corner in corners], axis=-1)
+    return Unstructured(points, quads, _edges(grid, number))
+
+
+def _numbers(grid: Grid) -> Indices:
+    """Return a number (ni, nj) for every node, i fastest, the same for nodes that are one."""
+    ni, nj = grid.ni, grid.nj
+    number = np.arange(ni * nj, dtype=np.int64).reshape((ni, nj), order="F")
+    if grid.topology == "o":
+        number[-1] = number[0]
+    elif grid.topology == "c":
+        wake = wake_nodes(grid.nodes[:, 0])
+        number[ni - wake :, 0] = number[:wake, 0][::-1]
+    return number
+
+
+def _edges(grid: Grid, number: Indices) -> dict[str, Indices]:
+    """Return the outer edges by part; an edge met twice lies inside (a cut) and is left out."""
+    sides: dict[Side, Indices] = {
+        "south": np.stack([number[:-1, 0], number[1:, 0]], axis=-1),
+        "east": np.stack([number[-1, :-1], number[-1, 1:]], axis=-1),
+        "north": np.stack([number[1:, -1], number[:-1, -1]], axis=-1),
+        "west": np.stack([number[0, 1:], number[0, :-1]], axis=-1),
+    }
+    every = np.sort(np.concatenate(list(sides.values())), axis=1)
+    _, inverse, counts = np.unique(every, axis=0, return_inverse=True, return_counts=True)
+    outer = np.split(counts[inverse.ravel()] == 1, np.cumsum([len(edge) for edge in sides.values()])[:-1])
+    found: dict[str, list[Indices]] = {}
+    for (side, edges), keep in zip(sides.items(), outer, strict=True):
+        unnamed = keep.copy()
+        for part in grid.parts:
+            if part.side == side:
+                within = slice(part.start, part.stop)
+                found.setdefault(part.name, []).append(edges[within][keep[within]])
+                unnamed[within] = False
+        found.setdefault(side, []).append(edges[unnamed])
+    joined = {name: np.concatenate(pieces) for name, pieces in found.items()}
+    return {name: edges for name, edges in joined.items() if len(edges)}
