@@ -1,73 +1,199 @@
-"""An airfoil: its curve, leading and trailing edge, and nodes along its wall."""
+"""An airfoil: the curve through its points, its edges, and nodes along its wall."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 
 from geometry.arrays import Floats
-from geometry.boundary import Boundary, polygon_area
+from geometry.boundary import Boundary
 from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+from geometry.section import SHARP_GAP, Section, clean_section
+from geometry.simple import Crossing, find_crossing, find_crossings
 from geometry.topology import o_boundary
+from geometry.wall import Stations, wall_arcs
 
-SHARP_GAP = 2e-4
-"""Trailing-edge gap, in chords, below which an edge counts as sharp (more real files fold without this rule)."""
+__all__ = ["SHARP_GAP", "Airfoil"]
+
+_PIECES = 8
+"""Straight pieces an interval of the curve is cut into when it is searched for crossings."""
 
 
 class Airfoil:
-    """A closed section with one leading and one trailing edge.
+    """A closed section with one trailing and one leading edge.
+
+    ::
+
+                  upper  <----.             The curve runs clockwise: it starts at the trailing edge
+               .-----------------.___       (of a blunt one, at the middle of its straight base), goes
+        LE    (                      --- TE along the lower side to the leading edge and back along the
+               '-------------------'''      upper side. The leading edge is the point of the curve that
+                  lower  ---->              is farthest from the trailing edge.
 
     Parameters
     ----------
-    points : (n, 2) around the section from the trailing edge to the trailing edge, either way round.
+    points : (n, 2) around the section, any unit, either way, from any start (`geometry.section`).
     name : what the input called it.
+    places : (n,) where each point stands in its source, such as ``line 12``, for messages.
+
+    Raises
+    ------
+    InputError
+        the points are no airfoil, or its surfaces cross; says where.
     """
 
-    def __init__(self, points: Floats, name: str = "") -> None:
+    curve: Curve
+    """Through the points; see the drawing."""
+    chord: float
+    """Distance from the leading to the trailing edge."""
+    leading_edge: Floats
+    """(2,)"""
+    trailing_edge: Floats
+    """(2,) the middle of the base when blunt."""
+    gap: float
+    """Distance between the ends of the two surfaces."""
+    blunt: bool
+    """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
+
+    def __init__(self, points: Floats, name: str = "", places: Sequence[str] = ()) -> None:
         self.name = name
-        ring = np.asarray(points, dtype=np.float64)
-        if polygon_area(ring) > 0:
-            ring = ring[::-1]
-        middle = 0.5 * (ring[0] + ring[-1])
-        self.chord = float(np.hypot(*(ring - middle).T).max())
-        self.gap = float(np.hypot(*(ring[0] - ring[-1])))
-        self.blunt = self.gap >= SHARP_GAP * self.chord
-        self.trailing_edge = middle
-        if self.blunt:
-            ring = np.concatenate([middle[None], ring])
-            corners = [0, 1, len(ring) - 1]
-        else:
-            ring = np.concatenate([middle[None], ring[1:-1]])
-            corners = [0]
-        self.curve = Curve(ring, closed=True, corners=corners)
-        self._first, self._last = (
-            (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
-        )
-        s = np.linspace(0.0, self.curve.length, 4001)
-        p = self.curve.at(s)
-        self._le = float(s[np.argmax(np.hypot(*(p - middle).T))])
-        self.leading_edge = self.curve.at(np.array([self._le]))[0]
+        section = clean_section(points)
+        self.gap, self.blunt = section.gap, section.blunt
+        self.curve = _fitted(section, places)
+        self.trailing_edge = self.curve.points[0]
+        arc = _farthest(self.curve, self.trailing_edge)
+        self.leading_edge = self.curve.at(np.array([arc]))[0]
+        self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
+        first, last = (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
+        self.stations = Stations(float(first), arc, float(last))
+
+    @cached_property
+    def wedge(self) -> float:
+        """Angle in degrees between the two surfaces over the last 1 % of the chord."""
+        first, _, last = self.stations
+        step = 0.01 * self.chord
+        lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
+        u, v = upper - b, lower - a
+        return float(np.degrees(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))
+
+    @cached_property
+    def nose_radius(self) -> float:
+        """Radius of the leading edge: of the parabola as thick as the section 2 % of the chord behind it."""
+        _, middle, _ = self.stations
+        axis = (self.trailing_edge - self.leading_edge) / self.chord
+        step = np.linspace(0.0, 0.2 * self.chord, 81)
+        sides = []
+        for sign in (-1.0, 1.0):
+            off = self.curve.at(middle + sign * step) - self.leading_edge
+            along = np.maximum.accumulate(off @ axis)
+            sides.append(float(np.interp(0.02 * self.chord, along, off @ np.array([-axis[1], axis[0]]))))
+        return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * self.chord)
+
+    def normalised(self) -> Airfoil:
+        """Return the same airfoil turned, scaled and moved to have its edges at (0, 0) and (1, 0)."""
+        axis = (self.trailing_edge - self.leading_edge) / self.chord**2
+        off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
+        return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
-        """Return ni nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise at the end."""
-        half = max(1, min((ni - 1) // 8, 8)) if self.blunt else 0
-        n = ni - 1 - 2 * half
-        n1 = n // 2
-        lower = self._first + (self._le - self._first) * 0.5 * (1 - np.cos(np.pi * np.linspace(0, 1, n1 + 1)))
-        upper = self._le + (self._last - self._le) * 0.5 * (1 - np.cos(np.pi * np.linspace(0, 1, n - n1 + 1)))
-        base = np.linspace(0, self._first, half + 1)
-        end = np.linspace(self._last, self.curve.length, half + 1)
-        nodes = self.curve.at(np.concatenate([base[:-1], lower[:-1], upper, end[1:]]))
+        """Return `ni` nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
+
+        Raises
+        ------
+        InputError
+            fewer nodes than the edges need, cells that do not fit, or a polygon so coarse that it crosses itself.
+        """
+        nodes = self.curve.at(wall_arcs(self, ni, sampling))
         nodes[-1] = nodes[0]
+        crossing = find_crossing(nodes[:-1])
+        if crossing is not None:
+            raise InputError(
+                f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}) where the section is thin",
+                "use more nodes",
+            )
         return nodes
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary within a circle around mid-chord."""
+        """Return the O boundary: this wall within a circle around mid-chord, `far_field` chords in radius."""
         if sampling.topology not in ("auto", "o"):
-            raise InputError(f"topology {sampling.topology} of an airfoil is not made yet", "use o")
-        ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
-        centre = 0.5 * (self.leading_edge + self.trailing_edge)
-        return o_boundary(
-            self.wall(ni, sampling), nj, centre, sampling.far_field * self.chord, self.curve, self.name
-        )
+            raise InputError(f"topology {sampling.topology} is not made from an airfoil", "use o")
+        if sampling.corners is not None:
+            raise InputError("an airfoil has no corners to choose", "leave --corners out")
+        body = self.normalised() if sampling.normalise else self
+        centre = 0.5 * (body.leading_edge + body.trailing_edge)
+        wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
+        radius = sampling.far_field * body.chord
+        return o_boundary(wall, sampling.nj or DEFAULT_NJ, centre, radius, body.curve, self.name)
+
+
+def _fitted(section: Section, places: Sequence[str]) -> Curve:
+    """Return the curve through a section's points, straight where it would otherwise cross itself."""
+    crossing = find_crossing(section.points)
+    if crossing is not None:
+        raise _crossed(section, crossing, places)
+    points, corners = section.points, section.corners
+    if section.blunt:  # node 0 is the middle of the base
+        points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
+    straight = np.zeros(len(points), dtype=bool)
+    while True:
+        curve = Curve(points, closed=True, corners=corners, straight=straight)
+        found = find_crossings(curve.polyline(_PIECES))
+        where = np.array([k // _PIECES for c in found for k in (c.first, c.second)], dtype=np.intp)
+        if straight[where].all():
+            return curve
+        straight[where] = True
+
+
+def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:
+    """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
+    n = len(section.points)
+    ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
+    told = [places[k] if places else f"point {k}" for k in ends]
+    return InputError(
+        f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), between {told[0]} and {told[1]} "
+        f"and between {told[2]} and {told[3]}",
+        "correct these points: no grid can be made around crossing surfaces",
+    )
+
+
+def _farthest(curve: Curve, point: Floats) -> float:
+    """Return the arc length of the place on the curve that is farthest from `point`.
+
+    Of several equally far places (a flat front) it is the middle one, so that a symmetric section keeps
+    its symmetry. Where the distance is smooth, its derivative is brought to zero.
+    """
+    s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
+    s = np.sort(s)
+    off = curve.at(s) - point
+    distance = np.hypot(off[:, 0], off[:, 1])
+    best = np.flatnonzero(distance >= distance.max() * (1 - 1e-12))
+    if best[-1] - best[0] > 1:
+        return float(0.5 * (s[best[0]] + s[best[-1]]))
+    low, high = float(s[best[0] - 1]), float(s[min(best[-1] + 1, len(s) - 1)])
+
+    def slope(arc: float) -> float:
+        at = np.array([arc])
+        return float((curve.at(at)[0] - point) @ curve.tangent(at)[0])
+
+    if slope(low) <= 0 or slope(high) >= 0:
+        return float(s[best[0]])
+    return _root(slope, low, high)
+
+
+def _root(f, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
+    """Return where a function that falls from positive at `low` to negative at `high` is zero."""
+    top, bottom = f(low), f(high)
+    for _ in range(60):
+        middle = (low * bottom - high * top) / (bottom - top)
+        value = f(middle)
+        if value == 0 or high - low < 1e-15 * high:
+            return middle
+        if value > 0:
+            low, top, bottom = middle, value, 0.5 * bottom
+        else:
+            high, bottom, top = middle, value, 0.5 * top
+    return 0.5 * (low + high)

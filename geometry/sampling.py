@@ -1,7 +1,8 @@
-"""Where nodes go along a curve: spacing laws, and the settings a user can give."""
+"""Where nodes go along a curve: the settings a user can give, and the spacing laws."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
@@ -15,6 +16,7 @@ SPACINGS: tuple[Spacing, ...] = get_args(Spacing)
 
 DEFAULT_NI = 200
 DEFAULT_NJ = 100
+MOST_NODES = 100_000
 
 
 @dataclass(frozen=True)
@@ -24,12 +26,13 @@ class Sampling:
     Parameters
     ----------
     ni, nj : nodes along xi (around the body) and eta (away from it); None means what the shape has,
-        or 200 and 100 when it is a curve.
+        and for a curve `DEFAULT_NI` and `DEFAULT_NJ`.
     topology : ``auto`` lets the shape choose.
-    spacing : law of the nodes along a wall.
+    spacing : law of the nodes along a wall; ``auto`` is for airfoils ``tanh`` with cells chosen by the
+        program, for other bodies ``uniform``.
     le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
-    far_field : radius of the outer boundary in chords (bodies: in their largest extent).
-    corners : the four points, counted from 0, that become corners of a quad domain, south-west first.
+    far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent.
+    corners : the points, counted from 0, that become the corners of a quad domain.
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
     Raises
@@ -50,40 +53,153 @@ class Sampling:
 
     def __post_init__(self) -> None:
         for name, count in (("ni", self.ni), ("nj", self.nj)):
-            if count is not None and not 2 <= count <= 100_000:
-                raise InputError(f"{name} = {count} nodes", "use 2 to 100000")
+            if count is not None and not 2 <= count <= MOST_NODES:
+                raise InputError(f"{name} is {count} nodes", f"use 2 to {MOST_NODES}")
         if self.topology != "auto" and self.topology not in TOPOLOGIES:
             raise InputError(f"topology {self.topology!r} is not known", "use auto/" + "/".join(TOPOLOGIES))
         if self.spacing not in SPACINGS:
             raise InputError(f"spacing {self.spacing!r} is not known", "use " + "/".join(SPACINGS))
         for name, size in (("le_spacing", self.le_spacing), ("te_spacing", self.te_spacing)):
-            if size is not None and not 0 < size < 0.5:
-                raise InputError(f"{name} = {size:g} chords", "use more than 0 and less than 0.5")
-        if not (np.isfinite(self.far_field) and self.far_field > 1.0):
-            raise InputError(f"far field at {self.far_field:g} chords", "use more than 1")
+            if size is not None and not 0 < size <= 0.2:
+                raise InputError(f"{name} is {size:g} chords", "use more than 0 and at most 0.2")
+        if not 1.0 < self.far_field <= 1e6:
+            raise InputError(
+                f"the far field is at {self.far_field:g} chords", "use more than 1 and at most 1e6"
+            )
+        if self.corners is not None and len(set(self.corners)) != 4:
+            raise InputError(
+                f"corners {self.corners} are not four different points", "give four point indices"
+            )
 
 
 def spacing_uniform(n: int) -> Floats:
-    """Return n values from 0 to 1 in equal steps."""
+    """Return n values from 0 to 1 in equal steps.
+
+    Examples
+    --------
+    >>> spacing_uniform(3).tolist()
+    [0.0, 0.5, 1.0]
+    """
     return np.linspace(0.0, 1.0, n)
 
 
 def spacing_cosine(n: int) -> Floats:
-    """Return n values (1 - cos(pi q)) / 2 from 0 to 1, close together at both ends."""
+    """Return n values (1 - cos(pi q)) / 2 from 0 to 1, close together at both ends.
+
+    Examples
+    --------
+    >>> spacing_cosine(3).round(12).tolist()
+    [0.0, 0.5, 1.0]
+    """
     return np.asarray(np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, n)) ** 2)
 
 
-def monotone_cubic(x: Floats, y: Floats, at: Floats) -> Floats:
-    """Return the monotone cubic through (x, y), both increasing (n,), at `at` (m,) within them.
+def spacing_tanh(n: int, first: float, last: float) -> Floats:
+    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`).
 
-    Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304: the slope at a point is a weighted
-    harmonic mean of those of its two intervals, so that no interval overshoots.
+    Examples
+    --------
+    >>> steps = np.diff(spacing_tanh(21, 0.01, 0.02))
+    >>> steps[0].round(9), steps[-1].round(9)
+    (np.float64(0.01), np.float64(0.02))
+    """
+    return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))
+
+
+@dataclass(frozen=True)
+class TanhLaw:
+    """Vinokur's two-sided stretching s(q), both 0 to 1, from its slopes ds/dq at the two ends.
+
+    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u),
+    a = sqrt(end/start),  sinh(d)/d = 1/sqrt(start end); tan and sin where that is below 1.
+    Vinokur, J. Comput. Phys. 50 (1983) 215-234.
+    """
+
+    start: float
+    end: float
+
+    def __call__(self, q: Floats) -> Floats:
+        """Return s at q (any shape)."""
+        a, b = math.sqrt(self.end / self.start), 1.0 / math.sqrt(self.start * self.end)
+        if abs(b - 1.0) < 1e-9:
+            u = np.asarray(q, dtype=np.float64)
+        elif b > 1.0:
+            d = _inverse_sinhc(b)
+            u = 0.5 + 0.5 * np.tanh(d * (np.asarray(q) - 0.5)) / math.tanh(0.5 * d)
+        else:
+            d = _inverse_sinc(b)
+            u = 0.5 + 0.5 * np.tan(d * (np.asarray(q) - 0.5)) / math.tan(0.5 * d)
+        return np.asarray(u / (a + (1.0 - a) * u))
+
+    @classmethod
+    def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
+        """Return the law whose first step of `cells` is `first` and whose last is `last`, to 1e-6 of them.
+
+        Parameters
+        ----------
+        cells : steps from 0 to 1; need not be whole when the last one goes on beyond 1.
+        first, last : parts of the whole.
+        last_part : how much of the last step lies before 1 (1 or 0.5).
+
+        Raises
+        ------
+        InputError
+            the steps do not fit: they are too large together, or too few nodes lie between them.
+        """
+        start, end = first * cells, last * cells
+        q = np.array([1.0 / cells, 1.0 - last_part / cells])
+        for _ in range(60):
+            one, other = cls(start, end)(q)
+            ratio = first / max(one, 1e-300), last * last_part / max(1.0 - other, 1e-300)
+            if max(abs(ratio[0] - 1.0), abs(ratio[1] - 1.0)) < 1e-6:
+                return cls(start, end)
+            start, end = (
+                max(value * min(max(r, 0.25), 4.0), 1e-12)
+                for value, r in zip((start, end), ratio, strict=True)
+            )
+        raise InputError(
+            f"steps of {first:.3g} and {last:.3g} at the two ends cannot be joined by {cells:g} cells",
+            "change the spacing or the number of nodes",
+        )
+
+
+def _inverse_sinhc(b: float) -> float:
+    """Return d with sinh(d)/d = b > 1, by Newton's method on the logarithm."""
+    d = math.sqrt(6.0 * (b - 1.0)) if b < 3.0 else math.log(2.0 * b) + math.log(math.log(2.0 * b))
+    for _ in range(40):
+        d = min(d, 700.0)
+        step = (math.log(math.sinh(d) / d) - math.log(b)) / (1.0 / math.tanh(d) - 1.0 / d)
+        d -= step
+        if abs(step) < 1e-13 * d:
+            break
+    return d
+
+
+def _inverse_sinc(b: float) -> float:
+    """Return d below pi with sin(d)/d = b < 1, by Newton's method on sin(d) - b d."""
+    d = math.pi * (1.0 - b) if b < 0.27 else math.sqrt(6.0 * (1.0 - b))
+    for _ in range(40):
+        step = (math.sin(d) - b * d) / (math.cos(d) - b)
+        d = min(max(d - step, 0.5 * d), 0.5 * (d + math.pi))
+        if abs(step) < 1e-14 * d:
+            break
+    return d
+
+
+def monotone_cubic(x: Floats, y: Floats, at: Floats) -> Floats:
+    """Return the monotone cubic through (x, y), both (n,) and increasing, at `at` (m,) within them.
+
+    The slope at a point is a weighted harmonic mean of those of its two intervals, so that no interval
+    overshoots: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
+
+    Examples
+    --------
+    >>> monotone_cubic(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), np.array([0.5, 2.0])).tolist()
+    [0.5, 2.0]
     """
     h, delta = np.diff(x), np.diff(y) / np.diff(x)
-    slope = np.empty(len(x))
-    if len(x) == 2:
-        slope[:] = delta[0]
-    else:
+    slope = np.full(len(x), delta[0])
+    if len(x) > 2:
         w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
         slope[1:-1] = (w1 + w2) / (w1 / delta[:-1] + w2 / delta[1:])
         for end, a, b in ((0, 0, 1), (-1, -1, -2)):

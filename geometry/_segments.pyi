@@ -1,0 +1,6 @@
+import numpy as np
+from numpy.typing import NDArray
+
+def crossing_pairs(
+    points: NDArray[np.float64], closed: bool, order: NDArray[np.intp], axis: int, limit: int, budget: int
+) -> tuple[list[tuple[int, int]], bool]: ...

@@ -1,0 +1,97 @@
+"""Where a polygon turns, and which of its points are corners."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Floats
+
+Indices: TypeAlias = NDArray[np.intp]
+
+KINK = np.radians(8.0)
+"""A turn that counts as a corner where its neighbours turn by less than a fifth of it."""
+SHARP = np.radians(40.0)
+"""A turn that counts where its neighbours turn by less than half of it, or where the points are few."""
+ALWAYS = np.radians(75.0)
+"""A turn that counts whatever its neighbours do."""
+HAIRPIN = np.radians(100.0)
+"""From here on a point may be the coarsely given round end of a thin body."""
+FEW = 12
+"""A closed polygon of at most so many points is meant as one."""
+
+
+def turning(points: Floats, *, closed: bool = False) -> Floats:
+    """Return the angle (n,) in radians by which a polygon (n, 2) turns at each point.
+
+    Left is positive; the ends of an open polygon turn by 0.
+
+    Examples
+    --------
+    >>> np.degrees(turning(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))).tolist()
+    [0.0, 90.0, 0.0]
+    """
+    ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
+    dx, dy = np.diff(ring[:, 0]), np.diff(ring[:, 1])
+    angle = np.arctan2(dx[:-1] * dy[1:] - dy[:-1] * dx[1:], dx[:-1] * dx[1:] + dy[:-1] * dy[1:])
+    return np.asarray(angle if closed else np.concatenate([[0.0], angle, [0.0]]))
+
+
+def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Indices:
+    """Return the indices of the points that are corners, in order.
+
+    A corner turns sharply while the points beside it do not: by more than `KINK` and five times as much
+    as each of them, or more than `SHARP` and twice as much, or more than `ALWAYS`. Left out is the round
+    end of a thin body given by few points, which turns by up to 155 degrees at one of them: there the
+    thickness grows like the square root of the distance, at an edge like the distance (`growth_exponent`).
+
+    Parameters
+    ----------
+    points : (n, 2), neighbours distinct.
+    closed : the last point is joined to the first.
+    few : a closed polygon of at most so many points is taken for one, not for samples of a round body.
+
+    Examples
+    --------
+    >>> find_corners(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).tolist()
+    [1]
+    """
+    angle = np.abs(turning(points, closed=closed))
+    if closed:
+        beside = np.maximum(np.roll(angle, 1), np.roll(angle, -1))
+    else:
+        beside = np.maximum(np.append(0.0, angle[:-1]), np.append(angle[1:], 0.0))
+    polygon = closed and len(points) <= few
+    sharp = (
+        (angle > KINK) & (angle > 5 * beside)
+        | (angle > SHARP) & (polygon | (angle > 2 * beside))
+        | (angle > ALWAYS)
+    )
+    found = np.flatnonzero(sharp)
+    if polygon:
+        return found
+    hairpin = angle[found] > HAIRPIN
+    round_end = [
+        h and growth_exponent(points, int(k), closed=closed) < 0.75
+        for k, h in zip(found, hairpin, strict=True)
+    ]
+    return found[~np.array(round_end, dtype=bool)]
+
+
+def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
+    """Return p where the thickness behind point k of a polygon (n, 2) grows like distance to the power p.
+
+    About 1/2 behind a round end, 1 behind a wedge, more behind a cusp; measured between the first and the
+    second points on both sides. Infinity where an open polygon has too few points beside k.
+    """
+    n = len(points)
+    if n < 5 or (not closed and not 2 <= k < n - 2):
+        return np.inf
+    a2, a1, b1, b2 = (points[(k + step) % n] for step in (-2, -1, 1, 2))
+    near, far = np.hypot(*(a1 - b1)), np.hypot(*(a2 - b2))
+    d1, d2 = (np.hypot(*(0.5 * (a + b) - points[k])) for a, b in ((a1, b1), (a2, b2)))
+    if not (0 < near and 0 < far and 0 < d1 < d2):
+        return np.inf
+    return float(np.log(far / near) / np.log(d2 / d1))

@@ -1,0 +1,95 @@
+"""Does a polygon cross itself, and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry._segments import crossing_pairs
+from geometry.arrays import Floats
+
+_BUDGET = 50_000_000
+"""Comparisons before the sweep gives way to an index tree: a quarter of a second."""
+_CHUNK = 256
+"""Segments asked about at once, so that a tangle does not fill the memory with its crossings."""
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Two segments that meet: their indices (segment k starts at point k) and the point they share."""
+
+    first: int
+    second: int
+    x: float
+    y: float
+
+
+def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
+    """Return the first place where a polygon (n, 2) crosses or touches itself, or None when it is simple.
+
+    Examples
+    --------
+    >>> find_crossing(np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]))
+    Crossing(first=0, second=2, x=0.5, y=0.5)
+    """
+    pairs = find_crossings(points, closed=closed)
+    return min(pairs, key=lambda c: (c.first, c.second), default=None)
+
+
+def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
+    """Return places where segments of a polygon (n, 2) that are not neighbours meet, `limit` at the most.
+
+    A segment that runs back along its neighbour counts too. The segments are sorted along the longer
+    extent and only those that overlap along it are compared, so that a body of n segments takes about n
+    comparisons; a shape made to defeat this is searched with shapely's tree.
+
+    Parameters
+    ----------
+    points : (n, 2), neighbours distinct; a closed polygon does not repeat its first point.
+    closed : a segment joins the last point to the first.
+    limit : enough to know about.
+    """
+    p = np.ascontiguousarray(points, dtype=np.float64)
+    end = np.roll(p, -1, axis=0) if closed else p[1:]
+    low = np.minimum(p[: len(end)], end)
+    axis = int(np.ptp(p[:, 1]) > np.ptp(p[:, 0]))
+    order = np.argsort(low[:, axis], kind="stable")
+    pairs, complete = crossing_pairs(p, closed, order, axis, limit, _BUDGET)
+    if not complete:
+        pairs = _pairs_by_tree(p, end, closed, limit)
+    return [Crossing(i, j, *_shared_point(p, end, i, j)) for i, j in pairs]
+
+
+def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tuple[int, int]]:
+    import shapely
+
+    segments = shapely.linestrings(np.stack([p[: len(end)], end], axis=1))
+    tree = shapely.STRtree(segments)
+    pairs: list[tuple[int, int]] = []
+    for start in range(0, len(segments), _CHUNK):
+        first, second = tree.query(segments[start : start + _CHUNK], predicate="intersects")
+        first = first + start
+        apart = second - first
+        real = (apart > 1) & ~(closed & (apart == len(segments) - 1))
+        pairs += zip(first[real].tolist(), second[real].tolist(), strict=True)
+        if len(pairs) >= limit:
+            break
+    return pairs[:limit]
+
+
+def _shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
+    """Return where segments i and j meet; of collinear ones, a point that both contain."""
+    a, b, c, d = p[i], end[i], p[j], end[j]
+    r, s, w = b - a, d - c, c - a
+    across = r[0] * s[1] - r[1] * s[0]
+    if abs(across) > 1e-12 * np.hypot(*r) * np.hypot(*s):
+        t = min(max((w[0] * s[1] - w[1] * s[0]) / across, 0.0), 1.0)
+        x, y = a + t * r
+    else:
+        along = r / (r @ r)
+        inside = sorted(
+            [(0.0, a), (1.0, b), (float(w @ along), c), (float((d - a) @ along), d)], key=lambda q: q[0]
+        )
+        x, y = inside[1][1]
+    return float(x), float(y)

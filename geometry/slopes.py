@@ -1,0 +1,150 @@
+"""Tangents of a spline through points: twice continuous where the points allow, limited where they do not.
+
+Slopes are derivatives by chord length, so that they are near 1 in size; every interval has one at its start
+and one at its end, which differ from the neighbours' at corners only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry._spline import solve_tridiagonal
+from geometry.arrays import Floats
+from geometry.corners import Indices, turning
+
+SLACK = 0.5
+"""How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
+LEAST_SLACK = np.radians(0.5)
+LONGEST = 2.0
+"""Largest size of a slope: a longer one makes a loop or a cusp."""
+
+
+def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
+    """Return the slopes (intervals, 2) at the start and at the end of each interval.
+
+    Between corners the curve is the cubic spline whose tangent and curvature are continuous, with a
+    parabola in the intervals next to a corner. Then `_limited` turns back tangents that would invent a bump.
+
+    Parameters
+    ----------
+    points : (n, 2), neighbours distinct; a closed curve does not repeat its first.
+    closed : there is an interval from the last point to the first.
+    corners : indices of the points where the tangent may jump.
+    """
+    if closed and corners.size == 0:
+        slope = _periodic(points)
+        start, stop = slope, np.roll(slope, -1, axis=0)
+    elif closed:
+        shift = int(corners[0])
+        ring = np.roll(points, -shift, axis=0)
+        start, stop = _pieces(np.concatenate([ring, ring[:1]]), np.append(corners - shift, len(points)))
+        start, stop = np.roll(start, shift, axis=0), np.roll(stop, shift, axis=0)
+    else:
+        start, stop = _pieces(points, np.unique(np.concatenate([[0], corners, [len(points) - 1]])))
+    return _limited(points, start, stop, closed=closed, corners=corners)
+
+
+def _pieces(points: Floats, stops: Indices) -> tuple[Floats, Floats]:
+    """Return slopes at both ends of each interval of an open curve, a spline of its own between two `stops`.
+
+    One tridiagonal system for all: a stop has two unknowns, one for each side, whose rows do not touch
+    each other. End condition: a parabola over the last interval, m_0 + m_1 = 2 delta_0.
+    """
+    chord = np.diff(points, axis=0)
+    h = np.hypot(chord[:, 0], chord[:, 1])
+    delta = chord / h[:, None]
+    doubled = np.zeros(len(points), dtype=np.intp)
+    doubled[stops[1:-1]] = 1
+    first = np.arange(len(h)) + np.cumsum(doubled)[:-1]  # row of the slope at the start of each interval
+    n = len(points) + len(stops) - 2
+    lower, diagonal, upper, right = np.zeros(n), np.ones(n), np.zeros(n), np.empty((n, 2))
+    begin, end = first[stops[:-1]], first[stops[1:] - 1] + 1
+    alone = np.diff(stops) == 1  # a single interval between corners is a straight line
+    upper[begin], lower[end] = np.where(alone, 0.0, 1.0), np.where(alone, 0.0, 1.0)
+    right[begin] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[:-1]]
+    right[end] = np.where(alone, 1.0, 2.0)[:, None] * delta[stops[1:] - 1]
+    smooth = np.ones(len(points), dtype=bool)
+    smooth[stops] = False
+    k = np.flatnonzero(smooth)
+    row = first[k]
+    lower[row], diagonal[row], upper[row] = h[k], 2 * (h[k - 1] + h[k]), h[k - 1]
+    right[row] = 3 * (h[k, None] * delta[k - 1] + h[k - 1, None] * delta[k])
+    solve_tridiagonal(lower, diagonal, upper, right)
+    return right[first], right[first + 1]
+
+
+def _periodic(points: Floats) -> Floats:
+    """Return slopes (n, 2) of the periodic spline; the corners of the matrix by Sherman and Morrison's formula."""
+    chord = np.diff(points, axis=0, append=points[:1])
+    h = np.hypot(chord[:, 0], chord[:, 1])
+    delta = chord / h[:, None]
+    before = np.roll(h, 1)
+    lower, diagonal, upper = h.copy(), 2 * (before + h), before.copy()
+    low, up, pivot = upper[-1], lower[0], -diagonal[0]
+    diagonal[0] -= pivot
+    diagonal[-1] -= low * up / pivot
+    right = np.zeros((len(h), 3))
+    right[:, :2] = 3 * (h[:, None] * np.roll(delta, 1, axis=0) + before[:, None] * delta)
+    right[0, 2], right[-1, 2] = pivot, low
+    solve_tridiagonal(lower, diagonal, upper, right)
+    v = up / pivot
+    factor = (right[0, :2] + v * right[-1, :2]) / (1 + right[0, 2] + v * right[-1, 2])
+    return np.asarray(right[:, :2] - right[:, 2:] * factor)
+
+
+def _limited(
+    points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
+) -> tuple[Floats, Floats]:
+    """Return slopes turned back into the angle between the two chords of their point, give or take the slack.
+
+    A curve without bumps leaves a point between the directions of the chords before and after it. A cubic
+    spline does not always: next to a short interval or an unmarked kink it swings out. Beside a corner,
+    where there is one chord only, the tangent may turn from it by as much as the polygon does at the
+    other end of the interval.
+    """
+    ends = np.concatenate([points, points[:1]]) if closed else points
+    chord = np.diff(ends, axis=0)
+    turn = turning(points, closed=closed)
+    turn[corners] = 0.0
+    if not closed:
+        turn[[0, -1]] = 0.0
+    at_start, at_stop = turn, np.roll(turn, -1)
+    if not closed:
+        at_start, at_stop = turn[:-1], turn[1:]
+    size = np.abs(turn)
+    around = np.maximum(size, np.maximum(np.roll(size, 1), np.roll(size, -1)))
+    slack = SLACK * around + LEAST_SLACK
+    slack_start, slack_stop = (slack, np.roll(slack, -1)) if closed else (slack[:-1], slack[1:])
+    is_corner = np.zeros(len(points), dtype=bool)
+    is_corner[corners] = True
+    if not closed:
+        is_corner[[0, -1]] = True
+    corner_start, corner_stop = (
+        (is_corner, np.roll(is_corner, -1)) if closed else (is_corner[:-1], is_corner[1:])
+    )
+    free_start = np.where(corner_start, at_stop, at_start)
+    free_stop = np.where(corner_stop, at_start, at_stop)
+    start = _turned(
+        start, chord, -np.maximum(free_start, 0) - slack_start, -np.minimum(free_start, 0) + slack_start
+    )
+    stop = _turned(stop, chord, np.minimum(free_stop, 0) - slack_stop, np.maximum(free_stop, 0) + slack_stop)
+    return start, stop
+
+
+def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
+    """Return slopes (n, 2) whose angle from the chord lies within `least` and `most`, their size within `LONGEST`."""
+    angle = np.arctan2(
+        chord[:, 0] * slope[:, 1] - chord[:, 1] * slope[:, 0],
+        chord[:, 0] * slope[:, 0] + chord[:, 1] * slope[:, 1],
+    )
+    size = np.hypot(slope[:, 0], slope[:, 1])
+    wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))
+    if wrong.size == 0:
+        return slope
+    out = slope.copy()
+    unit = chord[wrong] / np.hypot(chord[wrong, 0], chord[wrong, 1])[:, None]
+    a = np.clip(angle[wrong], least[wrong], most[wrong])
+    length = np.minimum(size[wrong], LONGEST)
+    out[wrong, 0] = length * (unit[:, 0] * np.cos(a) - unit[:, 1] * np.sin(a))
+    out[wrong, 1] = length * (unit[:, 0] * np.sin(a) + unit[:, 1] * np.cos(a))
+    return out
