@@ -9,10 +9,10 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, Literal, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from formats.output import whole_file
-from formats.registry import format_for_output
+from formats.registry import Kind, format_for_output
 from geometry.errors import InputError
 from meshonet_cli.session import Session
 
@@ -103,6 +103,7 @@ class Destination:
     text : path, path with ``{stem}``, ``{index}`` or ``{name}`` in it, or ``-``.
     fmt : format to write, or None to go by the ending.
     kind : what will be written.
+    put : writes to a path in place of the format's own function.
 
     Raises
     ------
@@ -110,10 +111,13 @@ class Destination:
         an unknown field or ending, or a format that cannot be written.
     """
 
-    def __init__(self, text: str, fmt: str | None, kind: Literal["grids", "boundaries"]) -> None:
-        self.text, self.kind = text, kind
+    def __init__(
+        self, text: str, fmt: str | None, kind: Kind = "grids", put: Callable[[Path, Any], None] | None = None
+    ) -> None:
+        self.text = text
         self.each = _has_fields(text)
         self.format = format_for_output(text, fmt, kind)
+        self._put = put or getattr(self.format, f"write_{kind}")
         self._taken: dict[str, str] = {}
         if text == "-" and sys.stdout.isatty():
             raise InputError("standard output is the terminal", "pipe it on, or write to a file", source="-o")
@@ -164,9 +168,8 @@ class Destination:
 
     def write(self, path: str, what: Iterable[Any]) -> None:
         """Write `what` to `path`, whole or not at all."""
-        put = getattr(self.format, f"write_{self.kind}")
         with whole_file(path, make_folder=self.each) as part:
-            put(part, what)
+            self._put(part, what)
 
 
 def _pattern(text: str, field: str = "stem") -> str:

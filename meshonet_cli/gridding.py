@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from itertools import chain
-from pathlib import Path
+from functools import partial
 
 from formats.registry import read_grids, read_shapes
 from geometry.boundary import Boundary
-from geometry.errors import InputError, NoValidGridError
+from geometry.errors import NoValidGridError
 from geometry.grid import Grid
 from geometry.quality import count_folded, measure, worst_cells
 from geometry.sampling import Sampling
 from geometry.shape import Shape
 from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.gates import Gate, need_percentiles
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
@@ -67,7 +67,6 @@ class Recipe:
         clock.lap("quality")
         report = Report(
             input=item.label,
-            output=None,
             method=solution.method,
             ni=grid.ni,
             nj=grid.nj,
@@ -99,86 +98,19 @@ def make_grids(
     InputError
         several members and room for one.
     """
-    destination.check_room(sources)
-    session.check_output(destination.text)
+    prepare(sources, destination, session)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
-    if destination.each or not destination.holds_many:
-        _one_file_each(found, recipe, destination, session, skip_existing)
-    else:
-        grids = _streamed(found, recipe, destination, session)
-        first = next(grids, None)
-        if first is not None:
-            destination.write(destination.text, chain([first], grids))
-    return session.finish(batch=session.members > 1)
+    deliver(
+        found, recipe.grid, destination, session, partial(_tell, recipe, session), skip_existing=skip_existing
+    )
+    return session.finish()
 
 
-def _one_file_each(
-    found: Iterator[Item[Shape]],
-    recipe: Recipe,
-    destination: Destination,
-    session: Session,
-    skip_existing: bool,
-) -> None:
-    for item in found:
-        with session.member(item.label):
-            destination.check_only(item)
-            path = destination.path(item)
-            if skip_existing and path != "-" and Path(path).exists():
-                session.skip(item.label, path)
-                continue
-            grid, report = recipe.grid(item)
-            with report.timed("write"):
-                destination.write(path, [grid])
-            _tell(report, path, recipe, session)
-
-
-def _streamed(
-    found: Iterator[Item[Shape]], recipe: Recipe, destination: Destination, session: Session
-) -> Iterator[Grid]:
-    """Yield the grids for one file; each is told of when the writer comes back for the next one."""
-    size: tuple[int, int, str] | None = None
-    for item in found:
-        made = None
-        with session.member(item.label):
-            made = recipe.grid(item)
-            size = same_size(made[0], size)
-        if made is None:
-            continue
-        grid, report = made
-        with report.timed("write"):
-            yield grid
-        _tell(report, destination.text, recipe, session)
-
-
-def same_size(grid: Grid, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
-    """Return the size of `grid`, which must be `size` unless that is None.
-
-    Raises
-    ------
-    InputError
-        it is another one.
-    """
-    own = (grid.ni, grid.nj, grid.topology)
-    if size is not None and own != size:
-        raise InputError(
-            "{}x{} {} does not fit a dataset of {}x{} {}".format(*own, *size),
-            "set --res and --topology, or write one file each",
-        )
-    return own
-
-
-def _tell(report: Report, path: str, recipe: Recipe, session: Session) -> None:
-    report.output = path
-    report.seconds["total"] = sum(report.seconds.values())
-    session.done += 1
+def _tell(recipe: Recipe, session: Session, report: Report, path: str) -> None:
+    report.finished(path)
     if report.quality.folded:
         session.warn(f"{report.input}: {report.quality.folded} folded cells are in {path}")
-    if session.as_json:
-        session.result(report.as_json())
-    else:
-        session.note(report.line() if session.members > 1 else report.lines())
-        for note in report.notes:
-            session.note(f"  note: {note}")
+    session.tell(report)
     session.gate(report.input, [told for gate in recipe.gates if (told := gate.broken(report.quality))])
 
 

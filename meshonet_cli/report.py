@@ -13,15 +13,43 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Report:
+class Timed:
+    """Something that takes time, by stage."""
+
+    input: str
+    seconds: dict[str, float] = field(default_factory=dict, kw_only=True)
+    output: str | None = field(default=None, kw_only=True)
+
+    @contextlib.contextmanager
+    def timed(self, stage: str) -> Iterator[None]:
+        """Add the time that the block takes to `stage`."""
+        begun = time.perf_counter()
+        yield
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
+
+    def finished(self, path: str | None) -> None:
+        """Note where the result is and add the stages up."""
+        self.output = path
+        self.seconds["total"] = sum(self.seconds.values())
+
+    def times(self) -> str:
+        """Return the stages for people."""
+        stages = [f"{name} {span(spent)}" for name, spent in self.seconds.items() if name != "total"]
+        return f"{span(self.seconds['total'])}: {', '.join(stages)}"
+
+    def times_json(self) -> dict[str, float]:
+        """Return the stages for JSON, to the microsecond."""
+        return {stage: round(spent, 6) for stage, spent in self.seconds.items()}
+
+
+@dataclass
+class Report(Timed):
     """The story of one grid; the fields are those of the JSON that CLI.md promises.
 
     `seconds` holds wall-clock seconds by stage: read, boundary, grid (from boundary nodes in memory to grid
     nodes in memory), guard, quality, write, and total.
     """
 
-    input: str
-    output: str | None
     method: str
     ni: int
     nj: int
@@ -31,15 +59,7 @@ class Report:
     path: tuple[str, ...] = ()
     residual: float | None = None
     cycles: int | None = None
-    seconds: dict[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
-
-    @contextlib.contextmanager
-    def timed(self, stage: str) -> Iterator[None]:
-        """Add the time that the block takes to `stage`."""
-        begun = time.perf_counter()
-        yield
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
@@ -56,7 +76,7 @@ class Report:
             "residual": self.residual,
             "cycles": self.cycles,
             "quality": quality_json(self.quality),
-            "seconds": {stage: round(spent, 6) for stage, spent in self.seconds.items()},
+            "seconds": self.times_json(),
             "notes": list(self.notes),
         }
 
@@ -64,9 +84,6 @@ class Report:
         """Return the report of a single grid for people."""
         angle = self.quality["max_angle"]
         i, j = angle.worst
-        stages = ", ".join(
-            f"{stage} {_span(spent)}" for stage, spent in self.seconds.items() if stage != "total"
-        )
         rows = {
             "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
             "residual": f"{self.residual:.1e} of the start, {self.cycles} cycles"
@@ -74,10 +91,11 @@ class Report:
             else "",
             "folded": f"{self.quality.folded} of {self.quality.cells} cells",
             "max angle": f"{angle.max:.1f} degrees at i={i}, j={j}; mean {angle.mean:.1f}",
-            "time": f"{_span(self.seconds['total'])}: {stages}",
+            "time": self.times(),
         }
         head = f"{self.input} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"
-        return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text)])
+        notes = [f"  {note}" for note in self.notes]
+        return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text), *notes])
 
     def line(self) -> str:
         """Return the report of a member of a batch for people."""
@@ -85,7 +103,7 @@ class Report:
         return (
             f"{self.input} -> {self.output}: {self.ni} x {self.nj} {self.topology}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
-            f"{self.method}{_after(self.path)}, {_span(self.seconds['total'])}"
+            f"{self.method}{_after(self.path)}, {span(self.seconds['total'])}"
         )
 
 
@@ -166,5 +184,6 @@ def _after(path: tuple[str, ...]) -> str:
     return f", then {', '.join(path)}" if path else ""
 
 
-def _span(seconds: float) -> str:
+def span(seconds: float) -> str:
+    """Return a time span for people."""
     return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"

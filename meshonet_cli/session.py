@@ -9,13 +9,33 @@ import sys
 import time
 import traceback
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 from formats.source import printable
 from geometry.errors import InputError, MeshonetError
 from meshonet_cli.report import explained
 
 GATE_NOT_MET = 1
+
+
+class Told(Protocol):
+    """A report of something that is done."""
+
+    def as_json(self) -> Mapping[str, Any]:
+        """Return what ``--json`` prints."""
+        ...
+
+    def lines(self) -> str:
+        """Return it in full."""
+        ...
+
+
+class Brief(Told, Protocol):
+    """A report that can be short, for batches."""
+
+    def line(self) -> str:
+        """Return it on one line."""
+        ...
 
 
 class Session:
@@ -71,6 +91,22 @@ class Session:
         """Tell of something the user should know even when quiet."""
         self._write(f"warning: {text}")
 
+    def tell(self, report: Brief) -> None:
+        """Tell of a member that is done: as JSON, in full when it is alone, on one line in a batch."""
+        self.done += 1
+        if self.as_json:
+            self.result(report.as_json())
+        else:
+            self.note(report.line() if self.members > 1 else report.lines())
+
+    def show(self, report: Told) -> None:
+        """Print a report that is itself the result: on standard output, in full, even when quiet."""
+        self.done += 1
+        if self.as_json:
+            self.result(report.as_json())
+        else:
+            self.print(report.lines())
+
     def note(self, text: str) -> None:
         """Tell what happened, unless quiet or speaking JSON."""
         if not (self.quiet or self.as_json):
@@ -112,10 +148,10 @@ class Session:
         self.skipped += 1
         self.note(f"{name} -> {path}: there already")
 
-    def finish(self, *, batch: bool) -> int:
+    def finish(self) -> int:
         """Tell how a batch went and return the exit code."""
         self._clear()
-        if batch and not (self.quiet or self.as_json):
+        if self.members > 1 and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
             parts = [f"{self.done} done", f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from meshonet_cli.commands import infer, solve_pde, tfi
+from meshonet_cli.commands import convert, infer, plot, quality, solve_pde, tfi
 
 
 class Command(NamedTuple):
@@ -25,4 +25,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("tfi", tfi.tfi, tfi.EXAMPLES),
     Command("solve-pde", solve_pde.solve_pde, solve_pde.EXAMPLES),
     Command("infer", infer.infer, infer.EXAMPLES),
+    Command("quality", quality.quality, quality.EXAMPLES),
+    Command("convert", convert.convert, convert.EXAMPLES),
+    Command("plot", plot.plot, plot.EXAMPLES),
 )

@@ -31,7 +31,7 @@ def infer(
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:
-    """Make grids with an operator: the best grid for its time, from any boundary, with no settings needed."""
+    """Make grids with a neural operator."""
     from meshonet_cli.batch import Destination
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids

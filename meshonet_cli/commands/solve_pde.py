@@ -48,7 +48,7 @@ def solve_pde(
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:  # fmt: skip
-    """Make smooth grids by solving an elliptic equation, to any tolerance."""
+    """Make smooth grids by solving Winslow's equations."""
     from functools import partial
 
     from meshonet_cli.batch import Destination

@@ -38,7 +38,7 @@ def tfi(
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:
-    """Make grids by transfinite interpolation: algebraic, instant, and as good as the boundary is simple."""
+    """Make grids by transfinite interpolation."""
     from meshonet_cli.batch import Destination
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids

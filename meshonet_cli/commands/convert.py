@@ -1,0 +1,63 @@
+"""``meshonet convert``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet convert grid.vts grid.p3d",
+    "meshonet convert grid.vts grid3d.msh --extrude 0.1",
+    "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
+)
+
+
+# fmt: off
+def convert(
+    files: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="IN", show_default=False,
+            help="Files to read, or - for standard input; without -o the last name is the file to write.",
+        ),
+    ],
+    output: Annotated[
+        str | None,
+        typer.Option(
+            "-o", "--output", metavar="OUT", show_default=False,
+            help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also "
+            "{name}, {index}) or one .h5.",
+        ),
+    ] = None,
+    extrude: Annotated[
+        float | None,
+        typer.Option(
+            "--extrude", metavar="H", show_default=False,
+            help="Make the grid 3D: one cell of this height in z, as 2D cases of 3D solvers need it.",
+        ),
+    ] = None,
+    from_format: o.From = None,
+    to_format: o.To = None,
+    skip_existing: o.SkipExisting = False,
+    as_json: o.AsJson = False,
+    quiet: o.Quiet = False,
+    debug: o.Debug = False,
+) -> int:
+    """Turn files from one format into another."""
+    from geometry.errors import InputError
+    from meshonet_cli.converting import convert_files
+    from meshonet_cli.session import Session
+
+    *sources, target = [*files, output] if output else files
+    if not sources:
+        remedy = f"name it: meshonet convert {files[0]} OUT"
+        raise InputError("there is no file to write", remedy, source="convert")
+    session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    return convert_files(
+        sources, target, session,
+        from_format=from_format, to_format=to_format, extrude=extrude, skip_existing=skip_existing,
+    )
+# fmt: on

@@ -1,0 +1,50 @@
+"""``meshonet quality``."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet quality grid.vts",
+    "meshonet quality grid.vts --fail-on 'max_angle>179' --fail-on 'folded>0' --json",
+    "meshonet quality grid.vts --per-cell metrics.vts",
+    "meshonet quality grid.vts --compare other.vts",
+)
+
+
+# fmt: off
+def quality(
+    grid: o.Grids,
+    fail_on: o.FailOn = None,
+    plot: Annotated[
+        str | None,
+        typer.Option("--plot", metavar="F.png", show_default=False, help="Draw it, coloured by max_angle."),
+    ] = None,
+    per_cell: Annotated[
+        str | None,
+        typer.Option("--per-cell", metavar="F.vts", show_default=False, help="Write every cell's metrics."),
+    ] = None,
+    other: Annotated[
+        str | None,
+        typer.Option("--compare", metavar="OTHER", show_default=False, help="Measure the distance to it."),
+    ] = None,
+    from_format: o.From = None,
+    as_json: o.AsJson = False,
+    quiet: o.Quiet = False,
+    debug: o.Debug = False,
+) -> int:
+    """Measure grids: folded cells, angles, skewness."""
+    from meshonet_cli.drawing import Picture, metrics_file, picture_file
+    from meshonet_cli.gates import parse_gates
+    from meshonet_cli.grading import grade_grids
+    from meshonet_cli.session import Session
+
+    session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    outputs = [picture_file(plot, None, Picture())] if plot else []
+    outputs += [metrics_file(per_cell)] if per_cell else []
+    return grade_grids(grid, session, parse_gates(fail_on), fmt=from_format, other=other, outputs=outputs)
+# fmt: on

@@ -1,0 +1,117 @@
+"""What `convert` does with each grid or boundary."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
+from formats.source import open_source
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.sampling import Sampling
+from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.delivery import deliver, prepare
+from meshonet_cli.report import Timed
+from meshonet_cli.session import Session
+
+
+@dataclass
+class Converted(Timed):
+    """What there is to tell of a file that was converted."""
+
+    what: Grid | Boundary
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        what = self.what
+        facts = {
+            "ni": what.ni,
+            "nj": what.nj,
+            "topology": what.topology,
+            "parts": [p.name for p in what.parts],
+        }
+        return {"input": self.input, "output": self.output, **facts, "seconds": self.times_json()}
+
+    def line(self) -> str:
+        """Return it for people."""
+        size = f"{self.what.ni} x {self.what.nj} nodes, {self.what.topology}"
+        return f"{self.input} -> {self.output}: {size}, {self.times()}"
+
+    lines = line
+
+
+def convert_files(
+    sources: Sequence[str],
+    output: str,
+    session: Session,
+    *,
+    from_format: str | None = None,
+    to_format: str | None = None,
+    extrude: float | None = None,
+    skip_existing: bool = False,
+) -> int:
+    """Write what `sources` hold to `output` and return the exit code.
+
+    Grids stay grids; what holds boundaries only becomes boundaries.
+
+    Parameters
+    ----------
+    extrude : height of the one cell that a 3D grid gets in z; None leaves grids flat.
+    skip_existing : pass over members whose own file is there.
+
+    Raises
+    ------
+    InputError
+        a format that cannot be written, or not in 3D; a height that is not positive.
+    """
+    boundaries = extrude is None and _writes_boundaries(sources[0], output, from_format, to_format)
+    if boundaries:
+        destination = Destination(output, to_format, "boundaries")
+    else:
+        destination = Destination(output, to_format, put=_extruder(output, to_format, extrude))
+    prepare(sources, destination, session)
+
+    def read(source: str) -> Iterator[Grid | Boundary]:
+        if not boundaries:
+            return read_grids(source, from_format)
+        return (shape.boundary(Sampling()) for shape in read_shapes(source, from_format))
+
+    def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
+        return item.what, Converted(item.label, item.what, seconds={"read": item.seconds})
+
+    def tell(report: Converted, path: str) -> None:
+        report.finished(path)
+        session.tell(report)
+
+    deliver(items(sources, read, session), make, destination, session, tell, skip_existing=skip_existing)
+    return session.finish()
+
+
+def _writes_boundaries(source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
+    """Say whether boundaries are written: the output holds nothing else, or the input does."""
+    try:
+        written = format_for_output(output, to_format, "boundaries")
+    except InputError:
+        return False
+    if written.write_grids is None:
+        return True
+    return source != "-" and format_of(open_source(source), from_format).read_grids is None
+
+
+def _extruder(
+    output: str, to_format: str | None, height: float | None
+) -> Callable[[Path, Iterable[Grid]], None] | None:
+    if height is None:
+        return None
+    if not 0 < height < float("inf"):
+        raise InputError(f"height {height:g} is not positive", "use e.g. 1", source="--extrude")
+    found = format_for_output(output, to_format)
+    write = found.write_extruded
+    if write is None:
+        able = ", ".join(other.name for other in formats() if other.write_extruded is not None)
+        raise InputError(f"{found.name} holds flat grids only", f"write one of {able}", source=output)
+    return lambda path, grids: write(path, grids, height)

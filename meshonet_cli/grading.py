@@ -1,0 +1,119 @@
+"""What `quality` does with each grid."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from formats.registry import read_grids
+from geometry.compare import Difference, compare
+from geometry.errors import BadCell, InputError
+from geometry.grid import Grid
+from geometry.quality import Quality, measure, worst_cells
+from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.gates import Gate
+from meshonet_cli.report import Timed, figure, quality_json, quality_table
+from meshonet_cli.session import Session
+
+
+@dataclass
+class Grade(Timed):
+    """What there is to tell of a grid."""
+
+    grid: Grid
+    quality: Quality
+    worst: Sequence[BadCell]
+    difference: Difference | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        told: dict[str, Any] = {
+            "input": self.input,
+            "name": self.grid.name,
+            "ni": self.grid.ni,
+            "nj": self.grid.nj,
+            "topology": self.grid.topology,
+            "folded": self.quality.folded,
+            "worst_cells": [vars(cell) for cell in self.worst],
+            "quality": quality_json(self.quality),
+        }
+        if self.difference:
+            told["compare"] = vars(self.difference) | {"at": list(self.difference.at)}
+        return told | {"seconds": self.times_json()}
+
+    def lines(self) -> str:
+        """Return the table for people."""
+        grid, quality = self.grid, self.quality
+        folded = f"{quality.folded} folded" if quality.folded else "none folded"
+        size = f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid, {quality.cells} cells"
+        rows = [f"{self.input}: {size}, {folded}", quality_table(quality)]
+        rows += [f"folded at i={c.i}, j={c.j}: x={c.x:.6g}, y={c.y:.6g}" for c in self.worst]
+        if self.difference:
+            d = self.difference
+            rows.append(
+                f"distance to the other grid: max {figure(d.max)} at i={d.at[0]}, j={d.at[1]}, "
+                f"mean {figure(d.mean)}, relative L2 {figure(d.relative_l2)}"
+            )
+        return "\n".join(rows)
+
+
+def grade_grids(
+    sources: Sequence[str],
+    session: Session,
+    gates: Sequence[Gate],
+    *,
+    fmt: str | None = None,
+    other: str | None = None,
+    outputs: Sequence[Destination] = (),
+) -> int:
+    """Measure every grid of `sources`, print what there is to tell and return the exit code.
+
+    Parameters
+    ----------
+    other : grid file to compare with: its one grid with each, or its grids one by one.
+    outputs : figures and files of metrics to write of each grid.
+    """
+    for destination in outputs:
+        destination.check_room(sources)
+    others = _partners(other) if other else None
+    for item in items(sources, lambda source: read_grids(source, fmt), session):
+        with session.member(item.label):
+            grade = _graded(item, others)
+            for destination in outputs:
+                destination.check_only(item)
+                with grade.timed("write"):
+                    destination.write(destination.path(item), [item.what])
+            grade.finished(None)
+            session.show(grade)
+            session.gate(item.label, [told for gate in gates if (told := gate.broken(grade.quality))])
+    return session.finish()
+
+
+def _graded(item: Item[Grid], others: Iterator[Grid] | None) -> Grade:
+    begun = time.perf_counter()
+    quality = measure(item.what, percentiles=True)
+    worst = worst_cells(item.what.nodes) if quality.folded else []
+    spent = {"read": item.seconds, "quality": time.perf_counter() - begun}
+    grade = Grade(item.label, item.what, quality, worst, seconds=spent)
+    if others is not None:
+        with grade.timed("compare"):
+            other = next(others, None)
+            if other is None:
+                raise InputError(
+                    "there is no grid to compare it with", "compare with one grid, or with as many"
+                )
+            grade.difference = compare(item.what, other)
+    return grade
+
+
+def _partners(text: str) -> Iterator[Grid]:
+    """Yield the grids of `text` one by one, or its only one again and again."""
+    found = read_grids(text)
+    grid, following = next(found), next(found, None)
+    yield grid
+    while following is None:
+        yield grid
+    yield following
+    yield from found

@@ -1,0 +1,65 @@
+"""What `plot` does with each grid."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from formats.registry import read_grids
+from geometry.grid import Grid
+from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.delivery import deliver, prepare
+from meshonet_cli.report import Timed
+from meshonet_cli.session import Session
+
+
+@dataclass
+class Drawn(Timed):
+    """What there is to tell of a picture."""
+
+    grid: Grid
+    metric: str | None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        facts = {
+            "ni": self.grid.ni,
+            "nj": self.grid.nj,
+            "topology": self.grid.topology,
+            "metric": self.metric,
+        }
+        return {"input": self.input, "output": self.output, **facts, "seconds": self.times_json()}
+
+    def line(self) -> str:
+        """Return it for people."""
+        colours = f"coloured by {self.metric}" if self.metric else "lines"
+        return (
+            f"{self.input} -> {self.output}: {self.grid.ni} x {self.grid.nj} nodes, {colours}, {self.times()}"
+        )
+
+    lines = line
+
+
+def plot_grids(
+    sources: Sequence[str],
+    destination: Destination,
+    metric: str | None,
+    session: Session,
+    *,
+    fmt: str | None = None,
+    skip_existing: bool = False,
+) -> int:
+    """Draw every grid of `sources` to `destination`, which knows how, and return the exit code."""
+    prepare(sources, destination, session)
+
+    def make(item: Item[Grid]) -> tuple[Grid, Drawn]:
+        return item.what, Drawn(item.label, item.what, metric, seconds={"read": item.seconds})
+
+    def tell(report: Drawn, path: str) -> None:
+        report.finished(path)
+        session.tell(report)
+
+    found = items(sources, lambda source: read_grids(source, fmt), session)
+    deliver(found, make, destination, session, tell, skip_existing=skip_existing)
+    return session.finish()

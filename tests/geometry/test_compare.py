@@ -1,0 +1,42 @@
+"""Distances between grids, against figures known by hand."""
+
+import numpy as np
+import pytest
+
+from geometry.compare import compare
+from geometry.errors import InputError
+from geometry.grid import Grid
+
+
+def lattice(ni: int, nj: int) -> np.ndarray:
+    return np.stack(
+        np.meshgrid(np.arange(ni, dtype=float), np.arange(nj, dtype=float), indexing="ij"), axis=-1
+    )
+
+
+def test_a_grid_does_not_differ_from_itself() -> None:
+    difference = compare(Grid(lattice(4, 5)), Grid(lattice(4, 5)))
+    assert (difference.max, difference.mean, difference.relative_l2) == (0, 0, 0)
+
+
+def test_one_moved_node_is_found() -> None:
+    moved = lattice(3, 3)
+    moved[1, 2] += [0.3, 0.4]
+    difference = compare(Grid(moved), Grid(lattice(3, 3)))
+    assert difference.max == pytest.approx(0.5)
+    assert difference.mean == pytest.approx(0.5 / 9)
+    assert difference.at == (1, 2)
+    assert difference.relative_l2 == pytest.approx(0.5 / np.sqrt(12))  # 12: squares about the centre
+
+
+def test_the_relative_difference_does_not_depend_on_place_or_unit() -> None:
+    moved = lattice(3, 3)
+    moved[1, 1] += [0.3, 0.4]
+    here = compare(Grid(moved), Grid(lattice(3, 3))).relative_l2
+    there = compare(Grid(moved * 1e3 + 7e3), Grid(lattice(3, 3) * 1e3 + 7e3)).relative_l2
+    assert there == pytest.approx(here, rel=1e-12)
+
+
+def test_grids_of_other_sizes_are_refused() -> None:
+    with pytest.raises(InputError, match="3x3 nodes are not comparable with 3x4; compare grids of one size"):
+        compare(Grid(lattice(3, 3)), Grid(lattice(3, 4)))
