@@ -38,6 +38,9 @@ TABLE: dict[str, Row] = {
     "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),
     "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),
+    "png": Row("formats.figure", (".png",)),
+    "svg": Row("formats.figure", (".svg",)),
+    "pdf": Row("formats.figure", (".pdf",)),
 }
 """Formats by name. Where several share an ending, writing takes the first, reading looks at the content."""
 

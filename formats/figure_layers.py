@@ -1,0 +1,185 @@
+"""What a picture of a grid is made of: coloured cells, grid lines, outlines; and what is in view."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Floats
+from geometry.grid import Grid
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+
+Box = tuple[float, float, float, float]
+"""x0, x1, y0, y1 in the grid's unit."""
+
+INK = "#1b2733"
+_BODY = "#e8eaed"
+_LINE_GAP = 6.0
+"""Least distance between neighbouring grid lines drawn, pixels, in the middle of what fills the picture."""
+_BLOCK = 1.0
+"""Least size of a coloured block of cells, pixels."""
+_SAMPLE = 200_000
+"""Cells looked at to choose the distance of lines."""
+
+
+class Part(NamedTuple):
+    """The index ranges of cells in view, and which of them are: mask (i1-i0, j1-j0)."""
+
+    i0: int
+    i1: int
+    j0: int
+    j1: int
+    mask: NDArray[np.bool_]
+
+
+def in_view(grid: Grid, box: Box) -> Part | None:
+    """Return the cells whose bounding box meets `box`, or None when none does."""
+    meets = _meets(grid.x, box[0], box[1]) & _meets(grid.y, box[2], box[3])
+    columns, rows = np.flatnonzero(meets.any(axis=1)), np.flatnonzero(meets.any(axis=0))
+    if not len(columns):
+        return None
+    i0, i1, j0, j1 = int(columns[0]), int(columns[-1]) + 1, int(rows[0]), int(rows[-1]) + 1
+    return Part(i0, i1, j0, j1, meets[i0:i1, j0:j1])
+
+
+def paint(
+    ax: Axes,
+    grid: Grid,
+    values: NDArray[Any],
+    part: Part,
+    pixels: float,
+    limits: tuple[float, float],
+    colours: str,
+    *,
+    low: bool,
+) -> QuadMesh:
+    """Colour the cells of `part` by `values` (ni-1, nj-1), a block of cells where they are below a pixel.
+
+    A block has the largest of its values, or with `low` the smallest, so that no bad cell is lost.
+    """
+    nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
+    shown = values[part.i0 : part.i1, part.j0 : part.j1]
+    columns = _blocks(_extents(nodes, part.mask, 0) * pixels)
+    rows = _blocks(_extents(nodes, part.mask, 1) * pixels)
+    shown = _reduced(np.minimum if low else np.maximum, shown, columns, rows)
+    shown = np.ma.masked_array(shown, ~_reduced(np.logical_or, part.mask, columns, rows))
+    corners = nodes[np.ix_(columns, rows)]
+    return ax.pcolormesh(
+        corners[..., 0],
+        corners[..., 1],
+        shown,
+        cmap=colours,
+        vmin=limits[0],
+        vmax=limits[1],
+        rasterized=True,
+        zorder=1,
+    )
+
+
+def rule(
+    ax: Axes, grid: Grid, part: Part, pixels: float, every: int | None, *, faint: bool
+) -> tuple[int, int]:
+    """Draw every k-th grid line and the last ones; returns k of the lines i = const and j = const."""
+    from matplotlib.collections import LineCollection
+
+    steps = (every, every) if every else _steps(grid, part, pixels)
+    along_j = [grid.nodes[i, part.j0 : part.j1 + 1] for i in _every(part.i0, part.i1, steps[0], grid.ni)]
+    along_i = [grid.nodes[part.i0 : part.i1 + 1, j] for j in _every(part.j0, part.j1, steps[1], grid.nj)]
+    width, alpha = (0.35, 0.45) if faint else (0.45, 0.8)
+    lines = LineCollection(along_j + along_i, colors=INK, linewidths=width, alpha=alpha, zorder=2)
+    ax.add_collection(lines)
+    return steps
+
+
+def outline(ax: Axes, grid: Grid) -> None:
+    """Draw the outer edges stronger, and fill the body that an O or C grid goes around."""
+    for edge in (grid.nodes[:, 0], grid.nodes[:, -1]):
+        ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
+    if grid.topology != "o":
+        for edge in (grid.nodes[0], grid.nodes[-1]):
+            ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
+    if grid.topology != "quad":
+        wall = body(grid)
+        ax.fill(wall[:, 0], wall[:, 1], facecolor=_BODY, edgecolor=INK, linewidth=0.9, zorder=3)
+
+
+def body(grid: Grid) -> Floats:
+    """Return the nodes (n, 2) of the part named ``wall`` on the south side, or of that whole side."""
+    for part in grid.parts:
+        if part.side == "south" and part.name == "wall":
+            return grid.nodes[part.start : part.stop + 1, 0]
+    return grid.nodes[:, 0]
+
+
+def _reduced(
+    by: np.ufunc, values: NDArray[Any], columns: NDArray[np.intp], rows: NDArray[np.intp]
+) -> NDArray[Any]:
+    """Return `values` joined over blocks that start at `columns` and `rows` (last entries: the ends)."""
+    joined: NDArray[Any] = by.reduceat(by.reduceat(values, columns[:-1], axis=0), rows[:-1], axis=1)
+    return joined
+
+
+def _meets(coordinate: Floats, low: float, high: float) -> NDArray[np.bool_]:
+    """Say for each cell (ni-1, nj-1) whether its span of one coordinate (ni, nj) meets [low, high]."""
+    least = np.minimum(coordinate[1:], coordinate[:-1])
+    most = np.maximum(coordinate[1:], coordinate[:-1])
+    inside = np.minimum(least[:, 1:], least[:, :-1]) <= high
+    inside &= np.maximum(most[:, 1:], most[:, :-1]) >= low
+    return inside
+
+
+def _extents(nodes: Floats, mask: NDArray[np.bool_], axis: int) -> Floats:
+    """Return the largest edge in view of each layer of cells along `axis`, in the grid's unit."""
+    step = np.diff(nodes, axis=axis)
+    length = np.hypot(step[..., 0], step[..., 1])
+    edge = length[:, :-1] if axis == 0 else length[:-1]
+    largest: Floats = np.where(mask, edge, 0.0).max(axis=1 - axis)
+    return largest
+
+
+def _blocks(sizes: Floats) -> NDArray[np.intp]:
+    """Return node indices, first and last included, that cut `sizes` (n,) at about every `_BLOCK`.
+
+    Size 0 means out of view; such layers never share a block with others, whose corners they would drag away.
+    """
+    marks = np.floor(np.concatenate([[0.0], np.cumsum(np.minimum(sizes, _BLOCK))]) / _BLOCK)
+    new = (np.diff(marks[:-1]) > 0) | np.diff(sizes > 0)
+    return np.concatenate([[0], np.flatnonzero(new) + 1, [len(sizes)]])
+
+
+def _steps(grid: Grid, part: Part, pixels: float) -> tuple[int, int]:
+    """Return how many-th lines keep `_LINE_GAP` where half of the coloured area lies."""
+    i, j = np.nonzero(part.mask)
+    stride = max(1, len(i) // _SAMPLE)
+    i, j = i[::stride] + part.i0, j[::stride] + part.j0
+    corner = grid.nodes[i, j]
+    along, across = grid.nodes[i + 1, j] - corner, grid.nodes[i, j + 1] - corner
+    area = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0])
+    steps = []
+    for edge in (along, across):
+        length = np.hypot(edge[:, 0], edge[:, 1]) * pixels
+        order = np.argsort(length)
+        weight = np.cumsum(area[order])
+        typical = length[order[min(int(np.searchsorted(weight, weight[-1] / 2)), len(order) - 1)]]
+        steps.append(max(1, _round(_LINE_GAP / typical)) if typical > 0 else 1)
+    return steps[0], steps[1]
+
+
+def _round(step: float) -> int:
+    """Return the next of 1, 2, 5, 10, 20, 50 ... that is not below `step`."""
+    if step <= 1:
+        return 1
+    power = 10.0 ** np.floor(np.log10(step))
+    return int(next(m * power for m in (1, 2, 5, 10) if m * power >= step * 0.999))
+
+
+def _every(start: int, stop: int, step: int, count: int) -> list[int]:
+    """Return the multiples of `step` from `start` to `stop`, and the last line when it is in view."""
+    first = -(-start // step) * step
+    lines = list(range(first, stop + 1, step))
+    return [*lines, count - 1] if stop == count - 1 and count - 1 not in lines else lines
