@@ -7,58 +7,16 @@ import string
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any
 
 from formats.output import whole_file
 from formats.registry import Kind, format_for_output
 from geometry.errors import InputError
+from meshonet_cli.member import Item, T
 from meshonet_cli.session import Session
 
 FIELDS = ("stem", "index", "name")
-
-
-class Named(Protocol):
-    """What inputs hold: shapes and grids have names."""
-
-    @property
-    def name(self) -> str:
-        """What the input calls it."""
-        ...
-
-
-T = TypeVar("T", bound=Named)
-
-
-@dataclass(frozen=True)
-class Item(Generic[T]):
-    """One member of a batch.
-
-    Parameters
-    ----------
-    index : counted from 0 over all inputs.
-    source : the input as the user wrote it.
-    what : the shape or grid.
-    seconds : spent on reading it.
-    only : whether its source holds nothing else.
-    """
-
-    index: int
-    source: str
-    what: T
-    seconds: float
-    only: bool = True
-
-    @property
-    def label(self) -> str:
-        """How messages call it."""
-        return self.source if self.only else f"{self.source}[{self.what.name or self.index}]"
-
-    @property
-    def stem(self) -> str:
-        """The input's file name without folder and ending."""
-        return "stdin" if self.source == "-" else Path(self.source).stem.replace(":", "")
 
 
 def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
@@ -89,6 +47,7 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
                 begun = time.perf_counter()
                 following = next(found, None)
                 only = only and following is None
+                session.batch = session.batch or len(sources) > 1 or not only
                 session.begin(source, len(sources) if len(sources) > 1 else None)
                 yield Item(index, source, item, spent, only)
                 index += 1
@@ -161,7 +120,7 @@ class Destination:
         """Raise InputError when `item` is one of several and there is room for one."""
         if not (item.only or self.holds_many):
             raise InputError(
-                f"holds several and a {self.format.name} file one",
+                f"holds several grids or boundaries, and a {self.format.name} file holds one",
                 f"use -o '{_pattern(self.text, 'index')}' or one .h5",
                 source=item.source,
             )

@@ -13,8 +13,9 @@ from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.sampling import Sampling
-from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
+from meshonet_cli.member import Item
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -34,12 +35,12 @@ class Converted(Timed):
             "topology": what.topology,
             "parts": [p.name for p in what.parts],
         }
-        return {"input": self.input, "output": self.output, **facts, "seconds": self.times_json()}
+        return {**self.member_json(), **facts, "seconds": self.times_json()}
 
     def line(self) -> str:
         """Return it for people."""
         size = f"{self.what.ni} x {self.what.nj} nodes, {self.what.topology}"
-        return f"{self.input} -> {self.output}: {size}, {self.times()}"
+        return f"{self.item.label} -> {self.output}: {size}, {self.times()}"
 
     lines = line
 
@@ -81,7 +82,7 @@ def convert_files(
         return (shape.boundary(Sampling()) for shape in read_shapes(source, from_format))
 
     def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
-        return item.what, Converted(item.label, item.what, seconds={"read": item.seconds})
+        return item.what, Converted(item, item.what)
 
     def tell(report: Converted, path: str) -> None:
         report.finished(path)

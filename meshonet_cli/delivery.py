@@ -10,7 +10,8 @@ from typing import Protocol, TypeVar
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
-from meshonet_cli.batch import Destination, Item, Named
+from meshonet_cli.batch import Destination
+from meshonet_cli.member import Item, Named
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -58,7 +59,12 @@ def deliver(
     tell : is given the report and the path when the member is written.
     skip_existing : pass over members whose own file is there.
     """
-    if destination.each or not destination.holds_many:
+    leading = next(found, None)
+    if leading is None:
+        return
+    destination.check_only(leading)
+    found = chain([leading], found)
+    if destination.each or not session.batch:
         _one_file_each(found, make, destination, session, tell, skip_existing)
         return
     stream = _streamed(found, make, destination, session, tell)
@@ -76,8 +82,7 @@ def _one_file_each(
     skip_existing: bool,
 ) -> None:
     for item in found:
-        with session.member(item.label):
-            destination.check_only(item)
+        with session.member(item.label, item.source):
             path = destination.path(item)
             if skip_existing and path != "-" and Path(path).exists():
                 session.skip(item.label, path)
@@ -99,7 +104,7 @@ def _streamed(
     size: tuple[int, int, str] | None = None
     for item in found:
         made = None
-        with session.member(item.label):
+        with session.member(item.label, item.source):
             made = make(item)
             size = _same_size(made[0], size)
         if made is None:

@@ -12,8 +12,9 @@ from geometry.compare import Difference, compare
 from geometry.errors import BadCell, InputError
 from geometry.grid import Grid
 from geometry.quality import Quality, measure, worst_cells
-from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.batch import Destination, items
 from meshonet_cli.gates import Gate
+from meshonet_cli.member import Item
 from meshonet_cli.report import Timed, figure, quality_json, quality_table
 from meshonet_cli.session import Session
 
@@ -30,8 +31,8 @@ class Grade(Timed):
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         told: dict[str, Any] = {
-            "input": self.input,
-            "name": self.grid.name,
+            "input": self.item.source,
+            "name": self.item.what.name,
             "ni": self.grid.ni,
             "nj": self.grid.nj,
             "topology": self.grid.topology,
@@ -48,7 +49,7 @@ class Grade(Timed):
         grid, quality = self.grid, self.quality
         folded = f"{quality.folded} folded" if quality.folded else "none folded"
         size = f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid, {quality.cells} cells"
-        rows = [f"{self.input}: {size}, {folded}", quality_table(quality)]
+        rows = [f"{self.item.label}: {size}, {folded}", quality_table(quality)]
         rows += [f"folded at i={c.i}, j={c.j}: x={c.x:.6g}, y={c.y:.6g}" for c in self.worst]
         if self.difference:
             d = self.difference
@@ -79,7 +80,7 @@ def grade_grids(
         destination.check_room(sources)
     others = _partners(other) if other else None
     for item in items(sources, lambda source: read_grids(source, fmt), session):
-        with session.member(item.label):
+        with session.member(item.label, item.source):
             grade = _graded(item, others)
             for destination in outputs:
                 destination.check_only(item)
@@ -95,8 +96,8 @@ def _graded(item: Item[Grid], others: Iterator[Grid] | None) -> Grade:
     begun = time.perf_counter()
     quality = measure(item.what, percentiles=True)
     worst = worst_cells(item.what.nodes) if quality.folded else []
-    spent = {"read": item.seconds, "quality": time.perf_counter() - begun}
-    grade = Grade(item.label, item.what, quality, worst, seconds=spent)
+    grade = Grade(item, item.what, quality, worst)
+    grade.seconds["quality"] = time.perf_counter() - begun
     if others is not None:
         with grade.timed("compare"):
             other = next(others, None)

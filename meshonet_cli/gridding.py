@@ -14,9 +14,10 @@ from geometry.grid import Grid
 from geometry.quality import count_folded, measure, worst_cells
 from geometry.sampling import Sampling
 from geometry.shape import Shape
-from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.gates import Gate, need_percentiles
+from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
@@ -51,7 +52,7 @@ class Recipe:
         NoValidGridError
             cells are folded, and that was not allowed.
         """
-        clock = Clock(read=item.seconds)
+        clock = Clock()
         boundary = item.what.boundary(self.sampling)
         clock.lap("boundary")
         solution = self.method(boundary)
@@ -66,7 +67,7 @@ class Recipe:
         quality = measure(grid, percentiles=need_percentiles(self.gates))
         clock.lap("quality")
         report = Report(
-            input=item.label,
+            item,
             method=solution.method,
             ni=grid.ni,
             nj=grid.nj,
@@ -76,9 +77,9 @@ class Recipe:
             path=solution.path,
             residual=solution.residual,
             cycles=solution.cycles,
-            seconds=clock.seconds,
             notes=solution.notes,
         )
+        report.seconds |= clock.seconds
         return grid.with_provenance(**provenance(), **self.facts), report
 
 
@@ -109,16 +110,16 @@ def make_grids(
 def _tell(recipe: Recipe, session: Session, report: Report, path: str) -> None:
     report.finished(path)
     if report.quality.folded:
-        session.warn(f"{report.input}: {report.quality.folded} folded cells are in {path}")
+        session.warn(f"{report.item.label}: {report.quality.folded} folded cells are in {path}")
     session.tell(report)
-    session.gate(report.input, [told for gate in recipe.gates if (told := gate.broken(report.quality))])
+    session.gate(report.item.label, [told for gate in recipe.gates if (told := gate.broken(report.quality))])
 
 
 class Clock:
     """Wall-clock seconds by stage."""
 
-    def __init__(self, **spent: float) -> None:
-        self.seconds = dict(spent)
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
         self._last = time.perf_counter()
 
     def lap(self, stage: str, inside: dict[str, float] | None = None) -> None:

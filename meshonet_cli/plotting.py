@@ -8,8 +8,9 @@ from typing import Any
 
 from formats.registry import read_grids
 from geometry.grid import Grid
-from meshonet_cli.batch import Destination, Item, items
+from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
+from meshonet_cli.member import Item
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -29,14 +30,12 @@ class Drawn(Timed):
             "topology": self.grid.topology,
             "metric": self.metric,
         }
-        return {"input": self.input, "output": self.output, **facts, "seconds": self.times_json()}
+        return {**self.member_json(), **facts, "seconds": self.times_json()}
 
     def line(self) -> str:
         """Return it for people."""
         colours = f"coloured by {self.metric}" if self.metric else "lines"
-        return (
-            f"{self.input} -> {self.output}: {self.grid.ni} x {self.grid.nj} nodes, {colours}, {self.times()}"
-        )
+        return f"{self.item.label} -> {self.output}: {self.grid.ni} x {self.grid.nj} nodes, {colours}, {self.times()}"
 
     lines = line
 
@@ -54,7 +53,7 @@ def plot_grids(
     prepare(sources, destination, session)
 
     def make(item: Item[Grid]) -> tuple[Grid, Drawn]:
-        return item.what, Drawn(item.label, item.what, metric, seconds={"read": item.seconds})
+        return item.what, Drawn(item, item.what, metric)
 
     def tell(report: Drawn, path: str) -> None:
         report.finished(path)

@@ -8,17 +8,25 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from meshonet_cli.member import Item
+
 if TYPE_CHECKING:
     from geometry.quality import Quality
 
 
+STAGES = ("read", "boundary", "grid", "guard", "quality", "compare", "write")
+
+
 @dataclass
 class Timed:
-    """Something that takes time, by stage."""
+    """Something done to a member of a batch: which, where the result is, and seconds by stage."""
 
-    input: str
-    seconds: dict[str, float] = field(default_factory=dict, kw_only=True)
-    output: str | None = field(default=None, kw_only=True)
+    item: Item[Any]
+    seconds: dict[str, float] = field(init=False)
+    output: str | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        self.seconds = {"read": self.item.seconds}
 
     @contextlib.contextmanager
     def timed(self, stage: str) -> Iterator[None]:
@@ -30,7 +38,14 @@ class Timed:
     def finished(self, path: str | None) -> None:
         """Note where the result is and add the stages up."""
         self.output = path
+        known = [stage for stage in STAGES if stage in self.seconds]
+        others = [stage for stage in self.seconds if stage not in STAGES]
+        self.seconds = {stage: self.seconds[stage] for stage in known + others}
         self.seconds["total"] = sum(self.seconds.values())
+
+    def member_json(self) -> dict[str, Any]:
+        """Return for JSON which member this is, and where its result."""
+        return {"input": self.item.source, "name": self.item.what.name, "output": self.output}
 
     def times(self) -> str:
         """Return the stages for people."""
@@ -64,8 +79,7 @@ class Report(Timed):
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         return {
-            "input": self.input,
-            "output": self.output,
+            **self.member_json(),
             "method": self.method,
             "model": self.model,
             "ni": self.ni,
@@ -93,7 +107,7 @@ class Report(Timed):
             "max angle": f"{angle.max:.1f} degrees at i={i}, j={j}; mean {angle.mean:.1f}",
             "time": self.times(),
         }
-        head = f"{self.input} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"
+        head = f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"
         notes = [f"  {note}" for note in self.notes]
         return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text), *notes])
 
@@ -101,7 +115,7 @@ class Report(Timed):
         """Return the report of a member of a batch for people."""
         angle = self.quality["max_angle"].max
         return (
-            f"{self.input} -> {self.output}: {self.ni} x {self.nj} {self.topology}, "
+            f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} {self.topology}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
             f"{self.method}{_after(self.path)}, {span(self.seconds['total'])}"
         )

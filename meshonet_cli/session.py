@@ -54,32 +54,33 @@ class Session:
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
         self.quiet, self.as_json, self.debug = quiet, as_json, debug
         self.worst = 0
+        self.batch = False
         self.members = self.done = self.failed = self.skipped = 0
         self._begun = time.perf_counter()
         self._bar = not quiet and sys.stderr.isatty() and os.environ.get("TERM") != "dumb"
         self._bar_shown = False
 
     @contextlib.contextmanager
-    def member(self, name: str) -> Iterator[None]:
-        """Report an error of the block as that of the member `name`, and go on after it."""
+    def member(self, label: str, source: str | None = None) -> Iterator[None]:
+        """Report an error of the block as that of the member `label` (of `source`), and go on after it."""
         try:
             yield
         except (KeyboardInterrupt, GeneratorExit, BrokenPipeError):
             raise
         except Exception as error:
-            self.fail(name, error)
+            self.fail(label, source or label, error)
 
-    def fail(self, name: str, error: Exception) -> None:
+    def fail(self, label: str, source: str, error: Exception) -> None:
         """Tell of a member that failed."""
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
-        told = explained(error, name)
+        told = explained(error, label)
         if self.debug:
             self._write("".join(traceback.format_exception(error)).rstrip())
         self._write(f"error: {told}")
         if self.as_json:
-            self.result({"input": name, "output": None, "error": told, "exit_code": code})
+            self.result({"input": source, "output": None, "error": told, "exit_code": code})
 
     def gate(self, name: str, problems: Sequence[str]) -> None:
         """Tell of gates that a member did not meet."""
@@ -97,7 +98,7 @@ class Session:
         if self.as_json:
             self.result(report.as_json())
         else:
-            self.note(report.line() if self.members > 1 else report.lines())
+            self.note(report.line() if self.batch else report.lines())
 
     def show(self, report: Told) -> None:
         """Print a report that is itself the result: on standard output, in full, even when quiet."""
@@ -151,7 +152,7 @@ class Session:
     def finish(self) -> int:
         """Tell how a batch went and return the exit code."""
         self._clear()
-        if self.members > 1 and not (self.quiet or self.as_json):
+        if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
             parts = [f"{self.done} done", f"{self.skipped} there already" if self.skipped else "",
                      f"{self.failed} failed" if self.failed else ""]  # fmt: skip

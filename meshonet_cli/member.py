@@ -1,0 +1,50 @@
+"""One member of a batch, under the names by which it is told of and written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Generic, Protocol, TypeVar
+
+
+class Named(Protocol):
+    """What inputs hold: shapes and grids have names."""
+
+    @property
+    def name(self) -> str:
+        """What the input calls it."""
+        ...
+
+
+T = TypeVar("T", bound=Named)
+
+
+@dataclass(frozen=True)
+class Item(Generic[T]):
+    """One member of a batch.
+
+    Parameters
+    ----------
+    index : counted from 0 over all inputs.
+    source : the input as the user wrote it.
+    what : the shape or grid.
+    seconds : spent on reading it.
+    only : whether its source holds nothing else.
+    """
+
+    index: int
+    source: str
+    what: T
+    seconds: float
+    only: bool = True
+
+    @property
+    def label(self) -> str:
+        """How messages call it."""
+        source = "stdin" if self.source == "-" else self.source
+        return source if self.only else f"{source}[{self.what.name or self.index}]"
+
+    @property
+    def stem(self) -> str:
+        """The input's file name without folder and ending."""
+        return "stdin" if self.source == "-" else Path(self.source).stem.replace(":", "")
