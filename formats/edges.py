@@ -10,6 +10,9 @@ from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.parts import Part
 
+_HUGE = 1e150
+_SEAM = 1e-6
+
 
 def boundary_of(grid: Grid) -> Boundary:
     """Return the four outer edges of `grid`, with its topology, parts and name.
@@ -34,28 +37,55 @@ def boundary_of(grid: Grid) -> Boundary:
 def recovered(nodes: Floats, name: str = "") -> Grid:
     """Return the grid of nodes whose file says nothing about topology or orientation.
 
-    Left-handed nodes (most of the area negative) get i reversed. Columns 0 and ni-1 that are the same
-    make an O grid; rows 0 and nj-1 that are the same too, once turned by a quarter so that i runs
-    around. The smaller of the two loops is the body and becomes the south side. A south side that comes
-    back along its own first nodes makes a C grid.
+    Left-handed nodes get i reversed. Columns 0 and ni-1 that are the same, to a millionth of the first
+    step, make an O grid; rows 0 and nj-1 that are the same too, once turned by a quarter so that i runs
+    around. The smaller of the two loops is the body and becomes the south side. A side that comes back
+    along its own first nodes becomes the south side of a C grid.
 
     Parameters
     ----------
     nodes : (ni, nj, 2).
+
+    Raises
+    ------
+    InputError
+        a coordinate is not finite, or so large that areas are not.
     """
-    nodes = right_handed(nodes)
-    if not _same(nodes[0], nodes[-1]) and _same(nodes[:, 0], nodes[:, -1]):
+    nodes = right_handed(usable(nodes))
+    if not _closed(nodes) and _closed(_quarter_turn(nodes)):
         nodes = _quarter_turn(nodes)
-    if _same(nodes[0], nodes[-1]):
+    if _closed(nodes):
         if abs(polygon_area(nodes[:-1, 0])) > abs(polygon_area(nodes[:-1, -1])):
             nodes = nodes[::-1, ::-1]
+        if not np.array_equal(nodes[0], nodes[-1]):
+            nodes = np.concatenate([nodes[:-1], nodes[:1]])
         return Grid(nodes, "o", name=name)
-    for turned in (nodes, nodes[::-1, ::-1]):
+    turned = nodes
+    for _ in range(4):
         wake = wake_nodes(turned[:, 0])
         if wake > 1:
             ni, nj = turned.shape[:2]
             return Grid(turned, "c", c_parts(ni, nj, wake), name)
+        turned = _quarter_turn(turned)
     return Grid(nodes, "quad", name=name)
+
+
+def usable(nodes: Floats) -> Floats:
+    """Return `nodes` (ni, nj, 2) as they are.
+
+    Raises
+    ------
+    InputError
+        a coordinate is not finite, or so large that products of two are not.
+    """
+    fine = np.abs(nodes) < _HUGE  # NaN compares false
+    if not fine.all():
+        i, j, axis = (int(k) for k in np.argwhere(~fine)[0])
+        raise InputError(
+            f"node i={i}, j={j} has {'xy'[axis]} = {nodes[i, j, axis]:.6g}",
+            "check the file for wrong numbers",
+        )
+    return nodes
 
 
 def right_handed(nodes: Floats) -> Floats:
@@ -100,8 +130,11 @@ def known_topology(text: str) -> Topology:
     raise InputError(f"topology {text[:20]!r} is not known", "use quad, o or c")
 
 
-def _same(one: Floats, other: Floats) -> bool:
-    return one.shape == other.shape and bool(np.array_equal(one, other))
+def _closed(nodes: Floats) -> bool:
+    """Say whether column ni-1 of `nodes` (ni, nj, 2) lies on column 0, to rounding in the file's digits."""
+    gap = np.abs(nodes[-1] - nodes[0]).max(axis=1)
+    step = np.abs(nodes[1] - nodes[0]).max(axis=1)
+    return len(nodes) > 3 and bool((gap <= _SEAM * step).all())
 
 
 def _quarter_turn(nodes: Floats) -> Floats:

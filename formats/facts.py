@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from formats.edges import known_topology, recovered
+from formats.edges import known_topology, recovered, usable
 from formats.source import printable
 from geometry.arrays import Floats
 from geometry.errors import InputError
@@ -46,7 +46,7 @@ def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "")
     except (ValueError, RecursionError):
         provenance = {}
     topology = known_topology(facts["topology"][0])
-    return Grid(nodes, topology, parts, name, provenance if isinstance(provenance, dict) else {})
+    return Grid(usable(nodes), topology, parts, name, provenance if isinstance(provenance, dict) else {})
 
 
 def plain(value: object) -> object:

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from formats.edges import boundary_of
+from formats.edges import boundary_of, usable
 from formats.facts import plain
 from formats.format import Format
 from formats.hdf5_check import Checked, checked
@@ -184,7 +184,11 @@ def read_grids(source: Source) -> Iterator[Grid]:
                 if not isinstance(facts, dict):
                     raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
                 yield Grid(
-                    data.sample("nodes", k), data.topology, _parts(data, k), data.text("names", k), facts
+                    usable(data.sample("nodes", k)),
+                    data.topology,
+                    _parts(data, k),
+                    data.text("names", k),
+                    facts,
                 )
 
 

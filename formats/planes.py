@@ -25,6 +25,11 @@ def planar(coordinates: Sequence[Floats]) -> Floats:
     InputError
         the grid is truly three-dimensional, or its plane is curved.
     """
+    with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
+        return _planar(coordinates)
+
+
+def _planar(coordinates: Sequence[Floats]) -> Floats:
     dims = coordinates[0].shape
     told = "x".join(str(n) for n in dims)
     for axis in sorted(range(3), key=lambda k: (dims[k], -k)):

@@ -14,12 +14,14 @@ from formats.plot3d.write import Put, put_binary, put_fortran, put_text, write
 from geometry.grid import Grid
 
 
-def _format(name: str, suffixes: tuple[str, ...], description: str, put: Put) -> Format:
+def _format(
+    name: str, suffixes: tuple[str, ...], description: str, put: Put, heights: tuple[float, ...] = ()
+) -> Format:
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-        write(path, grids, put)
+        write(path, grids, put, heights)
 
     def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-        write(path, grids, put, thickness)
+        write(path, grids, put, (0.0, thickness))
 
     return Format(
         name=name,
@@ -34,7 +36,10 @@ def _format(name: str, suffixes: tuple[str, ...], description: str, put: Put) ->
 
 
 FORMATS = (
-    _format("plot3d-ascii", (".p3d", ".xyz", ".fmt", ".x", ".dat"), "Plot3D text", put_text),
-    _format("plot3d-binary", (".bin", ".xyz", ".p3d"), "Plot3D C binary, float64", put_binary),
-    _format("plot3d-fortran", (".ufmt", ".unf"), "Plot3D Fortran records, float64", put_fortran),
+    _format("plot3d-ascii", (".p3d", ".xyz", ".fmt", ".x", ".dat"), "Plot3D text, 2D", put_text),
+    # with z and nk = 1: VTK takes a counted two-dimensional float64 file for a three-dimensional float32 one
+    _format(
+        "plot3d-binary", (".bin", ".xyz", ".p3d"), "Plot3D C binary, float64, nk = 1", put_binary, (0.0,)
+    ),
+    _format("plot3d-fortran", (".ufmt", ".unf"), "Plot3D Fortran records, float64, 2D", put_fortran),
 )

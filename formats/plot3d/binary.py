@@ -77,10 +77,13 @@ def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], told: str, r
     def block(k: int) -> Sequence[Floats]:
         nodes, at = prod(layout.dims[k]), starts[k]
         values: NDArray[Any] = np.frombuffer(stream, dtype, layout.axes * nodes, at)
-        if by_planes:
-            arrays = list(values.reshape(2, 3, -1).swapaxes(0, 1).reshape(3, -1).astype(np.float64))
-        else:
-            arrays = list(values.reshape(layout.axes, -1).astype(np.float64))
+        rows = (
+            values.reshape(2, 3, -1).swapaxes(0, 1).reshape(3, -1)
+            if by_planes
+            else values.reshape(layout.axes, -1)
+        )
+        with np.errstate(invalid="ignore"):  # a wrong reading meets signalling NaN
+            arrays = list(rows.astype(np.float64))
         if layout.iblank:
             flags = np.frombuffer(stream, dtype.byteorder + "i4", nodes, at + values.nbytes)
             arrays.append(flags.astype(np.float64))

@@ -27,30 +27,30 @@ class Block:
     Parameters
     ----------
     grid : the grid.
-    thickness : height of a second plane; None for a plane grid without z.
+    heights : z of each plane; none of them makes a two-dimensional block without z.
     """
 
-    def __init__(self, grid: Grid, thickness: float | None) -> None:
-        self.grid, self.thickness = grid, thickness
-        self.dims = (grid.ni, grid.nj) if thickness is None else (grid.ni, grid.nj, 2)
+    def __init__(self, grid: Grid, heights: tuple[float, ...]) -> None:
+        self.grid, self.heights = grid, heights
+        self.dims = (grid.ni, grid.nj, len(heights)) if heights else (grid.ni, grid.nj)
 
     def arrays(self) -> Iterator[Floats]:
         """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
-        planes = 1 if self.thickness is None else 2
+        planes = max(1, len(self.heights))
         for axis in (0, 1):
             flat = self.grid.nodes[..., axis].ravel(order="F")
-            yield flat if planes == 1 else np.tile(flat, 2)
-        if self.thickness is not None:
-            yield np.repeat((0.0, self.thickness), self.grid.ni * self.grid.nj)
+            yield flat if planes == 1 else np.tile(flat, planes)
+        if self.heights:
+            yield np.repeat(np.array(self.heights), self.grid.ni * self.grid.nj)
 
     @property
     def bytes(self) -> int:
         """Bytes of all coordinates."""
-        planes = 2 if self.thickness is None else 6
-        return 8 * planes * self.grid.ni * self.grid.nj
+        numbers = 3 * len(self.heights) or 2
+        return 8 * numbers * self.grid.ni * self.grid.nj
 
 
-def write(path: Path, grids: Iterable[Grid], put: Put, thickness: float | None = None) -> None:
+def write(path: Path, grids: Iterable[Grid], put: Put, heights: tuple[float, ...] = ()) -> None:
     """Write the blocks of `grids` with one of the ways below.
 
     Raises
@@ -58,7 +58,7 @@ def write(path: Path, grids: Iterable[Grid], put: Put, thickness: float | None =
     InputError
         there is no grid.
     """
-    blocks = [Block(grid, thickness) for grid in grids]
+    blocks = [Block(grid, heights) for grid in grids]
     if not blocks:
         raise InputError("there is no grid to write", "check the input")
     with path.open("wb") as stream:
