@@ -105,8 +105,9 @@ def _streamed(
     for item in found:
         made = None
         with session.member(item.label, item.source):
-            made = make(item)
-            size = _same_size(made[0], size)
+            result = make(item)
+            size = _same_size(result[0], size)
+            made = result
         if made is None:
             continue
         what, report = made

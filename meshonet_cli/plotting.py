@@ -35,7 +35,8 @@ class Drawn(Timed):
     def line(self) -> str:
         """Return it for people."""
         colours = f"coloured by {self.metric}" if self.metric else "lines"
-        return f"{self.item.label} -> {self.output}: {self.grid.ni} x {self.grid.nj} nodes, {colours}, {self.times()}"
+        size = f"{self.grid.ni} x {self.grid.nj} nodes"
+        return f"{self.item.label} -> {self.output}: {size}, {colours}, {self.times()}"
 
     lines = line
 
