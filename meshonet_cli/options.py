@@ -56,10 +56,16 @@ Resolution = Annotated[
     ),
 ]
 TopologyOption = Annotated[
-    TopologyName, typer.Option("--topology", help="Kind of grid: four-sided, or O around a body.")
+    TopologyName,
+    typer.Option(
+        "--topology", metavar="auto|quad|o", help="Kind of grid: four-sided (quad), or O around a body."
+    ),
 ]
 SpacingOption = Annotated[
-    SpacingName, typer.Option("--spacing", help="Spacing of the nodes along the walls.")
+    SpacingName,
+    typer.Option(
+        "--spacing", metavar="auto|uniform|cosine|tanh|curvature", help="Spacing of the nodes along walls."
+    ),
 ]
 LeSpacing = Annotated[
     float | None,
@@ -167,8 +173,31 @@ def four_corners(text: str) -> tuple[int, int, int, int] | None:
     if len(words) != 4 or not all(re.fullmatch(r"\s*\d{1,9}\s*", word, re.ASCII) for word in words):
         from geometry.errors import InputError
 
-        raise InputError(
-            f"{text!r} is not four points", "use auto or I,J,K,L, e.g. 0,40,60,100", source="--corners"
-        )
+        problem = f"{text!r} is not four points"
+        raise InputError(problem, "use auto or I,J,K,L, e.g. 0,40,60,100", source="--corners")
     a, b, c, d = (int(word) for word in words)
     return a, b, c, d
+
+
+def polish_steps(text: str) -> Literal["auto", "off"] | int:
+    """Return the steps of ``auto``, ``off`` or a number.
+
+    Raises
+    ------
+    InputError
+        `text` is none of them.
+
+    Examples
+    --------
+    >>> polish_steps("off"), polish_steps("3")
+    ('off', 3)
+    """
+    if text == "auto":
+        return "auto"
+    if text == "off":
+        return "off"
+    if not re.fullmatch(r"\d{1,3}", text, re.ASCII):
+        from geometry.errors import InputError
+
+        raise InputError(f"{text!r} is not a number of steps", "use auto, off or e.g. 2", source="--polish")
+    return int(text)

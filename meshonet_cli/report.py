@@ -100,7 +100,7 @@ class Report(Timed):
         i, j = angle.worst
         rows = {
             "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
-            "residual": f"{self.residual:.1e} of the start, {self.cycles} cycles"
+            "residual": f"{self.residual:.1e} after {self.cycles} cycles"
             if self.residual is not None
             else "",
             "folded": f"{self.quality.folded} of {self.quality.cells} cells",

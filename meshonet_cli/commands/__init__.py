@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from meshonet_cli.commands import convert, infer, plot, quality, solve_pde, tfi
+from meshonet_cli.commands import convert, infer, models, plot, quality, sample_boundary, solve_pde, tfi
 
 
 class Command(NamedTuple):
@@ -22,10 +22,12 @@ class Command(NamedTuple):
 
 
 COMMANDS: tuple[Command, ...] = (
+    Command("sample-boundary", sample_boundary.sample_boundary, sample_boundary.EXAMPLES),
     Command("tfi", tfi.tfi, tfi.EXAMPLES),
     Command("solve-pde", solve_pde.solve_pde, solve_pde.EXAMPLES),
     Command("infer", infer.infer, infer.EXAMPLES),
     Command("quality", quality.quality, quality.EXAMPLES),
     Command("convert", convert.convert, convert.EXAMPLES),
     Command("plot", plot.plot, plot.EXAMPLES),
+    Command("models", models.models, models.EXAMPLES),
 )

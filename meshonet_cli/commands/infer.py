@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from meshonet_cli import options as o
 
 EXAMPLES = (
@@ -11,10 +15,23 @@ EXAMPLES = (
 )
 
 
+# fmt: off
 def infer(
     boundary: o.Boundaries,
     output: o.Output,
     res: o.Resolution = None,
+    model: Annotated[
+        str | None,
+        typer.Option(
+            "--model", metavar="NAME|PATH", show_default=False,
+            help="Operator: a shipped one, a .safetensors file, or base for none. "
+            "[default: the one shipped for the topology; see meshonet models]",
+        ),
+    ] = None,
+    polish: Annotated[
+        str,
+        typer.Option("--polish", metavar="auto|off|N", help="Elliptic steps after the operator."),
+    ] = "auto",
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -32,19 +49,22 @@ def infer(
     debug: o.Debug = False,
 ) -> int:
     """Make grids with a neural operator."""
+    from functools import partial
+
     from meshonet_cli.batch import Destination
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids
     from meshonet_cli.session import Session
-    from solvers.elliptic.solve import solve
+    from solvers.neural.operator import infer as operate
 
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        solve,
+        partial(operate, model=model, polish=o.polish_steps(polish)),
         allow_invalid,
         parse_gates(fail_on),
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")
     return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)
+# fmt: on

@@ -20,7 +20,8 @@ def tfi(
     output: o.Output,
     res: o.Resolution = None,
     blending: Annotated[
-        BlendingName, typer.Option("--blending", help="Parameter along the edges.")
+        BlendingName,
+        typer.Option("--blending", metavar="arclength|linear", help="What the edges are blended by."),
     ] = "arclength",
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",

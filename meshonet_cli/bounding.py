@@ -1,0 +1,67 @@
+"""What `sample-boundary` does with each shape."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from formats.registry import read_shapes
+from geometry.boundary import Boundary
+from geometry.sampling import Sampling
+from geometry.shape import Shape
+from meshonet_cli.batch import Destination, items
+from meshonet_cli.delivery import deliver, prepare
+from meshonet_cli.member import Item
+from meshonet_cli.report import Timed
+from meshonet_cli.session import Session
+
+
+@dataclass
+class Sampled(Timed):
+    """What there is to tell of a boundary."""
+
+    boundary: Boundary
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        edges = self.boundary
+        parts = [part.name for part in edges.parts]
+        facts = {"ni": edges.ni, "nj": edges.nj, "topology": edges.topology, "parts": parts}
+        return {**self.member_json(), **facts, "seconds": self.times_json()}
+
+    def line(self) -> str:
+        """Return it for people."""
+        size = f"{self.boundary.ni} x {self.boundary.nj} nodes, {self.boundary.topology}"
+        return f"{self.item.label} -> {self.output}: {size}, {self.times()}"
+
+    lines = line
+
+
+def sample_shapes(
+    sources: Sequence[str],
+    sampling: Sampling,
+    destination: Destination,
+    session: Session,
+    *,
+    fmt: str | None = None,
+    skip_existing: bool = False,
+) -> int:
+    """Sample every shape of `sources` into `destination` and return the exit code."""
+    prepare(sources, destination, session)
+
+    def make(item: Item[Shape]) -> tuple[Boundary, Sampled]:
+        begun = time.perf_counter()
+        boundary = item.what.boundary(sampling)
+        report = Sampled(item, boundary)
+        report.seconds["boundary"] = time.perf_counter() - begun
+        return boundary, report
+
+    def tell(report: Sampled, path: str) -> None:
+        report.finished(path)
+        session.tell(report)
+
+    found = items(sources, lambda source: read_shapes(source, fmt), session)
+    deliver(found, make, destination, session, tell, skip_existing=skip_existing)
+    return session.finish()

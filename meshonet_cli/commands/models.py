@@ -1,0 +1,24 @@
+"""``meshonet models``."""
+
+from __future__ import annotations
+
+from meshonet_cli import options as o
+
+EXAMPLES = ("meshonet models", "meshonet models --json")
+
+
+def models(as_json: o.AsJson = False, debug: o.Debug = False) -> int:
+    """List the operators that are shipped."""
+    from meshonet_cli.listing import model_text
+    from meshonet_cli.session import Session
+    from solvers.neural.weights import described, shipped
+
+    session = Session(as_json=as_json, debug=debug)
+    for name in shipped():
+        with session.member(name):
+            facts = described(name)
+            if as_json:
+                session.result(facts)
+            else:
+                session.print(model_text(facts))
+    return session.finish()
