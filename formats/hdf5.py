@@ -209,8 +209,12 @@ def sniff(head: bytes) -> bool:
 
 def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
     with Writer(path, kind) as writer:
+        empty = True
         for sample in samples:
             writer.append(sample)
+            empty = False
+    if empty:
+        raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
 
 
 def _parts(data: Checked, k: int) -> tuple[Part, ...]:

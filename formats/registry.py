@@ -48,17 +48,18 @@ _DESIGNATION = "naca:"
 
 
 def format_named(name: str) -> Format:
-    """Return the format that ``--from`` or ``--to`` names.
+    """Return the format that ``--from`` or ``--to`` names: by its name, its ending, or the start of its name.
 
     Raises
     ------
     InputError
         no such format; the message lists those there are.
     """
-    row = TABLE.get(name.lower().lstrip("."))
-    if row is None:
-        raise InputError(f"format {printable(name)!r} is not known", "use one of " + ", ".join(TABLE))
-    return _record(name.lower().lstrip("."), row)
+    word = name.lower().lstrip(".")
+    for known, row in TABLE.items():
+        if word and (known == word or f".{word}" in row.suffixes[:1] or known.startswith(f"{word}-")):
+            return _record(known, row)
+    raise InputError(f"format {printable(name)!r} is not known", "use one of " + ", ".join(TABLE))
 
 
 def formats() -> tuple[Format, ...]:

@@ -1,0 +1,153 @@
+from __future__ import annotations
+
+import os
+import signal
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from format_shapes import PYTHON, Pipe, file_names
+
+from formats.output import PART_SUFFIX, whole_file
+from geometry.errors import InputError
+
+
+def test_the_file_appears_when_the_block_ends_and_nothing_else_stays(tmp_path: Path) -> None:
+    target = tmp_path / "grid.vts"
+    with whole_file(str(target)) as part:
+        part.write_bytes(b"half")
+        assert not target.exists()
+        assert part.parent == tmp_path
+        assert part.name.endswith(PART_SUFFIX)
+        part.write_bytes(b"whole")
+    assert target.read_bytes() == b"whole"
+    assert file_names(tmp_path) == ["grid.vts"]
+
+
+@pytest.mark.parametrize("error", [ValueError, KeyboardInterrupt, SystemExit, InputError])
+def test_any_exception_leaves_the_old_file_and_no_part(error: type[BaseException], tmp_path: Path) -> None:
+    target = tmp_path / "grid.vts"
+    target.write_text("old")
+
+    def stopped() -> None:
+        with whole_file(str(target)) as part:
+            part.write_text("half")
+            raise error("stop")
+
+    with pytest.raises(error):
+        stopped()
+    assert target.read_text() == "old"
+    assert file_names(tmp_path) == ["grid.vts"]
+
+
+def test_permissions_are_those_of_any_new_file(tmp_path: Path) -> None:
+    old = os.umask(0o027)
+    try:
+        with whole_file(str(tmp_path / "a")) as part:
+            part.write_text("x")
+    finally:
+        os.umask(old)
+    assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == 0o640
+
+
+def test_a_link_is_written_through(tmp_path: Path) -> None:
+    (tmp_path / "real").write_text("old")
+    (tmp_path / "link").symlink_to("real")
+    with whole_file(str(tmp_path / "link")) as part:
+        part.write_text("new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "real").read_text() == "new"
+
+
+def test_standard_output_gets_the_bytes_at_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    out = Pipe()
+    monkeypatch.setattr(sys, "stdout", out)
+    with whole_file("-") as part:
+        part.write_bytes(b"\x00\xff\n")
+        assert out.buffer.getvalue() == b""
+    assert out.buffer.getvalue() == b"\x00\xff\n"
+    assert not part.exists()
+
+
+def test_standard_output_gets_nothing_on_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    out = Pipe()
+    monkeypatch.setattr(sys, "stdout", out)
+
+    def stopped() -> None:
+        with whole_file("-") as part:
+            part.write_bytes(b"half")
+            raise RuntimeError("stop")
+
+    with pytest.raises(RuntimeError, match="stop"):
+        stopped()
+    assert out.buffer.getvalue() == b""
+
+
+def test_a_reader_that_stops_early_is_no_error() -> None:
+    code = "from formats.output import whole_file\nwith whole_file('-') as p: p.write_bytes(bytes(10**7))"
+    pipe = f'{PYTHON} -c "{code}" | head -c 10 | wc -c; echo ${{PIPESTATUS[0]}}'
+    done = subprocess.run(["bash", "-c", pipe], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.split() == ["10", "0"]
+    assert done.stderr == ""
+
+
+def test_a_device_is_written_to_and_stays(tmp_path: Path) -> None:
+    with whole_file("/dev/null") as part:
+        part.write_text("x")
+    assert stat.S_ISCHR(Path("/dev/null").stat().st_mode)
+
+
+def test_a_named_pipe_is_fed(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with subprocess.Popen(["cat", str(pipe)], stdout=subprocess.PIPE) as reader:
+        with whole_file(str(pipe)) as part:
+            part.write_bytes(b"through")
+        assert reader.communicate(timeout=30)[0] == b"through"
+
+
+def test_folders_are_made_only_when_asked(tmp_path: Path) -> None:
+    with whole_file(str(tmp_path / "new" / "a"), make_folder=True) as part:
+        part.write_text("x")
+    assert (tmp_path / "new" / "a").read_text() == "x"
+
+
+@pytest.mark.parametrize(
+    ("where", "told"),
+    [
+        ("", "is a folder; name a file in it"),
+        ("none/a.vts", "its folder does not exist; make it: mkdir -p .*none"),
+    ],
+)
+def test_a_place_that_cannot_be_written_is_named(where: str, told: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=told), whole_file(str(tmp_path / where)):
+        pass
+
+
+def test_a_full_disc_is_named() -> None:
+    told = r"/dev/full: cannot be written \(No space left on device\); free space"
+    with pytest.raises(InputError, match=told), whole_file("/dev/full") as part:
+        part.write_text("x")
+
+
+def test_an_error_of_the_system_about_the_input_is_not_blamed_on_the_output(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError), whole_file(str(tmp_path / "a")):
+        (tmp_path / "missing").read_bytes()
+
+
+def test_sigterm_turned_into_an_exit_removes_the_part(tmp_path: Path) -> None:
+    code = (
+        "import signal, sys, time; from formats.output import whole_file\n"
+        "signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))\n"
+        f"with whole_file({str(tmp_path / 'a')!r}) as part:\n"
+        "    part.write_text('half'); print('ready', flush=True); time.sleep(60)"
+    )
+    with subprocess.Popen([PYTHON, "-c", code], stdout=subprocess.PIPE) as child:
+        assert child.stdout is not None
+        child.stdout.readline()
+        assert len(file_names(tmp_path)) == 1
+        child.send_signal(signal.SIGTERM)
+        assert child.wait(timeout=30) == 143
+    assert file_names(tmp_path) == []

@@ -1,0 +1,253 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from format_shapes import PYTHON, Pipe, c_grid, channel, ring
+
+from formats.edges import boundary_of
+from formats.registry import (
+    TABLE,
+    format_for_output,
+    format_named,
+    format_of,
+    formats,
+    read_grids,
+    read_shapes,
+)
+from formats.source import open_source
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+
+HEAVY = ("h5py", "meshio", "matplotlib", "shapely", "scipy", "torch", "numba")
+BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
+BOUNDARIES = [row.name for row in formats() if row.write_boundaries and row.read_shapes]
+CHECKED_ELSEWHERE = {"gmsh", "gmsh-ascii", "png", "svg", "pdf"}
+"""Formats that are written only; each has a test file with a reader of somebody else's."""
+
+
+def run_python(code: str) -> str:
+    done = subprocess.run([PYTHON, "-c", code], capture_output=True, text=True, timeout=60, check=True)
+    return done.stdout.strip()
+
+
+def test_importing_the_registry_imports_no_heavy_library() -> None:
+    loaded = run_python(f"import sys, formats.registry; print([m for m in {HEAVY} if m in sys.modules])")
+    assert loaded == "[]"
+
+
+def test_writing_a_vts_imports_no_heavy_library(tmp_path: Path) -> None:
+    code = (
+        "import sys, numpy as np; from pathlib import Path; from geometry.grid import Grid;"
+        "from formats.registry import format_for_output, read_grids;"
+        "g = Grid(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
+        f"p = {str(tmp_path / 'g.vts')!r};"
+        "format_for_output(p).write_grids(Path(p), [g]); list(read_grids(p));"
+        f"print([m for m in {HEAVY} if m in sys.modules])"
+    )
+    assert run_python(code) == "[]"
+
+
+@pytest.mark.parametrize("name", TABLE)
+def test_the_table_agrees_with_the_record(name: str) -> None:
+    record = format_named(name)
+    assert record.name == name
+    assert record.suffixes == TABLE[name].suffixes
+    assert record.description
+    assert all(suffix.startswith(".") and suffix == suffix.lower() for suffix in record.suffixes)
+
+
+def test_every_format_can_do_something_and_is_tested() -> None:
+    for record in formats():
+        doings = (record.read_shapes, record.read_grids, record.write_grids, record.write_boundaries)
+        assert any(doings), record.name
+        if record.write_grids and not record.read_grids:
+            assert record.name in CHECKED_ELSEWHERE
+
+
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.parametrize("name", BOTH_WAYS)
+def test_a_grid_comes_back_bit_for_bit_and_the_writer_leaves_it_alone(
+    name: str, make: type[Grid], tmp_path: Path
+) -> None:
+    grid, untouched = make(), make()
+    record = format_named(name)
+    path = tmp_path / f"grid{record.suffixes[0]}"
+    assert record.write_grids is not None
+    record.write_grids(path, [grid])
+    assert np.array_equal(grid.nodes, untouched.nodes)
+    assert grid.parts == untouched.parts
+    (back,) = read_grids(str(path), name)
+    assert back.nodes.dtype == np.float64
+    assert np.array_equal(back.nodes, grid.nodes)
+    assert back.topology == grid.topology
+    if record.names_parts:
+        assert (back.parts, back.name) == (grid.parts, grid.name)
+        assert dict(back.provenance) == dict(grid.provenance)
+    else:
+        assert back.name == "grid"
+
+
+@pytest.mark.parametrize("name", [n for n in BOTH_WAYS if format_named(n).write_extruded])
+def test_a_grid_one_cell_thick_is_read_as_the_plane_grid_it_was(name: str, tmp_path: Path) -> None:
+    grid = channel()
+    record = format_named(name)
+    path = tmp_path / f"thick{record.suffixes[0]}"
+    assert record.write_extruded is not None
+    record.write_extruded(path, [grid], 0.1)
+    (back,) = read_grids(str(path), name)
+    assert np.array_equal(back.nodes, grid.nodes)
+
+
+@pytest.mark.parametrize("name", BOTH_WAYS)
+def test_several_grids_are_kept_or_refused_with_the_remedy(name: str, tmp_path: Path) -> None:
+    record = format_named(name)
+    path = tmp_path / f"grid{record.suffixes[0]}"
+    assert record.write_grids is not None
+    if record.many:
+        record.write_grids(path, (ring(name=f"r{k}") for k in range(3)))
+        assert [g.nodes.shape for g in read_grids(str(path), name)] == [(13, 5, 2)] * 3
+    else:
+        with pytest.raises(
+            InputError, match=r"holds one grid and there are several; use -o 'name-\{index\}'"
+        ):
+            record.write_grids(path, [ring(), ring()])
+
+
+@pytest.mark.parametrize("name", [row.name for row in formats() if row.write_grids])
+def test_no_grid_at_all_is_refused(name: str, tmp_path: Path) -> None:
+    record = format_named(name)
+    assert record.write_grids is not None
+    with pytest.raises(InputError, match="there is no grid to write"):
+        record.write_grids(tmp_path / "none", [])
+
+
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.parametrize("name", BOUNDARIES)
+def test_a_boundary_comes_back_bit_for_bit(name: str, make: type[Grid], tmp_path: Path) -> None:
+    source = tmp_path / "grid.h5"
+    hdf5 = format_named("hdf5")
+    assert hdf5.write_grids is not None
+    hdf5.write_grids(source, [make()])
+    (boundary,) = read_shapes(str(source))
+    assert isinstance(boundary, Boundary)
+    record = format_named(name)
+    path = tmp_path / f"boundary{record.suffixes[0]}"
+    assert record.write_boundaries is not None
+    record.write_boundaries(path, [boundary])
+    (back,) = read_shapes(str(path), name)
+    assert isinstance(back, Boundary)
+    for side in ("south", "east", "north", "west"):
+        assert np.array_equal(getattr(back, side), getattr(boundary, side))
+    assert (back.topology, back.parts, back.name) == (boundary.topology, boundary.parts, boundary.name)
+
+
+@pytest.mark.parametrize("name", BOTH_WAYS)
+def test_the_outer_edges_of_a_grid_file_are_a_boundary(name: str, tmp_path: Path) -> None:
+    record = format_named(name)
+    path = tmp_path / f"grid{record.suffixes[0]}"
+    assert record.write_grids is not None
+    record.write_grids(path, [ring()])
+    (boundary,) = read_shapes(str(path), name)
+    assert isinstance(boundary, Boundary)
+    assert boundary.topology == "o"
+    assert np.array_equal(boundary.south, ring().nodes[:, 0])
+    assert np.array_equal(boundary.west, boundary.east)
+
+
+@pytest.mark.parametrize("name", BOTH_WAYS)
+def test_the_content_tells_when_the_ending_does_not(name: str, tmp_path: Path) -> None:
+    record = format_named(name)
+    path = tmp_path / "grid.unknown"
+    assert record.write_grids is not None
+    record.write_grids(path, [ring(60, 40)])
+    assert format_of(open_source(str(path))).read_grids is record.read_grids
+    (back,) = read_grids(str(path))
+    assert np.array_equal(back.nodes, ring(60, 40).nodes)
+
+
+def test_standard_input_is_recognised_by_its_content(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    for name in BOTH_WAYS:
+        path = tmp_path / name
+        writer = format_named(name).write_grids
+        assert writer is not None
+        writer(path, [ring()])
+        monkeypatch.setattr(sys, "stdin", Pipe(path.read_bytes()))
+        (back,) = read_grids("-")
+        assert np.array_equal(back.nodes, ring().nodes)
+
+
+def test_a_dat_file_is_told_apart_by_its_content(tmp_path: Path) -> None:
+    path = tmp_path / "grid.dat"
+    writer = format_for_output(str(path)).write_grids
+    assert writer is not None
+    writer(path, [ring()])
+    assert format_of(open_source(str(path))).name.startswith("plot3d")
+
+
+def test_a_format_may_be_named_by_its_ending_or_its_family() -> None:
+    assert format_named("h5").name == "hdf5"
+    assert format_named(".p3d").name == "plot3d-ascii"
+    assert format_named("plot3d").name == "plot3d-ascii"
+    assert format_named("VTS").name == "vts"
+
+
+def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
+    assert format_for_output("-").name == "hdf5"
+    assert format_for_output("-", "vts").name == "vts"
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("no.vts", "no.vts: no such file; check the path"),
+        ("", "is a folder; name a file in it"),
+        ("empty.vts", "empty.vts: is empty; give"),
+        ("a.q", r"a.q: its ending '.q' is not .*--from; known endings: "),
+        ("plain", "plain: its content is not of a known format; name it with --from"),
+        ("loop.vts", "loop.vts: cannot be opened .*symbolic"),
+        ("a\0b", "null byte.*; check the path"),
+        ("x.png", "x.png: png files can only be written; give a grid"),
+        ("x.msh", "x.msh: gmsh files can only be written; give a grid"),
+        ("\x1b[31m.vts", r"\\x1b\[31m.vts: no such file"),
+    ],
+)
+def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "empty.vts").touch()
+    for file in ("a.q", "plain", "x.png", "x.msh"):
+        (tmp_path / file).write_text("hello\n")
+    (tmp_path / "loop.vts").symlink_to(tmp_path / "loop.vts")
+    with pytest.raises(InputError, match=told):
+        list(read_grids(str(tmp_path / name)))
+    with pytest.raises(InputError, match=told):
+        list(read_shapes(str(tmp_path / name)))
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("a.q", r"a.q: its ending '.q' is not known; .*--to; known endings: .*\.vts"),
+        ("grid", "grid: its name has no ending to tell the format by; .*--to"),
+        ("a.vts", "a.vts: vts cannot hold boundaries; write one of hdf5"),
+    ],
+)
+def test_what_cannot_be_written_is_named_with_its_remedy(path: str, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        format_for_output(path, kind="boundaries")
+
+
+def test_an_unknown_format_name_lists_the_known_ones() -> None:
+    with pytest.raises(InputError, match="format 'cgsn' is not known; use one of hdf5, vts"):
+        format_named("cgsn")
+
+
+def test_a_file_of_boundaries_is_no_file_of_grids(tmp_path: Path) -> None:
+    writer = format_named("hdf5").write_boundaries
+    assert writer is not None
+    writer(tmp_path / "b.h5", [boundary_of(ring())])
+    with pytest.raises(InputError, match=r"b.h5: holds boundaries, not grids; make grids .* meshonet"):
+        list(read_grids(str(tmp_path / "b.h5")))
