@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -69,12 +69,12 @@ class Airfoil:
         self.leading_edge = self.curve.at(np.array([arc]))[0]
         self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
         first, last = (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
-        self.stations = Stations(float(first), arc, float(last))
+        self._arcs = float(first), arc, float(last)
 
     @cached_property
     def wedge(self) -> float:
         """Angle in degrees between the two surfaces over the last 1 % of the chord."""
-        first, _, last = self.stations
+        first, _, last = self._arcs
         step = 0.01 * self.chord
         lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
         u, v = upper - b, lower - a
@@ -83,7 +83,7 @@ class Airfoil:
     @cached_property
     def nose_radius(self) -> float:
         """Radius of the leading edge: of the parabola as thick as the section 2 % of the chord behind it."""
-        _, middle, _ = self.stations
+        _, middle, _ = self._arcs
         axis = (self.trailing_edge - self.leading_edge) / self.chord
         step = np.linspace(0.0, 0.2 * self.chord, 81)
         sides = []
@@ -107,7 +107,8 @@ class Airfoil:
         InputError
             fewer nodes than the edges need, cells that do not fit, or a polygon so coarse that it crosses itself.
         """
-        nodes = self.curve.at(wall_arcs(self, ni, sampling))
+        stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius)
+        nodes = self.curve.at(wall_arcs(stations, ni, sampling))
         nodes[-1] = nodes[0]
         crossing = find_crossing(nodes[:-1])
         if crossing is not None:
@@ -184,16 +185,16 @@ def _farthest(curve: Curve, point: Floats) -> float:
     return _root(slope, low, high)
 
 
-def _root(f, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
-    """Return where a function that falls from positive at `low` to negative at `high` is zero."""
-    top, bottom = f(low), f(high)
+def _root(f: Callable[[float], float], low: float, high: float) -> float:
+    """Return where a function that falls from positive at `low` to negative at `high` is zero (Illinois method)."""
+    top, bottom, at, side = f(low), f(high), low, 0
     for _ in range(60):
-        middle = (low * bottom - high * top) / (bottom - top)
-        value = f(middle)
-        if value == 0 or high - low < 1e-15 * high:
-            return middle
+        before, at = at, (low * bottom - high * top) / (bottom - top)
+        value = f(at)
+        if value == 0 or abs(at - before) < 1e-14 * high:
+            break
         if value > 0:
-            low, top, bottom = middle, value, 0.5 * bottom
+            low, top, bottom, side = at, value, bottom * (0.5 if side > 0 else 1.0), 1
         else:
-            high, bottom, top = middle, value, 0.5 * top
-    return 0.5 * (low + high)
+            high, bottom, top, side = at, value, top * (0.5 if side < 0 else 1.0), -1
+    return at

@@ -118,18 +118,29 @@ class TanhLaw:
     start: float
     end: float
 
+    @property
+    def stretch(self) -> float:
+        """The d above, positive where tanh holds, negative where tan does, 0 for equal steps."""
+        b = 1.0 / math.sqrt(self.start * self.end)
+        if abs(b - 1.0) < 1e-9:
+            return 0.0
+        return _inverse_sinhc(b) if b > 1.0 else -_inverse_sinc(b)
+
     def __call__(self, q: Floats) -> Floats:
         """Return s at q (any shape)."""
-        a, b = math.sqrt(self.end / self.start), 1.0 / math.sqrt(self.start * self.end)
-        if abs(b - 1.0) < 1e-9:
-            u = np.asarray(q, dtype=np.float64)
-        elif b > 1.0:
-            d = _inverse_sinhc(b)
-            u = 0.5 + 0.5 * np.tanh(d * (np.asarray(q) - 0.5)) / math.tanh(0.5 * d)
-        else:
-            d = _inverse_sinc(b)
-            u = 0.5 + 0.5 * np.tan(d * (np.asarray(q) - 0.5)) / math.tan(0.5 * d)
+        a, d = math.sqrt(self.end / self.start), self.stretch
+        u = np.asarray(q, dtype=np.float64)
+        if d > 0:
+            u = 0.5 + 0.5 * np.tanh(d * (u - 0.5)) / math.tanh(0.5 * d)
+        elif d < 0:
+            u = 0.5 + 0.5 * np.tan(d * (u - 0.5)) / math.tan(0.5 * d)
         return np.asarray(u / (a + (1.0 - a) * u))
+
+    def _end_steps(self, one: float, other: float) -> tuple[float, float]:
+        """Return s at `one` and 1 - s at 1 - `other`, both small, without loss of digits."""
+        a, d = math.sqrt(self.end / self.start), self.stretch
+        low, high = (_small_u(d, q) for q in (one, other))
+        return low / (a + (1.0 - a) * low), a * high / (1.0 - (1.0 - a) * high)
 
     @classmethod
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
@@ -147,20 +158,26 @@ class TanhLaw:
             the steps do not fit: they are too large together, or too few nodes lie between them.
         """
         start, end = first * cells, last * cells
-        q = np.array([1.0 / cells, 1.0 - last_part / cells])
         for _ in range(60):
-            one, other = cls(start, end)(q)
-            ratio = first / max(one, 1e-300), last * last_part / max(1.0 - other, 1e-300)
-            if max(abs(ratio[0] - 1.0), abs(ratio[1] - 1.0)) < 1e-6:
-                return cls(start, end)
-            start, end = (
-                max(value * min(max(r, 0.25), 4.0), 1e-12)
-                for value, r in zip((start, end), ratio, strict=True)
-            )
+            law = cls(start, end)
+            one, other = law._end_steps(1.0 / cells, last_part / cells)
+            rise, fall = first / one, last * last_part / other
+            if max(abs(rise - 1.0), abs(fall - 1.0)) < 1e-6:
+                return law
+            start, end = start * min(max(rise, 0.25), 4.0), end * min(max(fall, 0.25), 4.0)
         raise InputError(
-            f"steps of {first:.3g} and {last:.3g} at the two ends cannot be joined by {cells:g} cells",
+            f"steps of {first:.3g} and {last:.3g} of the length at its two ends do not join over {cells:g} cells",
             "change the spacing or the number of nodes",
         )
+
+
+def _small_u(d: float, q: float) -> float:
+    """Return Vinokur's u at q, for q near 0: 1/2 - tanh(d/2 - d q) / (2 tanh(d/2)) without the difference."""
+    if d == 0:
+        return q
+    if d > 0:
+        return 0.5 * math.sinh(d * q) / (math.sinh(0.5 * d) * math.cosh(d * (0.5 - q)))
+    return 0.5 * math.sin(-d * q) / (math.sin(-0.5 * d) * math.cos(d * (0.5 - q)))
 
 
 def _inverse_sinhc(b: float) -> float:

@@ -1,85 +1,222 @@
-"""Nodes along the wall of an airfoil: how many cells each stretch gets, and how large they are."""
+"""Nodes along the wall of an airfoil: how many cells each stretch gets, and how large they are.
+
+::
+
+    half base | lower side                      nose   upper side                      | half base
+    0 ... lower ................................ nose ................................ upper ... length
+
+Both sides get the same number of cells; where that leaves half a cell, one lies astride the nose, so that a
+symmetric section has symmetric nodes at every count. The first cells of the sides are as large as those of
+the base beside them.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from geometry.arrays import Floats
+from geometry.curves import Curve
 from geometry.errors import InputError
-from geometry.sampling import Sampling, TanhLaw
+from geometry.sampling import Sampling, TanhLaw, monotone_cubic
+from geometry.size_field import arcs_by_curvature
 
-if TYPE_CHECKING:
-    from geometry.airfoil import Airfoil
+_EDGE_STEP = 20.0
+"""Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O grids:
+smaller makes grids less orthogonal on the whole, larger folds more of them at the edge."""
+_BASE_GROWTH = 1.15
+_BASE_SHARE = 0.35
+"""Largest part of all cells that goes to the base."""
 
 
-class Stations(NamedTuple):
-    """Arc lengths on an airfoil's curve: lower end of the base, leading edge, upper end of the base."""
+@dataclass(frozen=True)
+class Stations:
+    """What the distribution needs to know of an airfoil: arc lengths on its curve, and two lengths."""
 
+    curve: Curve
     lower: float
     nose: float
     upper: float
+    chord: float
+    nose_radius: float
+
+    @property
+    def half_base(self) -> float:
+        """Half the width of the blunt base, 0 when sharp."""
+        return self.lower
 
 
-def wall_arcs(airfoil: Airfoil, ni: int, sampling: Sampling) -> Floats:
-    """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve."""
-    cells = ni - 1
-    lower, nose, upper = airfoil.stations
-    half_base = lower
-    length = min(nose - lower, upper - nose)
-    n = 0.5 * cells
-    te, le = auto_steps(airfoil, n)
-    half = 0
-    if airfoil.blunt:
-        if cells < 6:
-            raise InputError(f"{ni} nodes around a blunt airfoil", "use at least 7")
-        least = 2 if cells >= 24 else 1
-        te = min(te, 1.15 * half_base / least)
-        half, base_step = base_cells(half_base, te, least, int(0.175 * cells))
-        n = 0.5 * cells - half
-        te, le = auto_steps(airfoil, n)
-        te = base_step
-    elif cells < 4:
-        raise InputError(f"{ni} nodes around an airfoil", "use at least 5")
-    part = 1.0 if n == int(n) else 0.5
-    q = np.arange(1, int(n) + 1) / n
-    q = q[q < 1 - 1e-9]
-    sides = []
-    for side in (nose - lower, upper - nose):
-        law = TanhLaw.fitted(n, te / side, le / side, part)
-        sides.append(side * law(q))
-    middle = [nose] if part == 1.0 else []
-    s = np.concatenate([[lower], lower + sides[0], middle, (upper - sides[1])[::-1], [upper]])
-    if half:
-        law = TanhLaw.fitted(2 * half, base_step / (2 * half_base), base_step / (2 * half_base))
-        b = 2 * half_base * law(np.arange(1, 2 * half) / (2 * half))
-        b = 0.5 * (b + 2 * half_base - b[::-1]) - half_base
-        s = np.concatenate([[0.0], b[half:], s, airfoil.curve.length + b[: half - 1], [airfoil.curve.length]])
-    return s
+@dataclass(frozen=True)
+class Plan:
+    """Cells of half the base and of a side, and the steps at the trailing and at the leading edge."""
+
+    half: int
+    cells: float
+    base_step: float
+    te: float
+    le: float
 
 
-def auto_steps(airfoil: Airfoil, n: float) -> tuple[float, float]:
-    lower, nose, upper = airfoil.stations
-    length = 0.5 * (upper - lower)
-    mean = length / n
-    te = mean * min(0.5, K_TE / n)
-    le = min(np.pi / n * np.sqrt(0.5 * airfoil.nose_radius * airfoil.chord), 0.7 * mean)
-    le = max(le, 0.05 * mean)
-    return te, le
+def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
+    """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
+
+    Spacings: ``auto`` and ``tanh`` stretch each side between a step at its two edges; ``cosine`` is the
+    half circle's on each side, or ``tanh`` with its end steps where one is given or the edge is blunt;
+    ``uniform`` has equal steps on a side; ``curvature`` follows `geometry.size_field`.
+
+    Parameters
+    ----------
+    stations : of the airfoil.
+    ni : nodes, the last one being the first again.
+    sampling : spacing, `le_spacing` and `te_spacing` (met to 1 %, in chords).
+
+    Raises
+    ------
+    InputError
+        too few nodes, or steps that cannot be met with them.
+    """
+    least = 7 if stations.half_base else 5
+    if ni < least:
+        raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
+    if sampling.spacing == "uniform" and (sampling.le_spacing or sampling.te_spacing):
+        raise InputError(
+            "uniform spacing leaves no cell size to choose", "use tanh, cosine or curvature with it"
+        )
+    plan = _plan(stations, ni - 1, sampling)
+    if sampling.spacing == "curvature":
+        sides = arcs_by_curvature(
+            stations.curve,
+            (stations.lower, stations.nose, stations.upper),
+            round(2 * plan.cells),
+            chord=stations.chord,
+            steps=(plan.te, plan.le),
+            exact=(sampling.te_spacing is not None or plan.half > 0, sampling.le_spacing is not None),
+        )
+    else:
+        q = np.arange(1, math.ceil(plan.cells)) / plan.cells
+        lower = stations.lower + _side(stations.nose - stations.lower, plan, sampling, q)
+        upper = stations.upper - _side(stations.upper - stations.nose, plan, sampling, q)
+        nose = [stations.nose] if float(plan.cells).is_integer() else []
+        sides = np.concatenate([[stations.lower], lower, nose, upper[::-1], [stations.upper]])
+    if plan.half == 0:
+        arcs = sides
+    else:
+        base = _half_base(plan, stations.half_base)
+        arcs = np.concatenate([base[:-1], sides, stations.curve.length - base[-2::-1]])
+    return _with_corners(arcs, stations, plan.half)
 
 
-K_TE = 27.0
+def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
+    """Return how the cells are shared out and which steps they start from."""
+    wanted_te = sampling.te_spacing and sampling.te_spacing * stations.chord
+    wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
+    plan = _natural(stations, Plan(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
+    if stations.half_base:
+        half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, asked=bool(wanted_te))
+        plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
+        plan = replace(plan, te=step)
+    plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
+    side = min(stations.nose - stations.lower, stations.upper - stations.nose)
+    if plan.te + plan.le >= side:
+        raise InputError(
+            f"cells of {plan.te / stations.chord:.3g} and {plan.le / stations.chord:.3g} chords fill a whole side",
+            "use smaller spacings",
+        )
+    return plan
 
 
-def base_cells(half_base: float, step: float, least: int, most: int) -> tuple[int, float]:
-    """Return cells per half base and the size of the one at the corner."""
-    if half_base / step <= 6:
-        half = min(max(least, round(half_base / step)), max(most, 1))
+def _natural(stations: Stations, plan: Plan, sampling: Sampling) -> Plan:
+    """Return the plan with the steps that the program chooses.
+
+    At the nose that of equal angles on the circle which a conformal map makes of the section,
+    sqrt(r c / 2) π / n with the nose radius r; at a sharp edge see `_EDGE_STEP`.
+    """
+    n = plan.cells
+    side = 0.5 * (stations.upper - stations.lower)
+    mean = side / n
+    if sampling.spacing == "uniform":
+        return replace(plan, te=mean, le=mean)
+    le = math.pi / n * math.sqrt(0.5 * stations.nose_radius * stations.chord)
+    if sampling.spacing == "cosine":
+        le = side * math.sin(0.5 * math.pi / n) ** 2
+        return replace(plan, te=le if not stations.half_base else mean * min(0.5, _EDGE_STEP / n), le=le)
+    return replace(plan, te=mean * min(0.5, _EDGE_STEP / n), le=min(max(le, 0.05 * mean), 0.7 * mean))
+
+
+def _base_cells(half_base: float, step: float, cells: int, *, asked: bool) -> tuple[int, float]:
+    """Return the cells of half a base and the size of the one at the corner.
+
+    At least 2, more for wider bases (measured: fewer fold at the corners, more make the solver slow); as
+    many as a step of the size asked for needs when growing by 15 % towards the middle.
+    """
+    enough = cells >= 48
+    least = max(2, round(2 * (half_base / 1.2e-4) ** (1 / 3))) if enough else 1
+    least = min(least, max(cells // 24, 1), 12)
+    most = max(least, int(0.5 * _BASE_SHARE * cells))
+    if not asked:
+        step = min(step, half_base / least)
+    if half_base <= 6 * step:
+        half = min(max(least, round(half_base / step)), most)
         return half, half_base / half
-    for half in range(4, max(most, 4) + 1):
-        law = TanhLaw.fitted(2 * half, step / (2 * half_base), step / (2 * half_base))
-        d = np.diff(law(np.arange(half + 1) / (2 * half)))
-        if (d[1:] / d[:-1]).max() < 1.15:
-            break
-    return half, step
+    for half in range(4, most):
+        # steps go like sech², whose ratio is largest at the corner
+        d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
+        if d / half * math.tanh(0.5 * d) < math.log(_BASE_GROWTH):
+            return half, step
+    return most, step
+
+
+def _half_base(plan: Plan, half_base: float) -> Floats:
+    """Return distances (half + 1,) from the middle of the base to its corner."""
+    part = plan.base_step / (2 * half_base)
+    if abs(part * 2 * plan.half - 1.0) < 1e-9:
+        return np.linspace(0.0, half_base, plan.half + 1)
+    law = TanhLaw.fitted(2 * plan.half, part, part)
+    out = half_base - 2 * half_base * law(np.arange(plan.half + 1) / (2 * plan.half))[::-1]
+    out[0], out[-1] = 0.0, half_base
+    return np.asarray(out)
+
+
+def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
+    """Return distances along a side from its trailing edge at the places `q` of 0 to 1."""
+    asked = sampling.te_spacing is not None or sampling.le_spacing is not None
+    if sampling.spacing == "uniform":
+        return np.asarray(length * q)
+    if sampling.spacing == "cosine" and not asked and not plan.half:
+        return np.asarray(length * np.sin(0.5 * np.pi * q) ** 2)
+    part = 1.0 if float(plan.cells).is_integer() else 0.5
+    return np.asarray(length * TanhLaw.fitted(plan.cells, plan.te / length, plan.le / length, part)(q))
+
+
+def _with_corners(arcs: Floats, stations: Stations, half: int) -> Floats:
+    """Return the arcs moved along so that every corner of the curve is a node.
+
+    The nearest node of each corner is put on it and those between are shared out evenly in index, with the
+    trailing edge, the ends of the base and a node at the nose kept.
+    """
+    last = len(arcs) - 1
+    known = {0: 0, half: half, last - half: last - half, last: last}
+    corners = stations.curve.corners
+    inside = corners[(corners > stations.lower) & (corners < stations.upper)]
+    if inside.size == 0:
+        return arcs
+    index = np.arange(last + 1.0)
+    place = np.interp(inside, arcs, index)
+    node = np.rint(place)
+    for k in range(1, len(node)):
+        node[k] = max(node[k], node[k - 1] + 1)
+    ceiling = last - half - 1
+    for k in range(len(node) - 1, -1, -1):
+        node[k] = min(node[k], ceiling)
+        ceiling = node[k] - 1
+    if node[0] <= half:
+        raise InputError(f"{last + 1} nodes for {len(inside)} corners", "use more nodes")
+    kept = {k: float(k) for k in known} | {int(k): float(p) for k, p in zip(node, place, strict=True)}
+    order = np.array(sorted(kept))
+    out = monotone_cubic(index, arcs, np.interp(index, order, np.array([kept[k] for k in order])))
+    out[node.astype(np.intp)] = inside
+    for k in known:
+        out[k] = arcs[k]
+    return out
