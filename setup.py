@@ -1,4 +1,4 @@
-"""Build of the compiled kernels: every ``_name.pyx`` is one, with ``name_kernel.c`` beside it when that exists."""
+"""Build of the compiled kernels: every ``_name.pyx`` is one, with ``name_kernel.c`` where that exists."""
 
 import sys
 from pathlib import Path
@@ -28,8 +28,16 @@ def extension(pyx: Path) -> Extension:
     kernel = pyx.with_name(pyx.stem.removeprefix("_") + "_kernel.c")
     sources = [str(pyx), *([str(kernel)] if kernel.exists() else [])]
     name = ".".join(pyx.with_suffix("").parts)
-    return Extension(name, sources, include_dirs=["include", str(pyx.parent)], extra_compile_args=FLAGS, libraries=["m"])
+    return Extension(
+        name, sources, include_dirs=["include", str(pyx.parent)], extra_compile_args=FLAGS, libraries=["m"]
+    )
 
 
 MODULES = [extension(pyx) for room in ("geometry", "solvers") for pyx in sorted(Path(room).rglob("_*.pyx"))]
-setup(ext_modules=cythonize(MODULES, language_level=3, compiler_directives={"boundscheck": False, "wraparound": False, "cdivision": True}))
+setup(
+    ext_modules=cythonize(
+        MODULES,
+        language_level=3,
+        compiler_directives={"boundscheck": False, "wraparound": False, "cdivision": True},
+    )
+)

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 Floats: TypeAlias = NDArray[np.float64]
 """float64 array; the docstring of its user says its shape."""
 
+Complexes: TypeAlias = NDArray[np.complex128]
+"""complex128 array, a point x + iy each."""
+
 Topology: TypeAlias = Literal["quad", "o", "c"]
 Side: TypeAlias = Literal["south", "east", "north", "west"]
 

@@ -14,6 +14,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -62,7 +63,9 @@ class Boundary:
         for one, other in (("south", "north"), ("west", "east")):
             n, m = len(getattr(self, one)), len(getattr(self, other))
             if n != m:
-                raise InputError(f"{one} has {n} nodes and {other} has {m}", "opposite edges need equal counts")
+                raise InputError(
+                    f"{one} has {n} nodes and {other} has {m}", "opposite edges need equal counts"
+                )
         self._check_corners()
         object.__setattr__(self, "parts", tuple(self.parts) or default_parts(self.topology, self.ni, self.nj))
         check_parts(self.parts, self.ni, self.nj)
@@ -92,7 +95,7 @@ class Boundary:
         if (ni, nj) == (self.ni, self.nj):
             return self
         periodic = self.topology == "o"
-        edges = {
+        edges: dict[str, Any] = {
             side: resample_like(getattr(self, side), n, closed=periodic and side in ("south", "north"))
             for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
         }
@@ -101,8 +104,11 @@ class Boundary:
 
     def _check_corners(self) -> None:
         corners = (
-            ("south", 0, "west", 0), ("south", -1, "east", 0), ("north", 0, "west", -1), ("north", -1, "east", -1),
-        )  # fmt: skip
+            ("south", 0, "west", 0),
+            ("south", -1, "east", 0),
+            ("north", 0, "west", -1),
+            ("north", -1, "east", -1),
+        )
         for one, k, other, m in corners:
             p, q = getattr(self, one)[k], getattr(self, other)[m]
             if not np.array_equal(p, q):
@@ -153,7 +159,9 @@ def _edge(side: str, points: Floats) -> Floats:
     same = np.flatnonzero((np.diff(edge, axis=0) == 0).all(axis=1))
     if same.size:
         x, y = edge[same[0]]
-        raise InputError(f"{side} nodes {same[0]} and {same[0] + 1} are the same point ({x:.6g}, {y:.6g})", "remove one")
+        raise InputError(
+            f"{side} nodes {same[0]} and {same[0] + 1} are the same point ({x:.6g}, {y:.6g})", "remove one"
+        )
     return edge
 
 

@@ -1,0 +1,157 @@
+"""Airfoils nobody drew: random sections with random wall spacing, to train and test operators on.
+
+Three generators between them reach from thin reflexed plates to thick, strongly cambered and blunt sections:
+NACA four-digit formulas, class-shape transformation (CST) with Bernstein polynomials, and Karman-Trefftz
+maps of a circle. Nothing here is taken from a collection of real airfoils.
+
+Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics (1966) 7.32 (Karman-Trefftz).
+"""
+
+from __future__ import annotations
+
+from math import comb
+
+import numpy as np
+
+from geometry.airfoil import Airfoil
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.conformal import conformal_knots
+from geometry.errors import InputError
+from geometry.topology import o_boundary
+
+POINTS = 120  # a surface
+ORDER = 6  # of the Bernstein polynomials
+
+
+def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
+    """Return a random airfoil's O boundary: random shape, wall spacing and far field (4 to 60 chords)."""
+    while True:
+        try:
+            airfoil = Airfoil(_section(rng), "procedural")
+            wall = airfoil.curve.at(_knots(rng, airfoil, ni))
+            wall[-1] = wall[0]
+            centre = 0.5 * (airfoil.leading_edge + airfoil.trailing_edge)
+            radius = airfoil.chord * float(np.exp(rng.uniform(np.log(4.0), np.log(60.0))))
+            return o_boundary(wall, nj, centre, radius, airfoil.curve, airfoil.name)
+        except InputError:
+            continue  # a section that crosses itself or cannot be lifted: draw another
+
+
+def _section(rng: np.random.Generator) -> Floats:
+    """Return (n, 2) points from the trailing edge over the upper side and back, at times noisy or sparse."""
+    for _ in range(100):
+        draw = rng.random()
+        points = _naca(rng) if draw < 0.25 else _cst(rng) if draw < 0.8 else _karman_trefftz(rng)
+        points = _normalised(points)
+        if rng.random() < 0.4:
+            points = _as_found(rng, points)
+        if _thickness(points).min() > 0.0025:
+            return points
+    return _naca(rng)
+
+
+def _naca(rng: np.random.Generator) -> Floats:
+    t, p = rng.uniform(0.04, 0.26), rng.uniform(0.2, 0.6)
+    m = 0.0 if rng.random() < 0.3 else rng.uniform(0.0, 0.08)
+    x = _cosine()
+    last = rng.choice([-0.1015, -0.1036])
+    half = 5 * t * (0.2969 * np.sqrt(x) - 0.1260 * x - 0.3516 * x**2 + 0.2843 * x**3 + last * x**4)
+    front = x < p
+    camber = m * np.where(front, (2 * p * x - x * x) / p**2, (1 - 2 * p + 2 * p * x - x * x) / (1 - p) ** 2)
+    slope = np.arctan(2 * m * (p - x) / np.where(front, p**2, (1 - p) ** 2))
+    return _joined(
+        x - half * np.sin(slope),
+        camber + half * np.cos(slope),
+        x + half * np.sin(slope),
+        camber - half * np.cos(slope),
+    )
+
+
+def _cst(rng: np.random.Generator) -> Floats:
+    x, t = _cosine(), rng.uniform(0.04, 0.28)
+    bend = rng.normal(0, 0.35) if rng.random() < 0.85 else rng.normal(0, 0.9)
+    thick = np.clip(t * (1.3 + rng.normal(0, 0.35, ORDER + 1)), 0.25 * t, 4 * t)
+    thick[0] = np.clip(t * rng.uniform(0.7, 1.9), 0.03, 0.6)
+    thick[-1] *= rng.uniform(0.1, 1.2)
+    camber = (
+        0.1 * bend + rng.normal(0, 0.05, ORDER + 1) + 0.1 * np.linspace(-1, 1, ORDER + 1) * rng.normal(0, 0.6)
+    )
+    camber[0] *= 0.3
+    gap = 0.5 * rng.choice([0.0, 0.0, rng.uniform(0, 0.004), rng.uniform(0, 0.02), rng.uniform(0.0, 0.08)])
+    bernstein = np.array([comb(ORDER, i) * x**i * (1 - x) ** (ORDER - i) for i in range(ORDER + 1)])
+    shape = np.sqrt(x) * (1 - x)
+    half, middle = shape * (thick @ bernstein) + x * gap, shape * (camber @ bernstein)
+    return _joined(x, middle + half, x, middle - half)
+
+
+def _karman_trefftz(rng: np.random.Generator) -> Floats:
+    k = 2.0 - np.radians(rng.uniform(0, 20)) / np.pi
+    centre = -rng.uniform(0.03, 0.22) + 1j * rng.uniform(-0.02, 0.2)
+    start = np.angle(1 - centre)
+    z = centre + abs(1 - centre) * np.exp(1j * (start + np.linspace(0, 2 * np.pi, 2 * POINTS)))[1:-1]
+    ratio = (z - 1) / (z + 1)
+    angle = np.unwrap(np.angle(ratio))
+    angle -= 2 * np.pi * np.round((angle[len(angle) // 2] - np.pi) / (2 * np.pi))
+    power = np.abs(ratio) ** k * np.exp(1j * k * angle)
+    w = np.concatenate([[k], k * (1 + power) / (1 - power), [k]])
+    return np.stack([w.real, w.imag], axis=1)
+
+
+def _as_found(rng: np.random.Generator, points: Floats) -> Floats:
+    """Return fewer points, with noise of the size that digitised sections have."""
+    n, keep = len(points), int(rng.integers(25, 90))
+    q = np.linspace(0, 1, keep)
+    even, ends = q * (n - 1), np.sin(np.pi * q) ** 2 * 0.5 * (n - 1)
+    k = np.round(0.6 * even + 0.4 * np.where(q < 0.5, ends, n - 1 - ends)).astype(int)
+    k = np.unique(np.r_[0, k, np.argmin(points[:, 0]), n - 1])
+    found = points[k].copy()
+    inner = np.clip(4 * found[:, 0] * (1 - found[:, 0]), 0, 1)
+    found[:, 1] += 10 ** rng.uniform(-5.5, -4.2) * rng.normal(size=len(found)) * inner
+    return found
+
+
+def _knots(rng: np.random.Generator, airfoil: Airfoil, ni: int) -> Floats:
+    """Return arc lengths (ni,): conformal, cosine, near uniform, or one of these warped between its corners."""
+    curve = airfoil.curve
+    corners = curve.knots[[1, -1]] if airfoil.blunt else np.zeros(0)
+    conformal = conformal_knots(curve, corners, ni)
+    fixed = np.unique(np.r_[0, [int(np.argmin(np.abs(conformal - c))) for c in corners], ni - 1]).astype(int)
+    draw = rng.random()
+    s = conformal.copy()
+    longest = int(np.argmax(np.diff(fixed)))
+    a, b = fixed[longest], fixed[longest + 1]
+    x = np.linspace(0, 1, b - a + 1)
+    if draw < 0.55:  # towards equal steps of arc length
+        even = conformal[a] + (conformal[b] - conformal[a]) * x
+        share = rng.uniform(0, 0.6)
+        s[a : b + 1] = (1 - share) * s[a : b + 1] + share * even
+    if draw > 0.3:
+        k = np.arange(1, 7)
+        warp = (rng.normal(size=6) / k ** rng.uniform(1.5, 2.5)) @ np.sin(np.pi * np.outer(k, x))
+        rate = np.abs(np.diff(warp)).max() * (b - a)
+        x = x + warp * rng.uniform(0.05, 0.6) / max(rate, 1e-9)
+        s[a : b + 1] = np.interp(x, np.linspace(0, 1, b - a + 1), s[a : b + 1])
+    return s
+
+
+def _cosine() -> Floats:
+    return np.asarray(0.5 * (1 - np.cos(np.linspace(0, np.pi, POINTS))))
+
+
+def _joined(xu: Floats, yu: Floats, xl: Floats, yl: Floats) -> Floats:
+    return np.concatenate([np.stack([xu, yu], axis=1)[::-1], np.stack([xl, yl], axis=1)[1:]])
+
+
+def _normalised(points: Floats) -> Floats:
+    z = points[:, 0] + 1j * points[:, 1]
+    tail = 0.5 * (z[0] + z[-1])
+    nose = z[np.argmax(np.abs(z - tail))]
+    z = (z - nose) / (tail - nose)
+    return np.stack([z.real, z.imag], axis=1)
+
+
+def _thickness(points: Floats) -> Floats:
+    k, x = int(np.argmin(points[:, 0])), np.linspace(0.02, 0.97, 60)
+    upper, lower = points[: k + 1][::-1], points[k:]
+    return np.asarray(np.interp(x, upper[:, 0], upper[:, 1]) - np.interp(x, lower[:, 0], lower[:, 1]))

@@ -1,0 +1,162 @@
+/* Argument reduction below lives on the order of its operations. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-associative-math")
+#endif
+
+#include "maps_kernel.h"
+
+#include <math.h>
+
+#include "clones.h"
+
+/* glibc's vector versions of these, for the loops below; elsewhere they stay scalar calls */
+#if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 35)
+extern double log(double) __attribute__((simd("notinbranch")));
+extern double atan2(double, double) __attribute__((simd("notinbranch")));
+#endif
+
+#define CHUNK 256
+
+/* exp(x) for |x| < 700: x = n ln 2 + r, Taylor to r^13 on |r| < .347: 2 ulp */
+MESHONET_INLINE double fast_exp(double x) {
+    double n = rint(x * 1.4426950408889634);
+    double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
+    double p = 1.0 / 6227020800.0;
+    p = p * r + 1.0 / 479001600.0;
+    p = p * r + 1.0 / 39916800.0;
+    p = p * r + 1.0 / 3628800.0;
+    p = p * r + 1.0 / 362880.0;
+    p = p * r + 1.0 / 40320.0;
+    p = p * r + 1.0 / 5040.0;
+    p = p * r + 1.0 / 720.0;
+    p = p * r + 1.0 / 120.0;
+    p = p * r + 1.0 / 24.0;
+    p = p * r + 1.0 / 6.0;
+    p = p * r + 0.5;
+    p = p * r + 1.0;
+    p = p * r + 1.0;
+    union { double d; long long i; } scale;
+    scale.i = (long long)((int)n + 1023) << 52;
+    return p * scale.d;
+}
+
+/* sin and cos for |x| < 1e5: quadrant by rounding, Cody & Waite reduction, Taylor on |r| < pi/4: 2 ulp */
+MESHONET_INLINE void fast_sincos(double x, double *s, double *c) {
+    double n = rint(x * 0.63661977236758134308);
+    double r = ((x - n * 1.57079632673412561417e+00) - n * 6.07710050630396597660e-11) - n * 2.02226624879595063154e-21;
+    double z = r * r;
+    double ps = -1.0 / 1307674368000.0;
+    ps = ps * z + 1.0 / 6227020800.0;
+    ps = ps * z - 1.0 / 39916800.0;
+    ps = ps * z + 1.0 / 362880.0;
+    ps = ps * z - 1.0 / 5040.0;
+    ps = ps * z + 1.0 / 120.0;
+    ps = ps * z - 1.0 / 6.0;
+    ps = r + r * z * ps;
+    double pc = 1.0 / 20922789888000.0;
+    pc = pc * z - 1.0 / 87178291200.0;
+    pc = pc * z + 1.0 / 479001600.0;
+    pc = pc * z - 1.0 / 3628800.0;
+    pc = pc * z + 1.0 / 40320.0;
+    pc = pc * z - 1.0 / 720.0;
+    pc = pc * z + 1.0 / 24.0;
+    pc = pc * z - 0.5;
+    pc = 1.0 + z * pc;
+    int quadrant = (int)n & 3;
+    double a = (quadrant & 1) ? pc : ps, b = (quadrant & 1) ? ps : pc;
+    *s = (quadrant & 2) ? -a : a;
+    *c = ((quadrant + 1) & 2) ? -b : b;
+}
+
+/* v = exp(psi + i (phi + phase)) */
+MESHONET_INLINE void unroll(const double *psi, const double *phi, double phase, long n, double *vr, double *vi) {
+    for (long j = 0; j < n; j++) {
+        double s, c, r = fast_exp(psi[j]);
+        fast_sincos(phi[j] + phase, &s, &c);
+        vr[j] = r * c;
+        vi[j] = r * s;
+    }
+}
+
+/* v <- (q r - p)/(r - 1) with r = ((v - P)/(v - Q))^k */
+MESHONET_INLINE void restore_corner(const CornerMap *m, long n, double *restrict vr, double *restrict vi,
+                                    double *restrict lr, double *restrict an) {
+    for (long j = 0; j < n; j++) {
+        double a = vr[j] - m->P.re, b = vi[j] - m->P.im, c = vr[j] - m->Q.re, d = vi[j] - m->Q.im;
+        lr[j] = (a * a + b * b) / (c * c + d * d);
+        vr[j] = a * c + b * d; /* (v - P) conj(v - Q): the quotient's direction */
+        vi[j] = b * c - a * d;
+    }
+    for (long j = 0; j < n; j++) lr[j] = log(lr[j]);
+    for (long j = 0; j < n; j++) an[j] = atan2(vi[j], vr[j]);
+    const double k = m->k;
+    for (long j = 0; j < n; j++) {
+        double s, c, size = fast_exp(0.5 * k * (lr[j] > -600.0 ? lr[j] : -600.0)); /* at the corner itself: 0 */
+        fast_sincos(k * an[j], &s, &c);
+        double rr = size * c, ri = size * s;
+        double nr = m->q.re * rr - m->q.im * ri - m->p.re, ni = m->q.re * ri + m->q.im * rr - m->p.im;
+        double dr = rr - 1.0, w = 1.0 / (dr * dr + ri * ri);
+        vr[j] = (nr * dr + ni * ri) * w;
+        vi[j] = (ni * dr - nr * ri) * w;
+    }
+}
+
+static void near_map(double *psi_x, double *phi_y, long n, const LiftMaps *m) __attribute__((always_inline));
+static inline void near_map(double *psi_x, double *phi_y, long n, const LiftMaps *m) {
+    double vr[CHUNK], vi[CHUNK], a[CHUNK], b[CHUNK];
+    unroll(psi_x, phi_y, m->phase, n, vr, vi);
+    for (long j = 0; j < n; j++) {
+        vr[j] += m->pole.re;
+        vi[j] += m->pole.im;
+    }
+    for (int k = 0; k < m->n_corners; k++) restore_corner(&m->corners[k], n, vr, vi, a, b);
+    for (long j = 0; j < n; j++) {
+        double w = 1.0 / (vr[j] * vr[j] + vi[j] * vi[j]);
+        double zr = vr[j] * (1.0 + w), zi = vi[j] * (1.0 - w);
+        psi_x[j] = m->centre.re + m->quarter.re * zr - m->quarter.im * zi;
+        phi_y[j] = -(m->centre.im + m->quarter.re * zi + m->quarter.im * zr);
+    }
+}
+
+/* `terms` of the Laurent series by Horner's rule in u = 1/v = exp(-psi - i (phi + phase)) */
+MESHONET_INLINE void far_map(double *psi_x, double *phi_y, long n, const LiftMaps *m, int terms) {
+    double ur[CHUNK], ui[CHUNK], vr[CHUNK], vi[CHUNK], zr[CHUNK], zi[CHUNK];
+    unroll(psi_x, phi_y, m->phase, n, vr, vi);
+    for (long j = 0; j < n; j++) {
+        double w = 1.0 / (vr[j] * vr[j] + vi[j] * vi[j]);
+        ur[j] = vr[j] * w;
+        ui[j] = -vi[j] * w;
+        zr[j] = zi[j] = 0.0;
+    }
+    for (int t = terms - 1; t > 0; t--) {
+        const double cr = m->laurent[t].re, ci = m->laurent[t].im;
+        for (long j = 0; j < n; j++) {
+            double a = zr[j] + cr, b = zi[j] + ci;
+            zr[j] = a * ur[j] - b * ui[j];
+            zi[j] = a * ui[j] + b * ur[j];
+        }
+    }
+    for (long j = 0; j < n; j++) {
+        psi_x[j] = zr[j] + m->laurent[0].re + m->quarter.re * vr[j] - m->quarter.im * vi[j];
+        phi_y[j] = -(zi[j] + m->laurent[0].im + m->quarter.re * vi[j] + m->quarter.im * vr[j]);
+    }
+}
+
+MESHONET_CLONES
+void lift_to_plane(double *psi_x, double *phi_y, long rows, long m, const LiftMaps *maps) {
+    for (long i = 0; i < rows; i++) {
+        double *p = psi_x + i * m, *f = phi_y + i * m;
+        long far = m;
+        while (far > 0 && p[far - 1] > maps->psi_far) far--;
+        for (long j = 0; j < far; j += CHUNK) near_map(p + j, f + j, far - j < CHUNK ? far - j : CHUNK, maps);
+        for (long j = far; j < m; j += CHUNK) {
+            long n = m - j < CHUNK ? m - j : CHUNK;
+            double least = p[j];
+            for (long q = 1; q < n; q++) least = p[j + q] < least ? p[j + q] : least;
+            /* terms fall like exp(-n (psi - psi_wall)): further out, fewer of them reach round-off */
+            int terms = (int)(maps->n_laurent * maps->reach / (least - maps->psi_far + maps->reach)) + 1;
+            far_map(p + j, f + j, n, maps, terms < maps->n_laurent ? terms : maps->n_laurent);
+        }
+    }
+}

@@ -1,0 +1,1 @@
+"""Architectures in torch, one a file; nothing outside training imports them."""

@@ -1,0 +1,123 @@
+"""The airfoil O operator: lift, harmonic base, network, Picard polish, evaluation at any resolution.
+
+A boundary's two walls are lifted to a periodic strip, where the harmonic extension of the walls nearly solves
+Winslow's equations; the network adds the difference, Picard's iteration polishes, and the separable sum is
+evaluated at the grid's nodes. Boundaries the lift cannot take go to the elliptic solver, and the solution
+says so.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import Literal
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats, planar_nodes
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.lift import Lift, lift_body, mirrored
+from solvers.neural.bisector import halve_corners
+from solvers.neural.evaluate import StripGrid
+from solvers.neural.strip import across, harmonic, modes, picard
+from solvers.neural.weights import Model, load_model
+from solvers.solution import Solution
+
+Polish = Literal["auto", "off"] | int
+
+AUTO_STEPS = 4  # the most steps that "auto" takes
+SETTLED = 1e-5  # and the change of phi (radians) below which it stops: far less than a cell's width
+WILD = 0.5  # a change of phi above this means that Picard's iteration diverges
+
+
+def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto") -> Solution:
+    """Return the grid inside `boundary`, by the operator shipped for its topology where there is one.
+
+    Parameters
+    ----------
+    boundary : ``o`` goes to the operator, ``quad`` to the elliptic solver at discretisation level.
+    model : name of a shipped model or path to a ``.safetensors`` file; None takes the shipped one;
+        ``base`` is the harmonic base with no network.
+    polish : Picard steps after the network: a number, ``off`` for none, ``auto`` until they change nothing.
+
+    Returns
+    -------
+    Solution
+        its boundary nodes are bitwise those of `boundary`.
+
+    Raises
+    ------
+    InputError
+        a model that does not exist or cannot be read; a C boundary.
+    """
+    begun = time.perf_counter()
+    if boundary.topology != "o":
+        from solvers.elliptic.solve import solve
+
+        if model is not None:
+            raise InputError(f"no shipped model makes {boundary.topology} grids", "leave --model out")
+        return solve(boundary)
+    network = None if model == "base" else load_model(model)
+    try:
+        nodes, changes = _operate(boundary, network, polish)
+    except InputError as error:
+        return _elliptic(boundary, f"the operator cannot take this body ({error.problem})", begun)
+    if changes and not changes[-1] < WILD:
+        return _elliptic(boundary, "the operator's polish diverged", begun)
+    facts = {"method": "operator", "model": network.name if network else "base", "polish": len(changes)}
+    grid = Grid(nodes, "o", boundary.parts, boundary.name, facts)
+    return Solution(
+        grid,
+        "operator",
+        model=network.name if network else "base",
+        residual=changes[-1] if changes else None,
+        cycles=len(changes),
+        seconds={"grid": time.perf_counter() - begun},
+    )
+
+
+def walls(boundary: Boundary) -> tuple[Lift, Complexes, Complexes, Complexes, tuple[int, ...]]:
+    """Return the lift, F on the wall and on the far field (n,), the wall's nodes, its corners.
+
+    F = w - i theta is periodic; n = ni - 1. Raises InputError when the body cannot be lifted.
+    """
+    z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
+    lift, w, corners = lift_body(z)
+    theta = 2.0 * np.pi * np.arange(len(z)) / len(z)
+    away = lift.to_strip(far)
+    away -= 2j * np.pi * np.round((away.imag - w.imag).mean() / (2.0 * np.pi))
+    return lift, w - 1j * theta, away - 1j * theta, z, corners
+
+
+def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple[Floats, list[float]]:
+    lift, wall, far, z, corners = walls(boundary)
+    a, b = modes(wall), modes(far)
+    c = harmonic(a, b, across().eta)
+    if network is not None:
+        c = c + network.residual(a, b)
+    changes: list[float] = []
+    for _ in range(AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish):
+        c, change = picard(c, 1)
+        changes += change
+        if not change[0] < WILD or (polish == "auto" and change[0] < SETTLED):
+            break
+    nodes = planar_nodes(boundary.ni, boundary.nj)
+    grid = StripGrid(c, wall, far, np.linspace(0.0, 1.0, boundary.nj))
+    halve_corners(grid, lift, z, corners)
+    grid.fill(lift, float(wall.real.max()), nodes)
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    return nodes, changes
+
+
+def _elliptic(boundary: Boundary, why: str, begun: float) -> Solution:
+    from dataclasses import replace
+
+    from solvers.elliptic.solve import solve
+
+    found = solve(boundary)
+    return replace(
+        found,
+        notes=(f"{why}: elliptic solver used", *found.notes),
+        seconds={"grid": time.perf_counter() - begun},
+    )

@@ -1,0 +1,135 @@
+"""Model files: safetensors with a header that says what the model is, checked before anything is used."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from geometry.errors import InputError
+from solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
+from solvers.neural.network import Reals, forward
+from solvers.neural.strip import LEVELS
+
+DEFAULT = "airfoil-o"
+KIND = "meshonet strip operator"
+LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
+
+
+@dataclass(frozen=True)
+class Model:
+    """A trained strip operator.
+
+    `weights` are the network's arrays by torch's names, `basis` (Q, LEVELS - 2), `scale` of its targets,
+    `header` what the file says of itself: recipe and held-out figures.
+    """
+
+    name: str
+    weights: Mapping[str, Reals]
+    basis: Floats
+    scale: float
+    header: Mapping[str, Any]
+
+    def residual(self, wall: Complexes, far: Complexes) -> Complexes:
+        """Return modes (2 MODES + 1, LEVELS) of Winslow - harmonic for wall modes (2 MODES + 1,)."""
+        channels, scalars, size = encode(wall[None], far[None])
+        answer = forward(self.weights, channels[0], scalars[0])
+        return decode(answer.astype(np.float64), self.basis, self.scale, float(size[0]))
+
+
+def shipped() -> tuple[str, ...]:
+    """Return the names of the models in the package."""
+    folder = resources.files("solvers.neural") / "pretrained"
+    return tuple(
+        sorted(
+            f.name.removesuffix(".safetensors") for f in folder.iterdir() if f.name.endswith(".safetensors")
+        )
+    )
+
+
+def model_path(name: str | None) -> Path:
+    """Return the file of a shipped model's name, of a path, or of the default."""
+    name = name or DEFAULT
+    if name in shipped():
+        return Path(str(resources.files("solvers.neural") / "pretrained" / f"{name}.safetensors"))
+    path = Path(name)
+    if path.is_file():
+        return path
+    raise InputError(f"no model {name!r}", "use a .safetensors file or one of: base, " + ", ".join(shipped()))
+
+
+def load_model(name: str | None = None) -> Model:
+    """Return a shipped model by name, a model by path, or the default.
+
+    Raises
+    ------
+    InputError
+        no such model; a file that is not safetensors, not one of ours or of another version.
+    """
+    return _load(str(model_path(name)))
+
+
+@lru_cache(maxsize=4)
+def _load(path: str) -> Model:
+    header, tensors = read_tensors(Path(path))
+    try:
+        if header["kind"] != KIND or int(header["encoding"]) != VERSION:
+            raise InputError(
+                f"it holds {header['kind']!r}, encoding {header['encoding']}",
+                f"use a model of encoding {VERSION} or train one",
+                source=path,
+            )
+        basis = tensors.pop("basis").astype(np.float64)
+        scale = float(header["scale"])
+        inputs = tensors["lift.weight"].shape[1]
+        outputs = tensors["project.weight"].shape[0]
+    except (KeyError, IndexError, ValueError) as error:
+        raise InputError(
+            f"its header or arrays lack {error}", "use a file made by meshonet train", source=path
+        ) from None
+    if basis.shape != (outputs // 2, LEVELS - 2) or inputs != CHANNELS + SCALARS or not np.isfinite(scale):
+        raise InputError("its arrays do not fit this version's network", "train it again", source=path)
+    weights = {name: array.astype(np.float32) for name, array in tensors.items()}
+    return Model(header.get("name", Path(path).stem), weights, basis, scale, header)
+
+
+def read_tensors(path: Path) -> tuple[dict[str, str], dict[str, Floats]]:
+    """Return the metadata and the arrays of a safetensors file, size and finiteness checked."""
+    from safetensors import SafetensorError, safe_open
+
+    if path.stat().st_size > LARGEST:
+        raise InputError(
+            f"it is larger than {LARGEST >> 20} MiB", "use a file made by meshonet train", source=str(path)
+        )
+    try:
+        with safe_open(path, framework="numpy") as file:
+            header = dict(file.metadata() or {})
+            tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 - not a mapping
+    except (SafetensorError, OSError, ValueError, TypeError) as error:
+        raise InputError(
+            f"not a safetensors file ({error})", "use a file made by meshonet train", source=str(path)
+        ) from None
+    for key, array in tensors.items():
+        if not np.issubdtype(array.dtype, np.floating) or not np.isfinite(array).all():
+            raise InputError(
+                f"array {key!r} is not finite floating point", "train it again", source=str(path)
+            )
+    return header, tensors
+
+
+def described(name: str) -> dict[str, Any]:
+    """Return what a shipped model says of itself: name, topology, recipe, figures, file."""
+    path = model_path(name)
+    header, tensors = read_tensors(path)
+    facts: dict[str, Any] = {key: header[key] for key in ("name", "topology") if key in header}
+    facts |= {key: json.loads(header[key]) for key in ("recipe", "figures") if key in header}
+    facts["parameters"] = int(sum(array.size for array in tensors.values()))
+    facts["file"] = str(path)
+    return facts
