@@ -69,6 +69,26 @@ def arcs_by_curvature(
     return arcs
 
 
+def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
+    """Return distances (cells + 1,) along a closed curve from `begin` on, following curvature alone.
+
+    Parameters
+    ----------
+    curve : closed.
+    begin : arc length to start from.
+    way : length to go, negative against the curve's direction.
+    cells : wanted.
+    """
+    s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
+    bend = _bend(curve, begin + np.sign(way) * s, curve.length)
+    known = _limited_size(s, TURN / bend) ** -4
+    density = _density(s, known, np.ones_like(s), cells)
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
+    distance = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
+    distance[0], distance[-1] = 0.0, abs(way)
+    return distance
+
+
 def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -> Floats:
     """Return arc lengths from the lower to the upper end, close together where the steps are small."""
     lower, nose, upper = stations
@@ -84,7 +104,7 @@ def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -
 
 def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
     """Return the absolute curvature at arc lengths s, averaged over `_WINDOW` chords and at least 0.01 a chord."""
-    low, high = s[0], s[-1]
+    low, high = min(s[0], s[-1]), max(s[0], s[-1])
     t = np.linspace(low, high, 4 * _SAMPLES)
     d = curve.tangent(np.clip(t, low + 1e-9 * (high - low), high - 1e-9 * (high - low)))
     angle = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
@@ -100,11 +120,15 @@ def _known(
     lower, nose, upper = stations
     size = TURN / bend
     size[[0, -1]] = size[[0, -1]].min()  # the two surfaces meet here
-    # h(s) = min over s' of h(s') + growth |s - s'|, by one pass each way
-    size = np.minimum.accumulate(size - GROWTH * s) + GROWTH * s
-    size = np.minimum.accumulate((size + GROWTH * s)[::-1])[::-1] - GROWTH * s
+    size = _limited_size(s, size)
     edge = steps[0] + GROWTH * np.minimum(s - lower, upper - s)
     return np.asarray(edge**-4 + (steps[1] + GROWTH * np.abs(s - nose)) ** -4 + size**-4)
+
+
+def _limited_size(s: Floats, size: Floats) -> Floats:
+    """Return h(s) = min over s' of size(s') + growth |s - s'|, by one pass each way."""
+    size = np.minimum.accumulate(size - GROWTH * s) + GROWTH * s
+    return np.asarray(np.minimum.accumulate((size + GROWTH * s)[::-1])[::-1] - GROWTH * s)
 
 
 def _density(s: Floats, known: Floats, relief: Floats, cells: int) -> Floats:

@@ -18,10 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from geometry.arrays import Floats
+from geometry.conformal import conformal_knots
 from geometry.curves import Curve
 from geometry.errors import InputError
-from geometry.sampling import Sampling, TanhLaw, monotone_cubic
+from geometry.sampling import Sampling, TanhLaw
 from geometry.size_field import arcs_by_curvature
+from geometry.stretch import on_corners
 
 _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O grids:
@@ -62,9 +64,11 @@ class Plan:
 def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
-    Spacings: ``auto`` and ``tanh`` stretch each side between a step at its two edges; ``cosine`` is the
-    half circle's on each side, or ``tanh`` with its end steps where one is given or the edge is blunt;
-    ``uniform`` has equal steps on a side; ``curvature`` follows `geometry.size_field`.
+    Spacings: ``conformal`` has equal angles of the circle that the section is an image of
+    (`geometry.conformal`); ``tanh`` stretches each side between a step at its two edges; ``auto`` is
+    ``conformal``, or ``tanh`` where a step is given or the section has no usable map; ``cosine`` is the half
+    circle's on each side, or ``tanh`` with its end steps where one is given or the edge is blunt; ``uniform``
+    has equal steps on a side; ``curvature`` follows `geometry.size_field`.
 
     Parameters
     ----------
@@ -80,10 +84,19 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     least = 7 if stations.half_base else 5
     if ni < least:
         raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
-    if sampling.spacing == "uniform" and (sampling.le_spacing or sampling.te_spacing):
+    steps_given = sampling.le_spacing is not None or sampling.te_spacing is not None
+    if sampling.spacing in ("uniform", "conformal") and steps_given:
         raise InputError(
-            "uniform spacing leaves no cell size to choose", "use tanh, cosine or curvature with it"
+            f"{sampling.spacing} spacing leaves no cell size to choose",
+            "use tanh, cosine or curvature with it",
         )
+    if sampling.spacing == "conformal" or (sampling.spacing == "auto" and not steps_given):
+        corners = np.array([stations.lower, stations.upper]) if stations.half_base else np.zeros(0)
+        try:
+            return conformal_knots(stations.curve, corners, ni)
+        except InputError:
+            if sampling.spacing == "conformal":
+                raise
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
         sides = arcs_by_curvature(
@@ -105,7 +118,9 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     else:
         base = _half_base(plan, stations.half_base)
         arcs = np.concatenate([base[:-1], sides, stations.curve.length - base[-2::-1]])
-    return _with_corners(arcs, stations, plan.half)
+    corners = stations.curve.corners
+    inside = corners[(corners > stations.lower) & (corners < stations.upper)]
+    return on_corners(arcs, inside, fixed=(plan.half, ni - 1 - plan.half))
 
 
 def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
@@ -188,35 +203,3 @@ def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
         return np.asarray(length * np.sin(0.5 * np.pi * q) ** 2)
     part = 1.0 if float(plan.cells).is_integer() else 0.5
     return np.asarray(length * TanhLaw.fitted(plan.cells, plan.te / length, plan.le / length, part)(q))
-
-
-def _with_corners(arcs: Floats, stations: Stations, half: int) -> Floats:
-    """Return the arcs moved along so that every corner of the curve is a node.
-
-    The nearest node of each corner is put on it and those between are shared out evenly in index, with the
-    trailing edge, the ends of the base and a node at the nose kept.
-    """
-    last = len(arcs) - 1
-    known = {0: 0, half: half, last - half: last - half, last: last}
-    corners = stations.curve.corners
-    inside = corners[(corners > stations.lower) & (corners < stations.upper)]
-    if inside.size == 0:
-        return arcs
-    index = np.arange(last + 1.0)
-    place = np.interp(inside, arcs, index)
-    node = np.rint(place)
-    for k in range(1, len(node)):
-        node[k] = max(node[k], node[k - 1] + 1)
-    ceiling = last - half - 1
-    for k in range(len(node) - 1, -1, -1):
-        node[k] = min(node[k], ceiling)
-        ceiling = node[k] - 1
-    if node[0] <= half:
-        raise InputError(f"{last + 1} nodes for {len(inside)} corners", "use more nodes")
-    kept = {k: float(k) for k in known} | {int(k): float(p) for k, p in zip(node, place, strict=True)}
-    order = np.array(sorted(kept))
-    out = monotone_cubic(index, arcs, np.interp(index, order, np.array([kept[k] for k in order])))
-    out[node.astype(np.intp)] = inside
-    for k in known:
-        out[k] = arcs[k]
-    return out
