@@ -41,15 +41,20 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
                 f"a grid of {told} nodes has no cells", "give at least 2 nodes in two directions"
             )
         if dims[axis] == 1:
-            return np.stack(_without_constant(first, told), axis=-1)
+            return _nodes(_without_constant(first, told))
         second = [np.take(c, 1, axis) for c in coordinates]
         kept = _without_shift(first, second)
         if kept:
-            return np.stack(kept, axis=-1)
+            return _nodes(kept)
     raise InputError(
         f"a grid of {told} nodes is three-dimensional",
         "give a plane one: one plane, or two copies of one, in some direction",
     )
+
+
+def _nodes(coordinates: list[Floats]) -> Floats:
+    """Return (ni, nj, 2) float64 of x and y, each (ni, nj), in the layout that `Grid` keeps."""
+    return np.moveaxis(np.stack(coordinates, dtype=np.float64), 0, -1)
 
 
 def _without_constant(plane: list[Floats], told: str) -> list[Floats]:

@@ -125,18 +125,21 @@ def _points(piece: Element, encoding: Encoding) -> Floats:
 
 
 def _assembled(pieces: list[Element], whole: Extent, encoding: Encoding) -> Floats:
-    """Return the points of a grid stored in pieces; a node in none stays NaN, which `Grid` refuses."""
+    """Return the points of a grid stored in pieces, which overlap in their shared nodes."""
     dims = _dims(whole)
     parts = [(_extent(piece, "Extent"), _points(piece, encoding)) for piece in pieces]
     if dims[0] * dims[1] * dims[2] > sum(points.size for _, points in parts):
         raise InputError("its pieces do not cover WholeExtent", "write the whole grid in one file")
-    points = np.full((*dims, 3), np.nan)
+    points, missing = np.empty((*dims, 3)), np.ones(dims, bool)
     for extent, values in parts:
         at = [(extent[2 * k] - whole[2 * k], extent[2 * k + 1] - whole[2 * k] + 1) for k in (2, 1, 0)]
         if any(a < 0 or b > n for (a, b), n in zip(at, dims, strict=True)):
             raise InputError("a piece lies outside WholeExtent", "write the file again")
         (k0, k1), (j0, j1), (i0, i1) = at
         points[k0:k1, j0:j1, i0:i1] = values
+        missing[k0:k1, j0:j1, i0:i1] = False
+    if missing.any():
+        raise InputError("its pieces do not cover WholeExtent", "write the whole grid in one file")
     return points
 
 

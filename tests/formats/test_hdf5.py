@@ -1,0 +1,210 @@
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from format_shapes import c_grid, channel, memory, ring
+
+from formats.edges import boundary_of
+from formats.hdf5 import Writer, read_grids, read_parameters, read_shapes, write_boundaries, write_grids
+from formats.source import open_source
+from geometry.errors import InputError
+from geometry.grid import Grid
+
+
+def written(path: Path, grids: list[Grid]) -> h5py.File:
+    write_grids(path, grids)
+    return h5py.File(path, "r")
+
+
+def test_the_layout_is_the_documented_one(tmp_path: Path) -> None:
+    grids = [ring(name=f"r{k}") for k in range(3)]
+    with written(tmp_path / "g.h5", grids) as file:
+        assert dict(file.attrs) == {"format": "meshonet-grid", "version": 1, "topology": "o"}
+        shapes = {
+            "south": (3, 13, 2),
+            "north": (3, 13, 2),
+            "west": (3, 5, 2),
+            "east": (3, 5, 2),
+            "nodes": (3, 13, 5, 2),
+        }
+        for name, shape in shapes.items():
+            assert file[name].shape == shape
+            assert file[name].dtype == np.float64
+            assert file[name].maxshape == (None, *shape[1:])
+            assert file[name].chunks == (1, *shape[1:])
+        assert np.array_equal(file["nodes"][2], grids[2].nodes)
+        assert np.array_equal(file["south"][1], grids[1].nodes[:, 0])
+        assert file["names"].asstr()[:].tolist() == ["r0", "r1", "r2"]
+
+
+def test_ten_lines_of_h5py_make_a_boundary_dataset(tmp_path: Path) -> None:
+    t = np.linspace(0, 1, 5)
+    with h5py.File(tmp_path / "b.h5", "w") as f:
+        f.attrs.update(format="meshonet-boundary", version=1, topology="quad")
+        f["south"] = np.stack([t, 0 * t], -1)[None]
+        f["north"] = np.stack([t, 0 * t + 1], -1)[None]
+        f["west"] = np.stack([0 * t[:3], t[::2]], -1)[None]
+        f["east"] = np.stack([0 * t[:3] + 1, t[::2]], -1)[None]
+    (boundary,) = read_shapes(open_source(str(tmp_path / "b.h5")))
+    assert (boundary.ni, boundary.nj, boundary.topology) == (5, 3, "quad")
+
+
+def test_provenance_is_kept_whole_and_can_be_read_by_eye(tmp_path: Path) -> None:
+    facts = {
+        "method": "winslow",
+        "version": "0.1",
+        "cycles": np.int64(4),
+        "path": ["a", "b"],
+        "residual": np.array([1.0]),
+    }
+    grid = channel().with_provenance(**facts)
+    with written(tmp_path / "g.h5", [grid]) as file:
+        assert file.attrs["method"] == "winslow"
+        assert file.attrs["meshonet_version"] == "0.1"
+        assert file.attrs["version"] == 1
+    (back,) = read_grids(open_source(str(tmp_path / "g.h5")))
+    assert back.provenance["cycles"] == 4
+    assert back.provenance["residual"] == [1.0]
+
+
+def test_samples_are_in_the_file_as_they_are_appended(tmp_path: Path) -> None:
+    counts = []
+
+    def grids() -> Iterator[Grid]:
+        for k in range(4):
+            yield ring(name=f"r{k}")
+            counts.append(writer._count)
+
+    with Writer(tmp_path / "g.h5", "meshonet-grid") as writer:
+        for grid in grids():
+            writer.append(grid)
+    assert counts == [1, 2, 3, 4]
+
+
+def test_an_interrupted_dataset_has_what_was_appended(tmp_path: Path) -> None:
+    def grids() -> Iterator[Grid]:
+        yield ring(name="done")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        write_grids(tmp_path / "g.h5", grids())
+    (back,) = read_grids(open_source(str(tmp_path / "g.h5")))
+    assert back.name == "done"
+
+
+def test_parameters_and_split_go_with_the_samples(tmp_path: Path) -> None:
+    with Writer(tmp_path / "b.h5", "meshonet-boundary", ("height", "width")) as writer:
+        for k, split in enumerate(("train", "test")):
+            writer.append(boundary_of(channel()), parameters=np.array([k, 2.5 * k]), split=split)
+    names, values, split = read_parameters(open_source(str(tmp_path / "b.h5")))
+    assert names == ("height", "width")
+    assert values.tolist() == [[0.0, 0.0], [1.0, 2.5]]
+    assert split == ("train", "test")
+    with h5py.File(tmp_path / "b.h5") as file:
+        assert list(file["parameters"].attrs["names"]) == ["height", "width"]
+
+
+def test_a_dataset_without_parameters_has_none(tmp_path: Path) -> None:
+    write_boundaries(tmp_path / "b.h5", [boundary_of(channel())])
+    names, values, split = read_parameters(open_source(str(tmp_path / "b.h5")))
+    assert (names, values.shape, split) == ((), (1, 0), ("",))
+
+
+def test_the_same_grids_give_the_same_bytes(tmp_path: Path) -> None:
+    write_grids(tmp_path / "a.h5", [channel(), channel()])
+    write_grids(tmp_path / "b.h5", [channel(), channel()])
+    assert (tmp_path / "a.h5").read_bytes() == (tmp_path / "b.h5").read_bytes()
+
+
+@pytest.mark.parametrize("other", [ring(14), c_grid(), ring(13, 6)])
+def test_a_sample_of_another_size_or_topology_is_refused(other: Grid, tmp_path: Path) -> None:
+    with pytest.raises(
+        InputError, match=r"sample 1 is .* and the first is 13x5 o; one dataset has one size .*--res"
+    ):
+        write_grids(tmp_path / "g.h5", [ring(), other])
+
+
+def test_parameters_of_another_length_are_refused(tmp_path: Path) -> None:
+    with (
+        Writer(tmp_path / "b.h5", "meshonet-boundary", ("a", "b")) as writer,
+        pytest.raises(InputError, match=r"parameters of sample 0 has shape \(3,\); the first has \(2,\)"),
+    ):
+        writer.append(boundary_of(channel()), parameters=np.zeros(3))
+
+
+def changed(change: str) -> bytes:
+    """Return a grid dataset after a line of code that spoils it."""
+    raw = io.BytesIO()
+    with h5py.File(raw, "w") as f:
+        grid = channel()
+        f.attrs.update(format="meshonet-grid", version=1, topology="quad")
+        edges = boundary_of(grid)
+        for side in ("south", "north", "west", "east"):
+            f[side] = getattr(edges, side)[None]
+        f["nodes"] = np.ascontiguousarray(grid.nodes)[None]
+        f["names"] = ["a"]
+        exec(change, {"f": f, "np": np, "h5py": h5py})  # noqa: S102
+    return raw.getvalue()
+
+
+SIDES = ("south", "north", "west", "east", "nodes")
+EMPTY = f"for k in {SIDES}: s = f[k].shape; del f[k]; f[k] = np.zeros((0, *s[1:]))"
+HUGE = "del f['nodes']; f.create_dataset('nodes', (1, 10**6, 10**6, 2), 'f8', chunks=(1, 100, 100, 2))"
+ELSEWHERE = "del f['east']; f.create_dataset('east', (1, 5, 2), 'f8', external=[('/etc/passwd', 0, 80)])"
+NEEDS_EAST = "has no dataset 'east'; store south, north, west and east"
+CASES = {
+    "del f.attrs['format']": "is HDF5 but not a dataset of boundaries or grids; set its",
+    "f.attrs['version'] = 2": "has layout version '2'; this program reads version 1",
+    "f.attrs['topology'] = 'x'": "topology 'x' is not known; use quad, o or c",
+    "del f['east']": NEEDS_EAST,
+    "del f['nodes']": "has no dataset 'nodes'",
+    "del f['east']; f.create_group('east')": NEEDS_EAST,
+    "del f['east']; f['east'] = h5py.ExternalLink('/etc/passwd', '/')": NEEDS_EAST,
+    "del f['east']; f['east'] = h5py.SoftLink('/east')": NEEDS_EAST,
+    "del f['east']; f['east'] = np.zeros((1, 4, 2))": r"has shape \(1, 4, 2\); it must be \(1, 5, 2\)",
+    "del f['east']; f['east'] = np.zeros((1, 5))": "'east' is float64 with 2 axes; store float64 with 3",
+    "del f['east']; f['east'] = ['a']": "dataset 'east' is object with 1 axes",
+    "del f['east']; f['east'] = np.full((1, 5, 2), np.nan)": "sample 0: east node 0 is not finite",
+    "f['nodes'][0, 2, 3, 1] = np.inf": "sample 0: node i=2, j=3 has y = inf; check the file",
+    "del f['names']; f['names'] = np.arange(3)": "dataset 'names' is not a list of texts; store strings",
+    "f['parts'] = ['{']": r"sample 0: its parts are not a JSON list of \[name, side, start, stop\]; remove",
+    "f['parts'] = ['[[\"a\", \"south\", 0, 99]]']": "sample 0: part 'a' runs from node 0 to 99 of a side",
+    "f['provenance'] = ['[1]']": "sample 0: provenance is not a JSON object; remove",
+    "f['provenance'] = ['{']": "sample 0: .*; write the dataset again",
+    "f['parameters'] = np.zeros((4, 2))": "'parameters' has another count than 'south'; give one",
+    EMPTY: "holds no samples; write at least one",
+    HUGE: r"dataset 'nodes' claims shape \(1, 1000000, 1000000, 2\) but holds next to nothing",
+    ELSEWHERE: "dataset 'east' lies in another file; store it in this one",
+}
+
+
+@pytest.mark.parametrize("change", CASES)
+def test_a_damaged_or_hostile_dataset_is_refused(change: str) -> None:
+    def read(data: bytes) -> None:
+        list(read_shapes(memory(data)))
+        list(read_grids(memory(data)))
+
+    read(changed("pass"))
+    data = changed(change)
+    with pytest.raises(InputError, match=CASES[change]):
+        read(data)
+
+
+def test_a_file_that_is_not_hdf5_is_refused() -> None:
+    with pytest.raises(InputError, match=r"is not readable as HDF5 .*; check that the file is whole"):
+        list(read_grids(memory(b"\x89HDF\r\n\x1a\nnothing")))
+
+
+def test_names_from_a_file_cannot_act_on_a_terminal() -> None:
+    (grid,) = read_grids(memory(changed("f['names'][0] = 'a\\x1b[2J'")))
+    assert grid.name == "a\\x1b[2J"
+
+
+def test_single_precision_and_big_endian_are_read() -> None:
+    (grid,) = read_grids(memory(changed("n = f['nodes'][:]; del f['nodes']; f['nodes'] = n.astype('>f4')")))
+    assert np.allclose(grid.nodes, channel().nodes, atol=1e-6)
