@@ -1,0 +1,100 @@
+"""`meshonet convert`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Meshonet
+
+from formats.registry import read_grids, read_shapes
+
+
+@pytest.fixture
+def grid_vts(meshonet: Meshonet, body_h5: Path) -> Path:
+    """An O grid, 41 x 15."""
+    meshonet("tfi", body_h5, "-o", "grid.vts")
+    return Path("grid.vts")
+
+
+@pytest.mark.parametrize("name", ["grid.p3d", "grid.h5", "grid.vtk", "grid.bin", "other.vts"])
+def test_a_grid_stays_the_same_grid(meshonet: Meshonet, grid_vts: Path, name: str) -> None:
+    done = meshonet("convert", grid_vts, name)
+    assert (done.code, done.out) == (0, "")
+    (before,), (after,) = read_grids("grid.vts"), read_grids(name)
+    np.testing.assert_array_equal(after.nodes, before.nodes)
+    assert after.topology == "o"
+
+
+def test_the_output_may_be_an_option(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("convert", grid_vts, "-o", "grid.h5").code == 0
+    assert Path("grid.h5").exists()
+
+
+def test_json_says_what_was_converted(meshonet: Meshonet, grid_vts: Path) -> None:
+    told = meshonet("convert", grid_vts, "grid.h5", "--json").only
+    assert (told["input"], told["output"], told["ni"], told["nj"]) == ("grid.vts", "grid.h5", 41, 15)
+    assert told["parts"] == ["wall", "farfield"]
+
+
+def test_a_batch_becomes_one_file_each_or_one_for_all(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "{name}.vts")
+    assert meshonet("convert", "flat.vts", "low.vts", "-o", "p3d/{stem}.p3d").code == 0
+    assert sorted(path.name for path in Path("p3d").iterdir()) == ["flat.p3d", "low.p3d"]
+    assert meshonet("convert", "flat.vts", "low.vts", "both.h5").code == 0
+    assert len(list(read_grids("both.h5"))) == 2
+
+
+def test_extrude_makes_one_layer_of_cells(meshonet: Meshonet, grid_vts: Path) -> None:
+    vtk = pytest.importorskip("vtk")
+    assert meshonet("convert", grid_vts, "grid3d.vts", "--extrude", "0.25").code == 0
+    reader = vtk.vtkXMLStructuredGridReader()
+    reader.SetFileName("grid3d.vts")
+    reader.Update()
+    assert reader.GetOutput().GetExtent() == (0, 40, 0, 14, 0, 1)
+    assert reader.GetOutput().GetBounds()[4:] == (0.0, 0.25)
+
+
+def test_boundaries_become_boundaries(meshonet: Meshonet, three_h5: Path) -> None:
+    done = meshonet("convert", three_h5, "flat.vts")
+    assert done.code == 2
+    assert "holds boundaries, not grids" in done.err
+
+
+def test_a_pipe_needs_no_file(meshonet: Meshonet, process: object, grid_vts: Path, tmp_path: Path) -> None:
+    read = (tmp_path / grid_vts).read_bytes()
+    done = process("convert", "-", "-", "--from", "vts", "--to", "plot3d-ascii", input=read)  # type: ignore[operator]
+    assert done.returncode == 0
+    assert done.stdout.split()[:2] in ([b"1", b"41"], [b"41", b"15"])
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("grid.vts",), "convert: there is no file to write; name it: meshonet convert grid.vts OUT"),
+        (("grid.vts", "grid.abc"), "its ending '.abc' is not known; choose the format with --to"),
+        (("grid.vts", "grid.p3d", "--extrude", "0"), "--extrude: height 0 is not positive"),
+        (("grid.vts", "grid.h5", "--extrude", "1"), "hdf5 holds flat grids only; write one of"),
+        (("missing.vts", "grid.p3d"), "missing.vts: no such file"),
+    ],
+)
+def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], told: str) -> None:
+    done = meshonet("convert", *words)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+
+
+def test_skip_existing_passes_over_what_is_there(meshonet: Meshonet, grid_vts: Path) -> None:
+    Path("grid.p3d").write_text("mine")
+    done = meshonet("convert", grid_vts, "-o", "{stem}.p3d", "--skip-existing")
+    assert done.code == 0
+    assert "there already" in done.err
+    assert Path("grid.p3d").read_text() == "mine"
+
+
+def test_shapes_stay_shapes(meshonet: Meshonet) -> None:
+    Path("duct.csv").write_text("0,0\n2,0\n2,1\n0,1\n")
+    done = meshonet("convert", "duct.csv", "duct.h5")
+    assert done.code == 0
+    (shape,) = read_shapes("duct.h5")
+    assert shape.name

@@ -1,0 +1,61 @@
+"""`meshonet plot`."""
+
+from pathlib import Path
+
+import pytest
+from conftest import Meshonet
+
+
+@pytest.fixture
+def grid_vts(meshonet: Meshonet, body_h5: Path) -> Path:
+    """An O grid, 41 x 15."""
+    meshonet("tfi", body_h5, "-o", "grid.vts")
+    return Path("grid.vts")
+
+
+@pytest.mark.parametrize(("name", "start"), [("g.png", b"\x89PNG"), ("g.svg", b"<?xml"), ("g.pdf", b"%PDF")])
+def test_a_grid_becomes_a_picture(meshonet: Meshonet, grid_vts: Path, name: str, start: bytes) -> None:
+    done = meshonet("plot", grid_vts, "-o", name)
+    assert (done.code, done.out) == (0, "")
+    assert Path(name).read_bytes().startswith(start)
+    assert "coloured by max_angle" in done.err
+
+
+def test_options_change_the_picture(meshonet: Meshonet, grid_vts: Path) -> None:
+    pictures = set()
+    for k, words in enumerate(
+        [(), ("--zoom", "-1,1,-1,1"), ("--every", "4"), ("--metric", "none"), ("--metric", "skewness")]
+    ):
+        assert meshonet("plot", grid_vts, "-o", f"{k}.png", *words).code == 0
+        pictures.add(Path(f"{k}.png").read_bytes())
+    assert len(pictures) == 5
+
+
+def test_json_says_what_was_drawn(meshonet: Meshonet, grid_vts: Path) -> None:
+    told = meshonet("plot", grid_vts, "-o", "g.png", "--metric", "none", "--json").only
+    assert (told["input"], told["output"], told["metric"], told["ni"]) == ("grid.vts", "g.png", None, 41)
+
+
+def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "grids.h5")
+    assert meshonet("plot", "grids.h5", "-o", "{index}.png", "--metric", "none").code == 0
+    assert sorted(path.name for path in Path().glob("*.png")) == ["0.png", "1.png", "2.png"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("-o", "g.vts"), "g.vts: vts is no picture; use .png, .svg or .pdf"),
+        (("-o", "g.png", "--metric", "beauty"), "--metric: metric 'beauty' is not known; use none or one of"),
+        (("-o", "g.png", "--zoom", "1,0,0,1"), "--zoom: '1,0,0,1' is not a box; use x0,x1,y0,y1"),
+        (("-o", "g.png", "--zoom", "a"), "--zoom: 'a' is not a box"),
+        (("-o", "g.png", "--zoom", "90,91,90,91"), "shows none of the grid"),
+        (("-o", "g.png", "--every", "0"), "every 0-th line cannot be drawn; use 1 or more"),
+    ],
+)
+def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], told: str) -> None:
+    done = meshonet("plot", grid_vts, *words)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not list(Path().glob("g.*"))

@@ -1,0 +1,132 @@
+"""The program as a process: exit codes, pipes, signals, files it cannot have, how quickly it starts."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, dataset, ellipse
+
+Process = Callable[..., subprocess.CompletedProcess[bytes]]
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-m", "meshonet_cli", *words]
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "PYTHONPATH": str(ROOT)}
+
+
+def test_the_exit_code_is_that_of_the_outcome(process: Process, duct_h5: Path, folding_h5: Path) -> None:
+    assert process("tfi", duct_h5, "-o", "g.vts").returncode == 0
+    assert process("tfi", duct_h5, "-o", "g.vts", "--fail-on", "max_angle>90").returncode == 1
+    assert process("tfi", "nothing.h5", "-o", "g.vts").returncode == 2
+    assert process("tfi", folding_h5, "-o", "g.vts").returncode == 3
+
+
+def test_version_and_help(process: Process) -> None:
+    assert process("--version").stdout.startswith(b"meshonet 0.")
+    assert process().stdout == process("-h").stdout == process("--help").stdout
+    assert process().returncode == 0
+
+
+def test_commands_join_through_pipes(tmp_path: Path, three_h5: Path) -> None:
+    first = subprocess.run(
+        command("sample-boundary", str(three_h5), "-o", "-", "-q"), capture_output=True, env=environment()
+    )
+    second = subprocess.run(
+        command("tfi", "-", "-o", "-"), input=first.stdout, capture_output=True, env=environment()
+    )
+    third = subprocess.run(
+        command("quality", "-", "--json"), input=second.stdout, capture_output=True, env=environment()
+    )
+    assert (first.returncode, second.returncode, third.returncode) == (0, 0, 0)
+    assert second.stdout.startswith(b"\x89HDF")
+    assert b"3 done" in second.stderr
+    told = [json.loads(line) for line in third.stdout.splitlines()]
+    assert [item["name"] for item in told] == ["flat", "low", "high"]
+    assert all(item["folded"] == 0 for item in told)
+
+
+def test_a_reader_that_stops_early_is_no_error(tmp_path: Path, three_h5: Path) -> None:
+    line = f"{sys.executable} -m meshonet_cli quality {three_h5.parent}/g.h5 | head -1"
+    subprocess.run(command("tfi", str(three_h5), "-o", f"{tmp_path}/g.h5"), env=environment(), check=True)
+    done = subprocess.run(["bash", "-c", line], capture_output=True, env=environment())
+    assert done.stderr == b""
+    assert b"20 x 10" in done.stdout or b"21 x 11" in done.stdout
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_ends_it_without_a_trace(tmp_path: Path, number: int, code: int) -> None:
+    source = dataset(tmp_path / "many.h5", "o", *[ellipse(thickness=0.2 + 0.001 * k) for k in range(400)])
+    Path(tmp_path / "grids.h5").write_text("mine")
+    running = subprocess.Popen(
+        command("solve-pde", str(source), "--res", "150", "-o", f"{tmp_path}/grids.h5"),
+        stderr=subprocess.PIPE,
+        env=environment(),
+    )
+    assert running.stderr is not None
+    assert b"many.h5[0]" in running.stderr.readline()  # the first report: it is in the middle of its work
+    running.send_signal(number)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == code
+    assert b"Traceback" not in told
+    assert (tmp_path / "grids.h5").read_text() == "mine"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["grids.h5", "many.h5"]
+
+
+def test_a_full_disc_is_told_in_a_line(process: Process, duct_h5: Path) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("no /dev/full here")
+    done = process("tfi", duct_h5, "-o", "/dev/full", "--to", "vts")
+    assert done.returncode == 2
+    assert done.stderr.startswith(b"error: /dev/full: cannot be written (No space left on device)")
+    assert done.stderr.count(b"\n") == 1
+
+
+def test_files_it_may_not_have_are_told_in_a_line(process: Process, tmp_path: Path, duct_h5: Path) -> None:
+    (tmp_path / "folder.vts").mkdir()
+    done = process("tfi", duct_h5, "-o", "folder.vts")
+    assert done.returncode == 2
+    assert done.stderr == b"error: folder.vts: is a folder; name a file in it\n"
+    done = process("tfi", "folder.vts", "-o", "g.vts")
+    assert done.returncode == 2
+    assert done.stderr == b"error: folder.vts: is a folder; name a file in it\n"
+    if os.geteuid() != 0:  # root may read everything
+        duct_h5.chmod(0)
+        done = process("tfi", duct_h5, "-o", "g.vts")
+        assert done.returncode == 2
+        assert b"may not be read; check its permissions" in done.stderr
+
+
+def test_undecodable_names_are_told_printably(process: Process, tmp_path: Path) -> None:
+    done = process("tfi", os.fsdecode(b"\xff\x1b[31m.h5"), "-o", "g.vts")
+    assert done.returncode == 2
+    assert b"\x1b" not in done.stderr
+    assert b"no such file" in done.stderr
+
+
+def test_help_is_quick(process: Process) -> None:
+    spent = []
+    for _ in range(3):
+        begun = time.perf_counter()
+        process("--help")
+        spent.append(time.perf_counter() - begun)
+    assert min(spent) < 0.5  # 0.16 s on the machine it was written on
+
+
+def test_completion_is_offered(process: Process) -> None:
+    assert b"--install-completion" in process("--help").stdout
+    asked = {"_MESHONET_COMPLETE": "complete_bash", "COMP_WORDS": "meshonet so", "COMP_CWORD": "1"}
+    done = subprocess.run(
+        command(),
+        capture_output=True,
+        env={**environment(), **asked},
+    )
+    assert done.stdout.split() == [b"solve-pde"]

@@ -1,0 +1,172 @@
+"""`meshonet quality`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Meshonet, dataset, duct
+
+from formats.registry import read_grids
+from geometry.metrics import NAMES
+from geometry.quality import per_cell
+
+
+@pytest.fixture
+def grid_vts(meshonet: Meshonet, duct_h5: Path) -> Path:
+    """A valid grid, 21 x 11."""
+    meshonet("tfi", duct_h5, "-o", "grid.vts")
+    return Path("grid.vts")
+
+
+@pytest.fixture
+def folded_vts(meshonet: Meshonet, folding_h5: Path) -> Path:
+    """A folded grid."""
+    meshonet("tfi", folding_h5, "-o", "folded.vts", "--allow-invalid")
+    return Path("folded.vts")
+
+
+def test_the_table_is_the_result(meshonet: Meshonet, grid_vts: Path) -> None:
+    done = meshonet("quality", grid_vts)
+    assert (done.code, done.err) == (0, "")
+    assert "grid.vts: 21 x 11 nodes, quad grid, 200 cells, none folded" in done.out
+    rows = {line.split()[0] for line in done.out.splitlines()[2:]}
+    assert rows == set(NAMES)
+    widths = {len(line) for line in done.out.splitlines()[1:]}
+    assert len(widths) == 1  # columns are aligned
+    assert meshonet("quality", grid_vts, "--quiet").out == done.out
+
+
+def test_json_has_every_figure(meshonet: Meshonet, grid_vts: Path) -> None:
+    told = meshonet("quality", grid_vts, "--json").only
+    (grid,) = read_grids("grid.vts")
+    assert (told["ni"], told["nj"], told["topology"], told["folded"], told["worst_cells"]) == (
+        21,
+        11,
+        "quad",
+        0,
+        [],
+    )
+    for name in NAMES:
+        values = per_cell(grid, name)
+        figures = told["quality"][name]
+        assert figures["max"] == values.max()
+        assert figures["p99"] == pytest.approx(np.percentile(values, 99), rel=1e-12)
+        assert values[tuple(figures["worst"])] in (values.min(), values.max())
+
+
+def test_folded_cells_are_named(meshonet: Meshonet, folded_vts: Path) -> None:
+    done = meshonet("quality", folded_vts)
+    assert done.code == 0
+    assert "folded at i=" in done.out
+    told = meshonet("quality", folded_vts, "--json").only
+    assert told["folded"] > 10
+    assert len(told["worst_cells"]) == 10
+    assert set(told["worst_cells"][0]) == {"i", "j", "x", "y"}
+
+
+@pytest.mark.parametrize(
+    ("gate", "code"),
+    [
+        ("folded>0", 1),
+        ("folded>100000", 0),
+        ("max_angle>179", 1),
+        ("scaled_jacobian<0", 1),
+        ("min_angle<-1", 0),
+    ],
+)
+def test_gates_decide_the_exit_code(meshonet: Meshonet, folded_vts: Path, gate: str, code: int) -> None:
+    done = meshonet("quality", folded_vts, "--fail-on", gate)
+    assert done.code == code
+    assert ("gate not met: folded.vts: " in done.err) == bool(code)
+
+
+def test_several_gates_are_all_told(meshonet: Meshonet, folded_vts: Path) -> None:
+    done = meshonet("quality", folded_vts, "--fail-on", "folded>=1", "--fail-on", "max_angle.mean<=200")
+    assert done.code == 1
+    assert done.err.count("gate not met") == 2
+
+
+def test_every_grid_is_measured_and_the_worst_decides(
+    meshonet: Meshonet, grid_vts: Path, folded_vts: Path
+) -> None:
+    done = meshonet("quality", grid_vts, "missing.vts", folded_vts, "--fail-on", "folded>0", "--json")
+    assert done.code == 2
+    assert [item["input"] for item in done.objects] == ["grid.vts", "missing.vts", "folded.vts"]
+
+
+def test_a_boundary_is_no_grid(meshonet: Meshonet, duct_h5: Path) -> None:
+    done = meshonet("quality", duct_h5)
+    assert done.code == 2
+    assert "holds boundaries, not grids; make grids of them first" in done.err
+
+
+def test_per_cell_metrics_are_cell_data(meshonet: Meshonet, folded_vts: Path) -> None:
+    vtk = pytest.importorskip("vtk")
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    assert meshonet("quality", folded_vts, "--per-cell", "cells.vts").code == 0
+    reader = vtk.vtkXMLStructuredGridReader()
+    reader.SetFileName("cells.vts")
+    reader.Update()
+    data = reader.GetOutput().GetCellData()
+    (grid,) = read_grids("folded.vts")
+    for name in NAMES:
+        values = vtk_to_numpy(data.GetArray(name)).reshape(grid.nj - 1, grid.ni - 1).T
+        np.testing.assert_array_equal(values, per_cell(grid, name))
+    told = meshonet("quality", folded_vts, "--json").only
+    assert vtk_to_numpy(data.GetArray("folded")).sum() == told["folded"]
+
+
+def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("quality", grid_vts, "--plot", "grid.png").code == 0
+    assert Path("grid.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--per-cell", "cells.h5"), "only a .vts file holds metrics; name it FILE.vts"),
+        (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
+        (("--compare", "missing.vts"), "missing.vts: no such file"),
+    ],
+)
+def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[str, ...], told: str) -> None:
+    done = meshonet("quality", grid_vts, *words)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+
+
+def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> None:
+    (grid,) = read_grids("grid.vts")
+    from formats.vts import write
+    from geometry.grid import Grid
+
+    moved = grid.nodes.copy()
+    moved[3, 4] += [0.03, 0.04]
+    write(Path("moved.vts"), Grid(moved))
+    told = meshonet("quality", "moved.vts", "--compare", grid_vts, "--json").only["compare"]
+    assert told["max"] == pytest.approx(0.05)
+    assert told["at"] == [3, 4]
+    assert (
+        "distance to the other grid: max 0.05 at i=3, j=4"
+        in meshonet("quality", "moved.vts", "--compare", grid_vts).out
+    )
+
+
+def test_compare_pairs_grids_one_by_one(meshonet: Meshonet, three_h5: Path, grid_vts: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "three-grids.h5")
+    told = meshonet("quality", "three-grids.h5", "--compare", "three-grids.h5", "--json").objects
+    assert [item["compare"]["max"] for item in told] == [0, 0, 0]
+    one_with_each = meshonet("quality", "three-grids.h5", "--compare", grid_vts, "--json").objects
+    assert [item["compare"]["max"] > 0 for item in one_with_each] == [True, True, True]
+    too_few = meshonet("quality", "three-grids.h5", grid_vts, "--compare", "three-grids.h5")
+    assert too_few.code == 2
+    assert "grid.vts: there is no grid to compare it with; compare with one" in too_few.err
+
+
+def test_compare_refuses_other_sizes(meshonet: Meshonet, tmp_path: Path, grid_vts: Path) -> None:
+    meshonet("tfi", dataset(tmp_path / "other.h5", "quad", duct(ni=31)), "-o", "other.vts")
+    done = meshonet("quality", grid_vts, "--compare", "other.vts")
+    assert done.code == 2
+    assert "21x11 nodes are not comparable with 31x11" in done.err

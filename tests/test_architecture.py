@@ -1,0 +1,107 @@
+"""What the house promises about its own build: light imports, documented commands, examples that run."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from meshonet_cli.commands import COMMANDS
+from meshonet_cli.options import SpacingName, TopologyName
+from meshonet_cli.reference import reference
+from meshonet_cli.version import VERSION
+
+ROOT = Path(__file__).parents[1]
+HEAVY = ("torch", "matplotlib", "numba", "scipy", "h5py", "meshio")
+BLOCKED = """
+import sys
+
+class Blocked:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in {names!r}:
+            raise ImportError(f"{{name}} is not allowed here")
+
+sys.meta_path.insert(0, Blocked())
+"""
+
+
+def python(code: str, *arguments: str, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.run(
+        [sys.executable, "-c", code, *arguments],
+        cwd=cwd,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def airfoil(path: Path) -> Path:
+    """Write NACA 0012 in Selig's order."""
+    x = 0.5 * (1 + np.cos(np.linspace(0, np.pi, 61)))
+    half = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    points = np.concatenate([np.stack([x, half], axis=-1), np.stack([x, -half], axis=-1)[-2::-1]])
+    path.write_text("NACA 0012\n" + "\n".join(f"{px:.6f} {py:.6f}" for px, py in points) + "\n")
+    return path
+
+
+@pytest.mark.parametrize("command", ["infer", "tfi", "solve-pde"])
+def test_the_main_job_needs_no_heavy_library(tmp_path: Path, command: str) -> None:
+    airfoil(tmp_path / "a.dat")
+    code = BLOCKED.format(names=HEAVY) + "from meshonet_cli.app import run\nsys.exit(run(sys.argv[1:]))"
+    done = python(code, command, "a.dat", "--res", "60", "-o", "g.vts", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "g.vts").exists()
+
+
+def test_the_block_blocks() -> None:
+    assert "not allowed" in python(BLOCKED.format(names=HEAVY) + "import scipy.linalg").stderr
+
+
+def test_importing_the_command_line_loads_nothing_heavy() -> None:
+    loaded = python("import meshonet_cli, sys; print(*sorted(sys.modules))").stdout.split()
+    assert not {"numpy", "typer", "rich", *HEAVY} & set(loaded)
+
+
+def test_help_loads_no_numpy_and_no_rich() -> None:
+    run = "from meshonet_cli.app import run; run(['--help'])"
+    code = f"import sys; {run}; print(*sys.modules, file=sys.stderr)"
+    assert not {"numpy", "rich", "pydantic", *HEAVY} & set(python(code).stderr.split())
+
+
+def test_reading_the_registry_loads_no_format_library() -> None:
+    loaded = python("import formats.registry, sys; print(*sorted(sys.modules))").stdout.split()
+    assert not set(HEAVY) & set(loaded)
+
+
+def test_the_command_reference_is_current() -> None:
+    told = (ROOT / "docs" / "cli.md").read_text()
+    assert told == reference(), "run: python -m meshonet_cli.reference > docs/cli.md"
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
+def test_every_command_is_thin(command: object) -> None:
+    import ast
+    import inspect
+    import textwrap
+
+    function = command.function  # type: ignore[attr-defined]
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    assert sum(isinstance(node, ast.stmt) for node in ast.walk(tree)) - 1 <= 20
+    assert "numpy" not in Path(inspect.getfile(function)).read_text()
+
+
+def test_the_version_is_that_of_the_package() -> None:
+    assert f'\nversion = "{VERSION}"\n' in (ROOT / "pyproject.toml").read_text()
+
+
+def test_choices_of_options_are_those_of_the_library() -> None:
+    from typing import get_args
+
+    from geometry.sampling import SPACINGS
+
+    assert get_args(SpacingName) == SPACINGS
+    assert set(get_args(TopologyName)) <= {"auto", "quad", "o", "c"}
