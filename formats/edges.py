@@ -10,7 +10,8 @@ from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.parts import Part
 
-_HUGE = 1e150
+LARGEST = 1e150
+"""Coordinates must be below this, so that areas and their sums are finite."""
 _SEAM = 1e-6
 
 
@@ -78,7 +79,7 @@ def usable(nodes: Floats) -> Floats:
     InputError
         a coordinate is not finite, or so large that products of two are not.
     """
-    fine = np.abs(nodes) < _HUGE  # NaN compares false
+    fine = np.abs(nodes) < LARGEST  # NaN compares false
     if not fine.all():
         i, j, axis = (int(k) for k in np.argwhere(~fine)[0])
         raise InputError(

@@ -38,6 +38,8 @@ TABLE: dict[str, Row] = {
     "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),
     "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),
+    "wkt": Row("formats.vector", (".wkt",)),
+    "geojson": Row("formats.vector", (".geojson", ".json")),
     "png": Row("formats.figure", (".png",)),
     "svg": Row("formats.figure", (".svg",)),
     "pdf": Row("formats.figure", (".pdf",)),

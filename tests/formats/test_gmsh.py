@@ -1,0 +1,93 @@
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import gmsh
+import meshio
+import numpy as np
+import pytest
+from format_shapes import c_grid, channel, ring
+
+from formats.gmsh import write_extruded, write_grids
+from geometry.grid import Grid
+from geometry.parts import Part
+
+
+@pytest.fixture
+def client() -> Iterator[None]:
+    """Gmsh itself, silent."""
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.AbortOnError", 2)
+    yield
+    gmsh.finalize()
+
+
+def groups(dimension: int) -> dict[str, int]:
+    """Return the elements in each physical group of the open mesh."""
+    found = {}
+    for _, tag in gmsh.model.getPhysicalGroups(dimension):
+        entities = gmsh.model.getEntitiesForPhysicalGroup(dimension, tag)
+        elements = [gmsh.model.mesh.getElements(dimension, entity)[1] for entity in entities]
+        found[gmsh.model.getPhysicalName(dimension, tag)] = sum(len(e) for block in elements for e in block)
+    return found
+
+
+COUNTS = {
+    "quad": (35, 24, {"inlet": 4, "no-slip wall": 3, "south": 3, "out let": 4, "north": 6}),
+    "o": (60, 48, {"airfoil": 12, "far": 12}),
+    "c": (56, 42, {"wall": 8, "farfield": 14 + 3 + 3}),
+}
+
+
+@pytest.mark.parametrize("text", [False, True])
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.usefixtures("client")
+def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], text: bool, tmp_path: Path) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.msh", [grid], text=text)
+    gmsh.open(str(tmp_path / "g.msh"))
+    nodes, cells, parts = COUNTS[grid.topology]
+    assert len(gmsh.model.mesh.getNodes()[0]) == nodes
+    assert groups(1) == parts
+    assert groups(2) == {"fluid": cells}
+    quads = gmsh.model.mesh.getElementsByType(3)[0]
+    assert min(gmsh.model.mesh.getElementQualities(quads, "minDetJac")) > 0
+    points = gmsh.model.mesh.getNodes()[1].reshape(-1, 3)
+    assert np.array_equal(np.unique(points[:, 0]), np.unique(grid.x))
+
+
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.usefixtures("client")
+def test_gmsh_sees_a_layer_of_right_handed_hexahedra(make: type[Grid], tmp_path: Path) -> None:
+    grid = make()
+    write_extruded(tmp_path / "g.msh", [grid], 0.5)
+    gmsh.open(str(tmp_path / "g.msh"))
+    nodes, cells, parts = COUNTS[grid.topology]
+    assert len(gmsh.model.mesh.getNodes()[0]) == 2 * nodes
+    assert groups(2) == {**parts, "back": cells, "front": cells}
+    assert groups(3) == {"fluid": cells}
+    hexahedra = gmsh.model.mesh.getElementsByType(5)[0]
+    assert min(gmsh.model.mesh.getElementQualities(hexahedra, "minDetJac")) > 0
+    faces = gmsh.model.mesh.getElementsByType(3)[1].reshape(-1, 4)
+    assert len(np.unique(np.sort(faces, axis=1), axis=0)) == len(faces)
+
+
+@pytest.mark.parametrize("write", [write_grids, functools.partial(write_grids, text=True)])
+def test_meshio_reads_the_names_back(write: Callable[[Path, list[Grid]], None], tmp_path: Path) -> None:
+    write(tmp_path / "g.msh", [ring()])
+    mesh = meshio.gmsh.read(tmp_path / "g.msh")
+    assert {name: told.tolist() for name, told in mesh.field_data.items()} == {
+        "airfoil": [1, 1], "far": [2, 1], "fluid": [3, 2],
+    }  # fmt: skip
+
+
+@pytest.mark.usefixtures("client")
+def test_a_part_may_be_called_as_the_cells_or_hold_quotes(tmp_path: Path) -> None:
+    parts = (Part("fluid", "south", 0, 12), Part('a "b"', "north", 0, 12))
+    write_grids(tmp_path / "g.msh", [Grid(ring().nodes, "o", parts)])
+    gmsh.open(str(tmp_path / "g.msh"))
+    assert groups(1) == {"fluid": 12, "a 'b'": 12}
+    assert groups(2) == {"fluid-cells": 48}

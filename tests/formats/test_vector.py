@@ -1,0 +1,118 @@
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from format_shapes import memory
+
+from formats.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
+from geometry.errors import InputError
+from geometry.sampling import Sampling
+
+SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0], [0.0, 0.0]]
+HEXAGON = "POLYGON ((2 0, 1 1.7, -1 1.7, -2 0, -1 -1.7, 1 -1.7, 2 0))"
+
+
+def wkt(points: list[list[float]]) -> str:
+    return ", ".join(f"{x} {y}" for x, y in points)
+
+
+def geojson(geometry: object, **more: object) -> bytes:
+    return json.dumps({"type": "Feature", "geometry": geometry, "properties": more}).encode()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"POLYGON (({wkt(SQUARE)}))",
+        f"linestring ({wkt(SQUARE)})",
+        "POLYGON Z ((0 0 5, 2 0 5, 2 1 5, 0 1 5, 0 0 5))",
+        f"# a comment\n\nPOLYGON (({wkt(SQUARE)}))\n",
+    ],
+)
+def test_a_polygon_or_a_closed_line_is_an_outline(text: str) -> None:
+    (outline,) = read_wkt(memory(text.encode(), "duct.wkt"))
+    boundary = outline.boundary(Sampling(ni=9, nj=5))
+    assert boundary.topology == "quad"
+    assert outline.name == "duct"
+    assert boundary.south[[0, -1]].tolist() == [[0, 0], [2, 0]]
+    assert boundary.north[[0, -1]].tolist() == [[0, 1], [2, 1]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"POLYGON (({wkt(SQUARE)}))\n{HEXAGON}\n",
+        f"GEOMETRYCOLLECTION (POLYGON (({wkt(SQUARE)})), {HEXAGON})",
+        f"MULTIPOLYGON ((({wkt(SQUARE)})), {HEXAGON.removeprefix('POLYGON ')})",
+    ],
+)
+def test_several_outlines_are_numbered(text: str) -> None:
+    outlines = list(read_wkt(memory(text.encode(), "both.wkt")))
+    assert [outline.name for outline in outlines] == ["both-1", "both-2"]
+    assert np.allclose(outlines[1].curve.points[0], [2, 0])
+
+
+def test_geojson_features_are_called_by_their_name() -> None:
+    polygon = {"type": "Polygon", "coordinates": [SQUARE]}
+    (outline,) = read_geojson(memory(geojson(polygon, name="duct\x1b")))
+    assert outline.name == "duct\\x1b"
+    (plain,) = read_geojson(memory(json.dumps(polygon).encode(), "here.geojson"))
+    assert plain.name == "here"
+    both = {
+        "type": "FeatureCollection",
+        "features": [json.loads(geojson(polygon)), json.loads(geojson(polygon, name="b"))],
+    }
+    assert [o.name for o in read_geojson(memory(json.dumps(both).encode(), "all.json"))] == ["all", "b"]
+
+
+def test_files_are_known_by_their_start() -> None:
+    assert sniff_wkt(b"\n  Polygon ((0 0")
+    assert not sniff_wkt(b"POLYGONAL AIRFOIL\n1 0")
+    assert sniff_geojson(b' {"type": "Feature"')
+    assert not sniff_geojson(b"{}")
+
+
+ASK = "give a POLYGON or a closed LINESTRING"
+WKT = {
+    "prose": ("hello", f"line 1: is not WKT .*; {ASK}"),
+    "second line": (f"{HEXAGON}\nPOLYGON ((0 0, 1", "line 2: is not WKT"),
+    "point": ("POINT (1 2)", f"has an empty Point or a Point, which is no outline; {ASK}"),
+    "empty": ("POLYGON EMPTY", "has an empty Polygon"),
+    "nothing": ("# only a comment", f"holds no geometry; {ASK}"),
+    "open": ("LINESTRING (0 0, 1 0, 1 1)", "line is not closed; repeat its first point at its end"),
+    "hole": (
+        f"POLYGON (({wkt(SQUARE)}), (0.5 0.2, 1 0.2, 1 0.5, 0.5 0.2))",
+        "polygon has 1 holes; give the outer ring",
+    ),
+    "crossing": ("POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))", "crosses itself at"),
+    "nan": ("POLYGON ((0 0, nan 1, 1 0, 0 0))", "is not finite or far too large; check its numbers"),
+    "huge": ("POLYGON ((0 0, 1e300 0, 1e300 1e300, 0 1e300, 0 0))", "is not finite or far too large"),
+}
+GEOJSON = {
+    "prose": (b"hello", "is not JSON .*; give a GeoJSON file"),
+    "list": (b"[]", r"is not JSON \(not an object\)"),
+    "deep": (b'{"type":' * 100_000, "is not JSON"),
+    "null": (geojson(None), f"is not a GeoJSON geometry .*; {ASK}"),
+    "type": (geojson({"type": "Sphere"}), "is not a GeoJSON geometry"),
+    "words": (geojson({"type": "Polygon", "coordinates": [["a", "b"]]}), "is not a GeoJSON geometry"),
+    "number": (geojson({"type": "Polygon", "coordinates": 7}), "is not a GeoJSON geometry"),
+    "point": (geojson({"type": "Point", "coordinates": [1, 2]}), "which is no outline"),
+    "none": (b'{"type": "FeatureCollection", "features": []}', "holds no geometry"),
+    "bytes": (b'{"type": "\xff\xfe"}', "byte 10: is not UTF-8 text; save it as UTF-8"),
+}
+
+
+@pytest.mark.parametrize("case", WKT)
+def test_wkt_that_is_no_outline_is_refused(case: str) -> None:
+    text, told = WKT[case]
+    with pytest.raises(InputError, match=told):
+        list(read_wkt(memory(text.encode())))
+
+
+@pytest.mark.parametrize("case", GEOJSON)
+def test_geojson_that_is_no_outline_is_refused(case: str) -> None:
+    data, told = GEOJSON[case]
+    with pytest.raises(InputError, match=told):
+        list(read_geojson(memory(data)))
