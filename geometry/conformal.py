@@ -44,8 +44,19 @@ def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
     InputError
         the lifted wall is not star-shaped, or the iteration does not settle.
     """
+    one = _one_way(curve, marks, count, mirror=False)
+    other = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
+    # the two differ by the accuracy of the iteration; their mean makes a mirrored body's nodes mirror images
+    knots = 0.5 * (one + (curve.length - other[::-1]))
+    knots[np.searchsorted(knots, marks - 1e-9 * curve.length)] = marks
+    return knots
+
+
+def _one_way(curve: Curve, marks: Floats, count: int, *, mirror: bool) -> Floats:
+    """Return arc lengths (count,) walking clockwise, or the mirror image of the curve walked the other way."""
     s, u = _dense(curve, marks)
-    _, w, _ = lift_body(mirrored(curve.at(s[:-1])))
+    nodes = curve.at(curve.length - s[:-1]) * np.array([1.0, -1.0]) if mirror else curve.at(s[:-1])
+    _, w, _ = lift_body(mirrored(nodes))
     phi = np.append(w.imag, 2.0 * np.pi)
     if np.diff(phi).min() <= 0.0:
         raise InputError("the lifted wall is not star-shaped", "use another spacing")

@@ -170,7 +170,8 @@ def _slit(wall: Complexes, sharp: bool, base: list[int]) -> tuple[complex, compl
     Its ends sit inside the body, off each tip by a(1 - sqrt(1 - r/a)) where r is the tip's radius and a the
     half chord: the foci when the body is an ellipse. A sharp edge is itself an end.
     """
-    nose = int(np.argmax(np.abs(wall - wall[0])))
+    reach = np.abs(wall - wall[0])
+    nose = int(np.argmax(reach > (1.0 - 1e-12) * reach.max()))  # the first of equals, however they are rounded
     if sharp:
         tail = complex(wall[0])
     elif len(base) == 2:
@@ -218,7 +219,7 @@ def _follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
     path = (ring[:-1, None] * (1 - t) + ring[1:, None] * t).ravel()[
         1:
     ]  # the trailing edge may be a branch point
-    outer = _joukowski(path, centre, quarter)
+    outer = _joukowski(np.asarray(path, dtype=np.complex128), centre, quarter)
     stays = np.abs(outer[1:] - outer[:-1]) <= np.abs(1.0 / outer[1:] - outer[:-1])
     crossed = np.concatenate([[0], np.cumsum(~stays) % 2]).astype(bool)
     thickest = np.argmax(np.abs(outer) * (np.abs(outer) > 1.0))

@@ -11,7 +11,7 @@ import numpy as np
 from geometry.arrays import TOPOLOGIES, Floats, Topology
 from geometry.errors import InputError
 
-Spacing: TypeAlias = Literal["auto", "uniform", "cosine", "tanh", "curvature"]
+Spacing: TypeAlias = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 SPACINGS: tuple[Spacing, ...] = get_args(Spacing)
 
 DEFAULT_NI = 200

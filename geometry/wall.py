@@ -93,7 +93,7 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if sampling.spacing == "conformal" or (sampling.spacing == "auto" and not steps_given):
         corners = np.array([stations.lower, stations.upper]) if stations.half_base else np.zeros(0)
         try:
-            return conformal_knots(stations.curve, corners, ni)
+            return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
         except InputError:
             if sampling.spacing == "conformal":
                 raise
@@ -118,9 +118,15 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     else:
         base = _half_base(plan, stations.half_base)
         arcs = np.concatenate([base[:-1], sides, stations.curve.length - base[-2::-1]])
+    return _on_inner_corners(arcs, stations)
+
+
+def _on_inner_corners(arcs: Floats, stations: Stations) -> Floats:
+    """Return the arcs with the corners of the two sides on nodes; the trailing edge's are there already."""
     corners = stations.curve.corners
     inside = corners[(corners > stations.lower) & (corners < stations.upper)]
-    return on_corners(arcs, inside, fixed=(plan.half, ni - 1 - plan.half))
+    ends = np.searchsorted(arcs, [stations.lower, stations.upper])
+    return on_corners(arcs, inside, fixed=(int(ends[0]), int(ends[1])))
 
 
 def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:

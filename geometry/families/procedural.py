@@ -10,32 +10,42 @@ Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics
 from __future__ import annotations
 
 from math import comb
+from typing import Any
 
 import numpy as np
 
 from geometry.airfoil import Airfoil
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
-from geometry.conformal import conformal_knots
 from geometry.errors import InputError
-from geometry.topology import o_boundary
+from geometry.sampling import Sampling
 
 POINTS = 120  # a surface
 ORDER = 6  # of the Bernstein polynomials
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random airfoil's O boundary: random shape, wall spacing and far field (4 to 60 chords)."""
+    """Return a random airfoil's O boundary: random section, wall spacing and far field (4 to 60 chords)."""
     while True:
+        far_field = float(np.exp(rng.uniform(np.log(4.0), np.log(60.0))))
         try:
             airfoil = Airfoil(_section(rng), "procedural")
-            wall = airfoil.curve.at(_knots(rng, airfoil, ni))
-            wall[-1] = wall[0]
-            centre = 0.5 * (airfoil.leading_edge + airfoil.trailing_edge)
-            radius = airfoil.chord * float(np.exp(rng.uniform(np.log(4.0), np.log(60.0))))
-            return o_boundary(wall, nj, centre, radius, airfoil.curve, airfoil.name)
+            return airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **_spacing(rng)))
         except InputError:
-            continue  # a section that crosses itself or cannot be lifted: draw another
+            continue  # a section that crosses itself, or cells that do not fit it: draw another
+
+
+def _spacing(rng: np.random.Generator) -> dict[str, Any]:
+    """Return settings of `Sampling`: every law, and random steps at the two edges."""
+    draw = rng.random()
+    for share, law in ((0.3, "conformal"), (0.45, "cosine"), (0.52, "uniform"), (0.6, "curvature")):
+        if draw < share:
+            return {"spacing": law}
+    steps: dict[str, Any] = {"spacing": "tanh"}
+    for name in ("le_spacing", "te_spacing"):
+        if rng.random() < 0.8:
+            steps[name] = float(np.exp(rng.uniform(np.log(5e-4), np.log(1.5e-2))))
+    return steps
 
 
 def _section(rng: np.random.Generator) -> Floats:
@@ -109,30 +119,6 @@ def _as_found(rng: np.random.Generator, points: Floats) -> Floats:
     inner = np.clip(4 * found[:, 0] * (1 - found[:, 0]), 0, 1)
     found[:, 1] += 10 ** rng.uniform(-5.5, -4.2) * rng.normal(size=len(found)) * inner
     return found
-
-
-def _knots(rng: np.random.Generator, airfoil: Airfoil, ni: int) -> Floats:
-    """Return arc lengths (ni,): conformal, cosine, near uniform, or one of these warped between its corners."""
-    curve = airfoil.curve
-    corners = curve.knots[[1, -1]] if airfoil.blunt else np.zeros(0)
-    conformal = conformal_knots(curve, corners, ni)
-    fixed = np.unique(np.r_[0, [int(np.argmin(np.abs(conformal - c))) for c in corners], ni - 1]).astype(int)
-    draw = rng.random()
-    s = conformal.copy()
-    longest = int(np.argmax(np.diff(fixed)))
-    a, b = fixed[longest], fixed[longest + 1]
-    x = np.linspace(0, 1, b - a + 1)
-    if draw < 0.55:  # towards equal steps of arc length
-        even = conformal[a] + (conformal[b] - conformal[a]) * x
-        share = rng.uniform(0, 0.6)
-        s[a : b + 1] = (1 - share) * s[a : b + 1] + share * even
-    if draw > 0.3:
-        k = np.arange(1, 7)
-        warp = (rng.normal(size=6) / k ** rng.uniform(1.5, 2.5)) @ np.sin(np.pi * np.outer(k, x))
-        rate = np.abs(np.diff(warp)).max() * (b - a)
-        x = x + warp * rng.uniform(0.05, 0.6) / max(rate, 1e-9)
-        s[a : b + 1] = np.interp(x, np.linspace(0, 1, b - a + 1), s[a : b + 1])
-    return s
 
 
 def _cosine() -> Floats:

@@ -1,0 +1,34 @@
+"""The numpy network is the torch network."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from solvers.neural.encoding import CHANNELS, SCALARS
+from solvers.neural.models.strip_fno import StripFNO
+from solvers.neural.network import forward
+from solvers.neural.strip import COLUMNS
+
+
+def test_numpy_equals_torch_to_round_off() -> None:
+    torch.manual_seed(3)
+    net = StripFNO(CHANNELS, SCALARS, 8, width=12, modes=20, layers=2).double()
+    rng = np.random.default_rng(1)
+    channels, scalars = rng.normal(size=(2, CHANNELS, COLUMNS)), rng.normal(size=(2, SCALARS))
+    with torch.no_grad():
+        wanted = net(torch.tensor(channels), torch.tensor(scalars)).numpy()
+    weights = {name: value.numpy() for name, value in net.state_dict().items()}
+    for m in range(2):
+        found = forward(weights, channels[m], scalars[m])
+        assert np.abs(found - wanted[m]).max() <= 1e-12 * np.abs(wanted).max()
+
+
+def test_the_network_commutes_with_shifts_of_theta() -> None:
+    torch.manual_seed(4)
+    net = StripFNO(CHANNELS, SCALARS, 4, width=8, modes=12, layers=2).double()
+    weights = {name: value.numpy() for name, value in net.state_dict().items()}
+    rng = np.random.default_rng(2)
+    channels, scalars = rng.normal(size=(CHANNELS, COLUMNS)), rng.normal(size=SCALARS)
+    shifted = forward(weights, np.roll(channels, 17, axis=1), scalars)
+    np.testing.assert_allclose(shifted, np.roll(forward(weights, channels, scalars), 17, axis=1), atol=1e-12)
