@@ -60,6 +60,6 @@ def _part(text: str) -> Part:
         side, start, stop, name = words[0], int(words[1]), int(words[2]), words[3]
     except (ValueError, IndexError):
         raise InputError(
-            f"part {printable(text)[:60]!r} is not 'side start stop name'", "remove the field 'parts'"
+            f"part {text[:60]!r} is not 'side start stop name'", "remove the field 'parts'"
         ) from None
     return Part(printable(name), side, start, stop)

@@ -61,7 +61,7 @@ def format_named(name: str) -> Format:
     for known, row in TABLE.items():
         if word and (known == word or f".{word}" in row.suffixes[:1] or known.startswith(f"{word}-")):
             return _record(known, row)
-    raise InputError(f"format {printable(name)!r} is not known", "use one of " + ", ".join(TABLE))
+    raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
 
 
 def formats() -> tuple[Format, ...]:
@@ -108,11 +108,7 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
     else:
         claimed = _by_suffix(suffix)
         if not claimed:
-            what = (
-                f"ending {printable(suffix)!r} is not known"
-                if suffix
-                else "name has no ending to tell the format by"
-            )
+            what = f"ending {suffix!r} is not known" if suffix else "name has no ending to tell the format by"
             raise InputError(
                 f"its {what}", f"choose the format with --to; {_known()}", source=printable(path_text)
             )

@@ -67,7 +67,7 @@ def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
         unknown type or form, fewer or more numbers than there should be, LZ4.
     """
     if array.kind not in _KINDS:
-        raise InputError(f"number type {printable(array.kind)!r} is not known", "write Float64 or Float32")
+        raise InputError(f"number type {array.kind[:40]!r} is not known", "write Float64 or Float32")
     dtype = np.dtype(encoding.order + _KINDS[array.kind])
     size = None if array.count is None else array.count * dtype.itemsize
     if array.form == "ascii":
@@ -80,7 +80,7 @@ def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
             end = next(stop for stop in encoding.offsets if stop > array.offset)
             raw = memoryview(_unbase64(bytes(encoding.appended[array.offset : end])))
     else:
-        raise InputError(f"format {printable(array.form)!r} at offset {array.offset} cannot be read", _CUT)
+        raise InputError(f"format {array.form[:40]!r} at offset {array.offset} cannot be read", _CUT)
     data = _decompressed(raw, size, encoding) if encoding.compressor else _sized(raw, size, encoding)
     return np.frombuffer(data, dtype)
 
@@ -156,6 +156,6 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
 
         return lambda packed, most: LZMADecompressor().decompress(packed, most)
     raise InputError(
-        f"compressor {printable(compressor)!r} cannot be read",
+        f"compressor {compressor[:60]!r} cannot be read",
         "write it with zlib (vtkZLibDataCompressor) or none",
     )

@@ -107,7 +107,7 @@ def _read(cursor: _Cursor) -> tuple[Floats, dict[str, list[str]]]:
     text = cursor.line().upper() == "ASCII"
     dataset = cursor.line().split()
     if [word.upper() for word in dataset] != ["DATASET", "STRUCTURED_GRID"]:
-        raise InputError(f"holds {printable(' '.join(dataset))[:60]!r}", "give a DATASET STRUCTURED_GRID")
+        raise InputError(f"holds {' '.join(dataset)[:60]!r}", "give a DATASET STRUCTURED_GRID")
     facts: dict[str, list[str]] = {}
     dims = (0, 0, 0)
     while True:
@@ -134,7 +134,7 @@ def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
         name, components, tuples, kind = cursor.line().split()
         total = int(components) * int(tuples)
         if not 0 <= total <= len(cursor.data):
-            raise InputError(f"field {printable(name)[:40]!r} claims {total} values", "write the file again")
+            raise InputError(f"field {name[:40]!r} claims {total} values", "write the file again")
         if kind.lower() != "string":
             codes = _numbers(cursor, kind, total, text=text)
             if kind.lower() == "unsigned_char":
@@ -148,7 +148,7 @@ def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
 
 def _numbers(cursor: _Cursor, kind: str, count: int, *, text: bool) -> NDArray[Any]:
     if kind.lower() not in _KINDS:
-        raise InputError(f"number type {printable(kind)[:40]!r} is not known", "write double or float")
+        raise InputError(f"number type {kind[:40]!r} is not known", "write double or float")
     if text:
         return np.array(cursor.words(count), dtype=np.float64)
     dtype = np.dtype(">" + _KINDS[kind.lower()])

@@ -85,7 +85,7 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
 def _encoding(root: Element, dataset: Element, raw: bytes, start: int, end: int) -> Encoding:
     header = root.get("header_type", "UInt32")
     if header not in ("UInt32", "UInt64"):
-        raise InputError(f"header_type {printable(header)!r} is not known", "write UInt32 or UInt64")
+        raise InputError(f"header_type {header[:40]!r} is not known", "write UInt32 or UInt64")
     appended = root.find("AppendedData")
     offsets = [
         int(a.get("offset", "-1")) for a in dataset.iter("DataArray") if a.get("offset", "x").isdecimal()
@@ -108,7 +108,7 @@ def _points(piece: Element, encoding: Encoding) -> Floats:
         raise InputError("Points do not have three components", "write x, y, z for every node")
     offset = array.get("offset", "0")
     if not offset.isdecimal():
-        raise InputError(f"offset {printable(offset)!r} is not a number", "write the file again")
+        raise InputError(f"offset {offset[:40]!r} is not a number", "write the file again")
     encoded = Encoded(
         kind=array.get("type", ""),
         count=3 * dims[0] * dims[1] * dims[2],
@@ -149,7 +149,7 @@ def _extent(element: Element, name: str) -> Extent:
         i0, i1, j0, j1, k0, k1 = (int(word) for word in words)
     except ValueError:
         raise InputError(
-            f"{name} {printable(' '.join(words))[:60]!r} is not six integers", "write the file again"
+            f"{name} {' '.join(words)[:60]!r} is not six integers", "write the file again"
         ) from None
     if i1 < i0 or j1 < j0 or k1 < k0 or (i1 - i0 + 1) * (j1 - j0 + 1) * (k1 - k0 + 1) > _MOST_NODES:
         raise InputError(

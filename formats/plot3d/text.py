@@ -10,7 +10,6 @@ from math import prod
 import numpy as np
 
 from formats.plot3d.layouts import Candidate, Layout, layouts
-from formats.source import printable
 from geometry.arrays import Floats
 from geometry.errors import InputError
 
@@ -125,7 +124,7 @@ def _spelled(word: bytes, data: bytes) -> bytes:
 
 def _not_a_number(word: bytes, data: bytes) -> InputError:
     line = data[: max(data.translate(_FREE_FORMAT).find(word), 0)].count(b"\n") + 1
-    told = printable(word[:40].decode("latin-1"))
+    told = word[:40].decode("latin-1")
     return InputError(
         f"{told!r} is not a number",
         "write numbers only, or name another format with --from",

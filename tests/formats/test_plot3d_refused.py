@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import pytest
+from format_shapes import channel, memory
+
+from formats.plot3d.read import read_grids, sniff
+from geometry.errors import InputError
+
+GRID = channel(9, 6)
+X, Y = GRID.x.ravel(order="F"), GRID.y.ravel(order="F")
+
+
+def text(dims: str = "1\n9 6", values: str = "") -> bytes:
+    return f"{dims}\n{values or ' '.join(map(repr, [*X.tolist(), *Y.tolist()]))}\n".encode()
+
+
+def binary(*dims: int, order: str = "<", size: int = 8) -> bytes:
+    return (
+        struct.pack(f"{order}{len(dims)}i", *dims)
+        + np.concatenate([X, Y]).astype(f"{order}f{size}").tobytes()
+    )
+
+
+SOLID = np.random.default_rng(0).random(3 * 4 * 5 * 3)
+CASES = {
+    "solid text": (
+        text("5 4 3", " ".join(map(str, SOLID))),
+        "block 1, read as ASCII: a grid of 5x4x3 nodes is three-dimensional; give a plane one",
+    ),
+    "solid binary": (
+        struct.pack(">3i", 5, 4, 3) + SOLID.astype(">f4").tobytes(),
+        "read as C binary, big endian, float32: a grid of 5x4x3 nodes is three-dimensional",
+    ),
+    "cut text": (
+        text()[:-40],
+        r"has 10\d numbers and no Plot3D layout fits \(nearest: dims 9x6, 111 numbers\); the file",
+    ),
+    "cut binary": (
+        binary(1, 9, 6)[:-1],
+        r"has 875 bytes and no binary Plot3D layout fits \(a header could be dims",
+    ),
+    "garbage": (
+        bytes(range(256)) * 9,
+        "has 2304 bytes and no binary Plot3D layout fits; the file is cut short",
+    ),
+    "zeros": (bytes(4000), "has 4000 bytes and no binary Plot3D layout fits"),
+    "word": (text(values="1 2 3\n4 five 6"), "line 4: 'five' is not a number; write numbers only"),
+    "escape": (text(values="1 \x1b[2J"), r"line 3: '\\x1b\[2J' is not a number"),
+    "repeat of nothing": (text(values="3*"), r"line 3: '3\*' is not a number"),
+    "repeat by a word": (text(values="x*3"), r"line 3: 'x\*3' is not a number"),
+    "bomb": (text(values="999999999*0"), "repeats a number too often for its size; write the values out"),
+    "bigger bomb": (text(values="9999999999999*0"), r"'9999999999999\*0' is not a number"),
+    "several bombs": (text(values="999999999999*0 " * 9), "repeats a number too often for its size"),
+    "negative": (text("1\n-9 6"), "does not start with the dims of a Plot3D grid; start it with"),
+    "fraction": (text("1.5 2.5"), "does not start with the dims of a Plot3D grid"),
+    "huge": (text("1000000000 1000000000 1"), r"dims .*1000000000.*; the file is cut short"),
+    "huge binary": (binary(1, 10**9, 10**9), "no binary Plot3D layout fits"),
+    "negative binary": (binary(1, -9, -6), "no binary Plot3D layout fits"),
+    "many blocks": (text("99999 2 2"), "no Plot3D layout fits"),
+    "nan": (text(values="nan " * 108), "node i=0, j=0 has x = nan; check the file"),
+    "inf": (text(values="1e999 " * 108), "node i=0, j=0 has x = inf"),
+    "too large": (text(values="1e200 -1e200 " * 54), r"has x = 1e\+200; check the file"),
+    "line": (text("54 1", ""), "a grid of 54x1x1 nodes has no cells"),
+    "empty text": (b"\n\n  \n", "does not start with the dims"),
+    "one number": (b"7\n", "does not start with the dims"),
+    "airfoil": (
+        b"NACA 0012\n1.0 0.0\n0.5 0.1\n",
+        "line 1: 'NACA' is not a number; .* name another format with --from",
+    ),
+    "pickle": (b"\x80\x04\x95" + bytes(99), "no binary Plot3D layout fits"),
+    "Fortran cut": (
+        struct.pack("<i2ii", 8, 9, 6, 8) + struct.pack("<i", 864) + bytes(800),
+        "no binary Plot3D",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_file_that_is_no_plane_grid_is_refused(case: str) -> None:
+    data, told = CASES[case]
+    with pytest.raises(InputError, match=told):
+        list(read_grids(memory(data)))
+
+
+def test_an_airfoil_is_not_taken_for_a_grid() -> None:
+    for start in ("NACA 2412\n", "", "61. 61.\n\n", "5 5\n"):
+        rows = "".join(f"{1 - k / 30:.5f} {k * 0.01:.5f}\n" for k in range(61))
+        assert not sniff((start + rows).encode())
+    assert sniff(text())
+
+
+def test_two_readings_of_the_same_length_are_told_apart_by_their_cells() -> None:
+    # a counted plane grid with iblank has as many numbers as an uncounted three-dimensional one with ni = 1
+    flags = [1] * 20 + [0] * 14 + [-1] * 20
+    data = text(values=" ".join(map(repr, [*X.tolist(), *Y.tolist(), *flags])))
+    (grid,) = read_grids(memory(data))
+    assert np.array_equal(grid.nodes, GRID.nodes)
+    span = [0.0] * 54
+    data = text("1 9 6", values=" ".join(map(repr, [*span, *X.tolist(), *Y.tolist()])))
+    (grid,) = read_grids(memory(data))
+    assert np.array_equal(grid.nodes, GRID.nodes)
