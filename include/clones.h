@@ -15,4 +15,11 @@
 #define MESHONET_INLINE static inline
 #endif
 
+/* Before a loop whose rounds do not depend on each other: GCC loses `restrict` in inlined functions. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define MESHONET_INDEPENDENT _Pragma("GCC ivdep")
+#else
+#define MESHONET_INDEPENDENT
+#endif
+
 #endif

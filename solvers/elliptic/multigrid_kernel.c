@@ -82,6 +82,7 @@ MESHONET_INLINE void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *
     double *restrict diagonal = s->diagonal + k * s->stride;
     double *restrict bx = s->bx + k * s->stride, *restrict by = s->by + k * s->stride;
     const double *restrict fx = forced ? g->fx + i * (mj + 1) : g->x, *restrict fy = forced ? g->fy + i * (mj + 1) : g->y;
+    MESHONET_INDEPENDENT
     for (ptrdiff_t j = 1; j < mj; j++) {
         const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
         lower[j] = c.south;
@@ -174,6 +175,7 @@ MESHONET_INLINE void xi_block(const Level *g, ptrdiff_t j0, int n, int forced)
         const Rows r = rows_at(g, i);
         double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
         const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        MESHONET_INDEPENDENT
         for (int k = 0; k < n; k++) {
             const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
             const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
@@ -214,6 +216,7 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
         double *restrict bp = p + i * BLOCK;
         const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
         const double *restrict bp1 = bp - BLOCK;
+        MESHONET_INDEPENDENT
         for (int k = 0; k < n; k++) {
             const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
             const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
@@ -297,6 +300,7 @@ MESHONET_INLINE void residual_row(const Level *g, ptrdiff_t i, int forced, doubl
     const Differences eta = g->eta;
     const double *restrict fx = forced ? g->fx + i * (g->mj + 1) : g->x;
     const double *restrict fy = forced ? g->fy + i * (g->mj + 1) : g->y;
+    MESHONET_INDEPENDENT
     for (ptrdiff_t j = 1; j < g->mj; j++) {
         const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
         const double x = r.xc[j], y = r.yc[j];
