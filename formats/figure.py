@@ -150,7 +150,7 @@ def _views(grid: Grid) -> list[Box]:
     wall = body(grid)
     low, high = wall.min(axis=0), wall.max(axis=0)
     size, (x, y) = float((high - low).max()), ((low + high) / 2).tolist()
-    if size <= 0 or whole[1] - whole[0] < 4 * size:
+    if size <= 0 or whole[1] - whole[0] < 5 * size:
         return [whole]
     wide, tall = 0.68 * size, 0.51 * size
     return [(x - wide, x + wide, y - tall, y + tall), whole]

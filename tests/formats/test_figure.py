@@ -1,0 +1,139 @@
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+import matplotlib.image
+import numpy as np
+import pytest
+from format_shapes import c_grid, channel, ring
+
+from formats.figure import Colouring, draw, write
+from geometry.errors import InputError
+from geometry.grid import Grid
+
+
+def pixels(path: Path) -> np.ndarray:
+    """(rows, columns, 3) of a picture, 0 to 1."""
+    return np.asarray(matplotlib.image.imread(path))[..., :3]
+
+
+def wide_ring(ni: int = 161, nj: int = 81) -> Grid:
+    """An O grid whose body is small in its far field, as an airfoil's is."""
+    grid = ring(ni, nj)
+    angle = np.arctan2(grid.y, grid.x)
+    radius = np.geomspace(1, 30, nj)
+    nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
+    nodes[-1] = nodes[0]
+    return Grid(nodes, "o")
+
+
+def values(grid: Grid) -> np.ndarray:
+    return np.add.outer(np.arange(grid.ni - 1.0), np.arange(grid.nj - 1.0))
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+@pytest.mark.parametrize("make", [channel, ring, c_grid, wide_ring])
+def test_every_topology_is_drawn_in_every_kind_and_twice_the_same(
+    make: type[Grid], kind: str, tmp_path: Path
+) -> None:
+    grid = make()
+    for name in ("a", "b"):
+        write(tmp_path / name, grid, kind, Colouring(values(grid), "value"))
+    data = (tmp_path / "a").read_bytes()
+    assert data == (tmp_path / "b").read_bytes()
+    if kind == "png":
+        picture = pixels(tmp_path / "a")
+        assert 500 < picture.shape[0] < 2000
+        assert 500 < picture.shape[1] < 2000
+        assert len(np.unique(picture[::9, ::9].reshape(-1, 3), axis=0)) > 20
+    elif kind == "svg":
+        assert ElementTree.fromstring(data).tag.endswith("svg")  # noqa: S314
+    else:
+        assert data.startswith(b"%PDF")
+
+
+def test_a_small_body_gets_a_view_of_its_own() -> None:
+    assert len(draw(wide_ring()).axes) == 2
+    assert len(draw(ring()).axes) == 1
+    assert len(draw(channel()).axes) == 1
+    near, whole = draw(wide_ring()).axes
+    assert near.get_xlim()[1] < 2 < 30 < whole.get_xlim()[1]
+
+
+def test_a_zoom_shows_just_that() -> None:
+    (axes,) = draw(wide_ring(), zoom=(0.9, 1.1, -0.05, 0.05)).axes
+    assert (*axes.get_xlim(), *axes.get_ylim()) == (0.9, 1.1, -0.05, 0.05)
+
+
+def test_one_bad_cell_among_a_million_is_seen(tmp_path: Path) -> None:
+    s, t = np.meshgrid(np.linspace(0, 1, 1200), np.linspace(0, 1, 900), indexing="ij")
+    grid = Grid(np.stack([s, t], axis=-1))
+    flat = np.zeros((1199, 899))
+    write(tmp_path / "good.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), every=2000)
+    flat[617, 411] = 1.0
+    write(tmp_path / "bad.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), every=2000)
+    change = np.abs(pixels(tmp_path / "good.png") - pixels(tmp_path / "bad.png")).max(axis=-1)
+    rows, columns = np.nonzero(change > 0.3)
+    assert 1 <= len(rows) <= 12
+    low = Colouring(1 - flat, "v", (0.0, 1.0), worst_is_low=True)
+    write(tmp_path / "low.png", grid, "png", low, every=2000)
+    dark = pixels(tmp_path / "low.png")[rows[0], columns[0]].sum()
+    assert dark < pixels(tmp_path / "low.png")[rows[0] + 9, columns[0]].sum()
+
+
+def test_colours_stay_in_their_cells_when_a_ring_leaves_the_view(tmp_path: Path) -> None:
+    grid = wide_ring(401, 201)
+    zoom = (0.9, 1.1, -0.1, 0.1)
+    shade = Colouring(np.tile(np.sign(np.arange(400) - 199.5)[:, None], (1, 200)), "side", (-1.0, 1.0))
+    write(tmp_path / "a.png", grid, "png", shade, zoom, every=1000)
+    figure = draw(grid, shade, zoom, every=1000)
+    box = figure.axes[0].get_window_extent()
+    picture = pixels(tmp_path / "a.png")[::-1]
+    inside = picture[int(box.y0) + 4 : int(box.y1) - 4, int(box.x0) + 4 : int(box.x1) - 4]
+    # i runs clockwise from the positive x axis: cells below it have -1 (light), above it +1 (dark)
+    right = inside[:, int(0.7 * inside.shape[1]) :]
+    middle = right.shape[0] // 2  # and the lowest 60 rows hold the note on lines
+    assert right[60 : middle - 4].sum(axis=-1).min() > 2.5
+    assert right[middle + 4 :].sum(axis=-1).max() < 1.5
+
+
+def test_lines_are_as_many_as_asked_for() -> None:
+    for every, lines in ((1, 9 + 6), (3, 4 + 3), (100, 2 + 2)):
+        (axes,) = draw(channel(9, 6), every=every).axes
+        assert len(axes.collections[0].get_paths()) == lines
+
+
+def test_so_many_lines_are_left_out_that_the_rest_can_be_told_apart() -> None:
+    s, t = np.meshgrid(np.linspace(0, 1, 3000), np.linspace(0, 1, 3000), indexing="ij")
+    (axes,) = draw(Grid(np.stack([s, t], axis=-1))).axes
+    drawn = len(axes.collections[0].get_paths())
+    assert drawn / 2 * 5 < axes.get_window_extent().width
+    assert drawn > 100
+    assert axes.texts[0].get_text() == "every 20th line"
+
+
+def test_values_that_are_not_finite_are_left_blank(tmp_path: Path) -> None:
+    grid = channel()
+    write(tmp_path / "a.png", grid, "png", Colouring(np.full((6, 4), np.nan), "v"))
+    assert (tmp_path / "a.png").stat().st_size > 1000
+
+
+CHANNEL = channel()
+CASES = {
+    "shape": (
+        {"colouring": Colouring(np.zeros((7, 5)), "v")},
+        r"cell values have shape \(7, 5\); give \(6, 4\)",
+    ),
+    "every": ({"every": 0}, "every 0-th line cannot be drawn; use 1 or more"),
+    "empty": ({"zoom": (1.0, 1.0, 0.0, 1.0)}, r"zoom \(1.0, 1.0, 0.0, 1.0\) is empty; give x0,x1,y0,y1"),
+    "nan": ({"zoom": (np.nan, 1.0, 0.0, 1.0)}, "is empty"),
+    "away": ({"zoom": (9.0, 10.0, 0.0, 1.0)}, "shows none of the grid; the grid spans x 0 to 2.1, y"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_what_cannot_be_drawn_is_refused(case: str) -> None:
+    settings, told = CASES[case]
+    with pytest.raises(InputError, match=told):
+        draw(CHANNEL, **settings)  # type: ignore[arg-type]
