@@ -40,11 +40,14 @@ TABLE: dict[str, Row] = {
     "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),
     "wkt": Row("formats.vector", (".wkt",)),
     "geojson": Row("formats.vector", (".geojson", ".json")),
+    "airfoil": Row("formats.airfoil_dat", (".dat",)),
+    "points": Row("formats.points", (".csv", ".txt", ".xy")),
     "png": Row("formats.figure", (".png",)),
     "svg": Row("formats.figure", (".svg",)),
     "pdf": Row("formats.figure", (".pdf",)),
 }
-"""Formats by name. Where several share an ending, writing takes the first, reading looks at the content."""
+"""Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
+whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
 
 _DESIGNATION = "naca:"
 
@@ -87,7 +90,7 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
         if found.sniff is not None and found.sniff(head):
             return found
     if claimed:
-        return claimed[0]
+        return claimed[-1]
     what = f"ending {source.suffix!r} is" if source.suffix else "content is"
     raise InputError(
         f"its {what} not of a known format", f"name it with --from; {_known()}", source=source.name

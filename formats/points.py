@@ -1,0 +1,168 @@
+"""Lists of points: one closed curve, or the four edges of a domain in four blocks divided by blank lines.
+
+Columns are divided by commas, semicolons, blanks or tabs; a header line and lines that start with ``#`` are
+allowed; a third column is z and is left out. An open curve is closed by a straight line.
+
+Four blocks are edges in any order and direction as long as they meet; the first is south. Where opposite
+edges have equal counts, the points are the nodes of the boundary as they stand; otherwise curves to sample.
+A single curve that ends in one trailing edge is taken for an airfoil.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from formats.format import Format
+from formats.rows import Line, decode, read_lines, table
+from formats.source import Source
+from geometry.airfoil import Airfoil
+from geometry.arrays import Floats
+from geometry.boundary import Boundary, polygon_area
+from geometry.corners import find_corners, turning
+from geometry.errors import InputError
+from geometry.outline import Outline
+from geometry.shape import Shape
+
+MOST_POINTS = 100_000
+_JOIN = 1e-6
+"""How far apart, in extents, the ends of two edges may lie and still meet."""
+
+
+def read_shapes(source: Source) -> Iterator[Shape]:
+    """Yield the shape of a file.
+
+    Raises
+    ------
+    InputError
+        no such shape in it, with the line where there is one to name.
+    """
+    yield parse(decode(source.read_bytes()), source.name, source.stem)
+
+
+def parse(text: str, source: str, stem: str = "") -> Shape:
+    """Return the shape that the text of a list of points describes.
+
+    Parameters
+    ----------
+    text : of the file.
+    source : what to call it in messages.
+    stem : name of the shape; the source's without folder and ending when empty.
+
+    Examples
+    --------
+    >>> square = parse("x,y\\n0,0\\n1,0\\n1,1\\n0,1\\n", "square.csv")
+    >>> square.name, square.topology
+    ('square', 'quad')
+    """
+    name = stem or Path(source).stem
+    try:
+        blocks = [[line for line in block if len(line.values) >= 2] for block in table(read_lines(text))]
+        count = sum(map(len, blocks))
+        if count > MOST_POINTS:
+            raise InputError(f"{count} points", f"give at most {MOST_POINTS}")
+        if len(blocks) > 4 and max(map(len, blocks)) == 1:
+            blocks = [[line for block in blocks for line in block]]  # a blank line behind each
+        if len(blocks) == 4 and min(map(len, blocks)) >= 2:
+            return _four_edges(blocks, name)
+        if len(blocks) != 1:
+            raise InputError(
+                f"{len(blocks)} blocks of points",
+                "give one closed curve, or four edges divided by blank lines",
+                place=f"line {blocks[1][0].number}" if len(blocks) > 1 else "",
+            )
+        return _one_curve(blocks[0], name)
+    except InputError as error:
+        error.source = error.source or source
+        raise
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is text of which most lines are two or three numbers."""
+    try:
+        lines = read_lines(decode(head))
+    except InputError:
+        return False
+    rows = [line for line in lines if line.kind == "row"]
+    few = sum(len(line.values) <= 3 for line in rows)
+    return few >= 3 and few >= 0.8 * len(rows)
+
+
+def _one_curve(rows: list[Line], name: str) -> Shape:
+    points = np.array([line.values[:2] for line in rows])
+    places = [f"line {line.number}" for line in rows]
+    keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
+    if len(points) > 1 and np.array_equal(points[0], points[-1]):
+        keep[-1] = len(points) < 3
+    points, places = points[keep], [place for place, kept in zip(places, keep, strict=True) if kept]
+    if len(points) < 3:
+        raise InputError(f"{len(points)} points", "a closed curve needs at least 3")
+    if _ends_in_one_edge(points):
+        return Airfoil(points, name, places)
+    return Outline(points, name, places=places)
+
+
+def _ends_in_one_edge(points: Floats) -> bool:
+    """Say whether a curve (n, 2) looks like an airfoil: slender, its corners all at one end of its length.
+
+    One corner that turns by more than 90 degrees, or the two of a base.
+    """
+    if len(points) < 10:
+        return False
+    turn = np.abs(turning(points, closed=True))
+    corners = find_corners(points, closed=True, few=0)
+    sharp = corners[turn[corners] > np.radians(60.0)]
+    if not 1 <= len(sharp) <= 2 or turn[sharp].sum() < np.radians(120.0):
+        return False
+    edge = points[sharp].mean(axis=0)
+    length = float(np.hypot(*(points - edge).T).max())
+    base = float(np.hypot(*np.ptp(points[sharp], axis=0)))
+    area = abs(polygon_area(points))
+    return base < 0.25 * length and area < 0.5 * length**2
+
+
+def _four_edges(blocks: list[list[Line]], name: str) -> Shape:
+    """Return the domain of four edges, chained end to end from the first."""
+    edges = [np.array([line.values[:2] for line in block]) for block in blocks]
+    every = np.concatenate(edges)
+    reach = _JOIN * float(np.hypot(*np.ptp(every, axis=0)))
+    chain, left = [edges[0]], {1, 2, 3}
+    while left:
+        end = chain[-1][-1]
+        gaps = {(k, way): float(np.hypot(*(edges[k][::way][0] - end))) for k in left for way in (1, -1)}
+        (k, way), gap = min(gaps.items(), key=lambda item: item[1])
+        if gap > reach:
+            x, y = end
+            raise InputError(
+                f"no other edge starts or ends at ({x:g}, {y:g}); the nearest is {gap:.3g} away",
+                "make the four edges meet",
+                place=f"line {blocks[k][0 if way == 1 else -1].number}",
+            )
+        chain.append(edges[k][::way].copy())
+        chain[-1][0] = end
+        left.remove(k)
+    gap = float(np.hypot(*(chain[3][-1] - chain[0][0])))
+    if gap > reach:
+        raise InputError(f"the four edges do not close: {gap:.3g} are left open", "make the four edges meet")
+    chain[3][-1] = chain[0][0]
+    ring = np.concatenate([edge[:-1] for edge in chain])
+    if polygon_area(ring) < 0:  # the first edge stays south, so it is walked the other way
+        chain = [chain[0][::-1], *(edge[::-1] for edge in chain[:0:-1])]
+        ring = np.concatenate([edge[:-1] for edge in chain])
+    counts = [len(edge) for edge in chain]
+    if counts[0] == counts[2] and counts[1] == counts[3]:
+        south, east, north, west = chain
+        return Boundary(south, north[::-1], west[::-1], east, name=name)
+    a, b, c, d = (int(k) for k in np.concatenate([[0], np.cumsum(np.array(counts[:3]) - 1)]))
+    return Outline(ring, name, corners=(a, b, c, d))
+
+
+FORMAT = Format(
+    name="points",
+    suffixes=(".csv", ".txt", ".xy"),
+    description="points of a closed curve or of four edges",
+    read_shapes=read_shapes,
+    sniff=sniff,
+)
