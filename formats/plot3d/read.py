@@ -14,6 +14,7 @@ from formats.source import HEAD_BYTES, Source
 from geometry.errors import InputError
 from geometry.grid import Grid
 
+_INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
 _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 
 
@@ -43,7 +44,7 @@ def sniff(head: bytes) -> bool:
     if is_text and not _INTEGER_FIRST.match(head):
         return False
     if len(head) == HEAD_BYTES:
-        return is_text or _could_be_binary(head)
+        return bool(_INTEGER_LINE.match(head)) if is_text else _could_be_binary(head)
     try:
         return bool(text.candidates(head) if is_text else binary.candidates(head))
     except InputError:

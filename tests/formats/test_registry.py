@@ -185,8 +185,35 @@ def test_a_dat_file_is_told_apart_by_its_content(tmp_path: Path) -> None:
     path = tmp_path / "grid.dat"
     writer = format_for_output(str(path)).write_grids
     assert writer is not None
-    writer(path, [ring()])
-    assert format_of(open_source(str(path))).name.startswith("plot3d")
+    for grid in (ring(), ring(200, 100)):
+        writer(path, [grid])
+        assert format_of(open_source(str(path))).name == "plot3d-ascii"
+        words = path.read_text().split()
+        pairs = [" ".join(words[k : k + 2]) for k in range(3, len(words), 2)]
+        path.write_text("\n".join(["1", f"{grid.ni} {grid.nj}", *pairs]) + "\n")
+        assert format_of(open_source(str(path))).name == "plot3d-ascii"
+    angle = np.linspace(0, 2 * np.pi, 200)
+    for title in ("A SECTION\n", "", "2032 section\n"):
+        rows = "".join(f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in angle)
+        path.write_text(title + rows)
+        assert format_of(open_source(str(path))).name == "airfoil"
+        path.write_text(title + rows * 20)
+        assert format_of(open_source(str(path))).name == "airfoil"
+    path.write_text("hello\n")
+    assert format_of(open_source(str(path))).name == "airfoil"
+
+
+def test_a_designation_is_an_airfoil_unless_a_file_is_called_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (shape,) = read_shapes("naca:2412")
+    assert "2412" in shape.name
+    monkeypatch.chdir(tmp_path)
+    writer = format_named("hdf5").write_grids
+    assert writer is not None
+    writer(tmp_path / "naca:2412", [ring()])
+    (shape,) = read_shapes("naca:2412")
+    assert isinstance(shape, Boundary)
 
 
 def test_a_format_may_be_named_by_its_ending_or_its_family() -> None:
@@ -212,7 +239,7 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("loop.vts", "loop.vts: cannot be opened .*symbolic"),
         ("a\0b", "null byte.*; check the path"),
         ("x.png", "x.png: png files can only be written; give a grid"),
-        ("x.msh", "x.msh: gmsh files can only be written; give a grid"),
+        ("x.msh", r"x.msh: gmsh[a-z-]* files can only be written; give a grid"),
         ("\x1b[31m.vts", r"\\x1b\[31m.vts: no such file"),
     ],
 )
