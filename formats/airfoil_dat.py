@@ -36,7 +36,7 @@ def read_shapes(source: Source) -> Iterator[Airfoil]:
 
 
 def parse(text: str, source: str, stem: str = "") -> Airfoil:
-    """Return the airfoil that the text of a coordinate file describes.
+    r"""Return the airfoil that the text of a coordinate file describes.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
 
     Examples
     --------
-    >>> parse("Plate\\n1 0\\n.5 .05\\n0 0\\n.5 -.05\\n1 0\\n", "plate.dat").name
+    >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'
     """
     try:
@@ -94,7 +94,8 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int]]:
     blocks = [kept for block in blocks if (kept := [line for line in block if len(line.values) >= usual])]
     while len(blocks) > 1 and len(blocks[-1]) < 3 and _far_or_told(blocks, lines):
         blocks.pop()  # numbers in the prose behind the data
-    rows, starts = [], []
+    rows: list[Line] = []
+    starts = []
     for block in blocks:
         starts.append(len(rows))
         rows += block
@@ -217,7 +218,7 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
     if length.sum() > 3.5 * extent:
         k = int(np.argmax(length))
         raise InputError(
-            f"the points go more than once around: widest step between lines {numbers[k]} and {numbers[(k + 1) % n]}",
+            f"the points go more than once around: widest step, line {numbers[k]} to {numbers[(k + 1) % n]}",
             "give one element alone, " + _ASK.removeprefix("give an airfoil "),
         )
 

@@ -43,7 +43,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
 
 
 def parse(text: str, source: str, stem: str = "") -> Shape:
-    """Return the shape that the text of a list of points describes.
+    r"""Return the shape that the text of a list of points describes.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
 
     Examples
     --------
-    >>> square = parse("x,y\\n0,0\\n1,0\\n1,1\\n0,1\\n", "square.csv")
+    >>> square = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
     >>> square.name, square.topology
     ('square', 'quad')
     """

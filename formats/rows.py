@@ -45,7 +45,7 @@ class Line:
 
 
 def decode(data: bytes) -> str:
-    """Return the text of bytes in UTF-8 or UTF-16 with its mark, UTF-8, or else Latin-1, which takes any byte.
+    r"""Return the text of bytes: UTF-8 or UTF-16 with its mark, UTF-8, or else Latin-1, which takes any byte.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def decode(data: bytes) -> str:
 
     Examples
     --------
-    >>> decode(b"\\xef\\xbb\\xbf1 2"), decode("Stéfan".encode("latin-1"))
+    >>> decode(b"\xef\xbb\xbf1 2"), decode("Stéfan".encode("latin-1"))
     ('1 2', 'Stéfan')
     """
     if len(data) > MOST_BYTES:
@@ -72,11 +72,11 @@ def decode(data: bytes) -> str:
 
 
 def read_lines(text: str) -> list[Line]:
-    """Return the lines of a text, each with what it is.
+    r"""Return the lines of a text, each with what it is.
 
     Examples
     --------
-    >>> [(line.kind, line.values) for line in read_lines("NACA 1\\n1.0 0.0\\n.5\\t(0.1D-1)\\n")]
+    >>> [(line.kind, line.values) for line in read_lines("NACA 1\n1.0 0.0\n.5\t(0.1D-1)\n")]
     [('text', ()), ('row', (1.0, 0.0)), ('row', (0.5, 0.01))]
     """
     found = re.split(r"\r\n|\r|\n", text.replace("\x1a", ""))
@@ -100,7 +100,7 @@ def table(lines: list[Line]) -> list[list[Line]]:
     blocks: list[list[Line]] = [[]]
     for k, line in enumerate(lines):
         beside = near[k], near[k + 2]
-        if line.kind == "row" or line.kind == "noted" and "row" in beside:
+        if line.kind == "row" or (line.kind == "noted" and "row" in beside):
             blocks[-1].append(line)
         elif line.kind == "broken" and beside == ("row", "row"):
             raise InputError(

@@ -100,12 +100,12 @@ class Airfoil:
         return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
-        """Return `ni` nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
+        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
 
         Raises
         ------
         InputError
-            fewer nodes than the edges need, cells that do not fit, or a polygon so coarse that it crosses itself.
+            fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
         """
         stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius)
         nodes = self.curve.at(wall_arcs(stations, ni, sampling))
@@ -113,8 +113,8 @@ class Airfoil:
         crossing = find_crossing(nodes[:-1])
         if crossing is not None:
             raise InputError(
-                f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}) where the section is thin",
-                "use more nodes",
+                f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
+                "use more nodes where the section is thin",
             )
         return nodes
 
@@ -155,8 +155,8 @@ def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> Inp
     ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
     told = [places[k] if places else f"point {k}" for k in ends]
     return InputError(
-        f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), between {told[0]} and {told[1]} "
-        f"and between {told[2]} and {told[3]}",
+        f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
+        f"between {told[0]} and {told[1]} and between {told[2]} and {told[3]}",
         "correct these points: no grid can be made around crossing surfaces",
     )
 
@@ -186,7 +186,7 @@ def _farthest(curve: Curve, point: Floats) -> float:
 
 
 def _root(f: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a function that falls from positive at `low` to negative at `high` is zero (Illinois method)."""
+    """Return where a function is zero that falls from `low` to `high` (Illinois method)."""
     top, bottom, at, side = f(low), f(high), low, 0
     for _ in range(60):
         before, at = at, (low * bottom - high * top) / (bottom - top)

@@ -92,6 +92,6 @@ def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     a2, a1, b1, b2 = (points[(k + step) % n] for step in (-2, -1, 1, 2))
     near, far = np.hypot(*(a1 - b1)), np.hypot(*(a2 - b2))
     d1, d2 = (np.hypot(*(0.5 * (a + b) - points[k])) for a, b in ((a1, b1), (a2, b2)))
-    if not (0 < near and 0 < far and 0 < d1 < d2):
+    if not (near > 0 and far > 0 and 0 < d1 < d2):
         return np.inf
     return float(np.log(far / near) / np.log(d2 / d1))

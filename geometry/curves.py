@@ -21,7 +21,7 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS
 
 
 class Curve:
-    """A smooth curve through given points: one cubic an interval (`geometry.slopes`), bitwise through its points.
+    """A smooth curve bitwise through given points, one cubic an interval (`geometry.slopes`).
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Curve:
         return np.asarray(d / _norm(d)[..., None])
 
     def curvature(self, s: Floats) -> Floats:
-        """Return the curvature (m,), 1/length, at arc lengths `s` (m,); positive where the curve turns left."""
+        """Return the curvature (m,), 1/length, at arc lengths `s` (m,), positive where it turns left."""
         i, t = self._locate(s)
         d = self._derivative(i, t)
         _, _, c, e = self._cubic
@@ -142,7 +142,7 @@ class Curve:
         return np.asarray((d[..., 0] * bend[..., 1] - d[..., 1] * bend[..., 0]) / _norm(d) ** 3)
 
     def polyline(self, pieces: int = 4) -> Floats:
-        """Return points (intervals * pieces, 2) on the curve, equally many an interval; an open one's end is added."""
+        """Return points (intervals * pieces, 2) on the curve; the end of an open one is added."""
         i = np.arange(self._cubic.shape[1])[:, None]
         t = (np.arange(pieces) / pieces)[None, :, None]
         a, b, c, d = self._cubic[:, i]

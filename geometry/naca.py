@@ -105,8 +105,8 @@ def _split(designation: str) -> tuple[str, bool]:
             f"NACA {digits} has its camber at the leading edge", "use 1 to 9 as the second digit"
         )
     if len(digits) == 5:
-        table = {"0": _SIMPLE, "1": _REFLEX}.get(digits[2])
-        if table is None or int(digits[1]) not in table:
+        known = {"0": set(_SIMPLE), "1": set(_REFLEX)}.get(digits[2], set())
+        if int(digits[1]) not in known:
             raise InputError(
                 f"NACA {digits} has no tabulated mean line",
                 "use 10 to 50 or 21 to 51 as its second and third digit",

@@ -62,7 +62,8 @@ class Outline:
         if crossing is not None:
             told = [places[k % len(p)] if places else f"point {k}" for k in (crossing.first, crossing.second)]
             raise InputError(
-                f"the outline crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), after {told[0]} and after {told[1]}",
+                f"the outline crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
+                f"behind {told[0]} and behind {told[1]}",
                 "correct these points or their order",
             )
         if abs(area) < 1e-9 * extent**2:
@@ -144,7 +145,7 @@ class Outline:
         return tuple(ordered if self._left else [ordered[0], *ordered[:0:-1]])
 
     def _found_corners(self) -> tuple[int, ...]:
-        """Return the four sharpest corners, counter-clockwise, the edge that lies lowest between the first two.
+        """Return the four sharpest corners, counter-clockwise, the lowest edge between the first two.
 
         Of equally sharp ones (to a degree) those nearest the corners of the box count; where there are not
         four, those places of a round outline that reach farthest into the corners of the box.

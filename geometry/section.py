@@ -15,9 +15,9 @@ from geometry.corners import Indices, find_corners, growth_exponent, turning
 from geometry.errors import InputError
 
 SHARP_GAP = 2e-4
-"""Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without this rule."""
+"""Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without it."""
 SAME_POINT = 1e-5
-"""Points closer than this, in extents, are one: their direction from each other is noise of the last digit."""
+"""Points closer than this, in extents, are one: the direction between them is noise of the last digit."""
 ON_BASE = 5e-5
 """How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
 _CORNER = np.radians(35.0)
@@ -132,7 +132,7 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
 
 
 def _sharpness(ring: Floats, end: int, other: int) -> tuple[float, float]:
-    """Return (p, t): near ring[end] the thickness grows like distance to the power p, and is t at 5 % of the chord.
+    """Return (p, t): from ring[end] on thickness grows like distance to the power p, and is t at 5 % chord.
 
     p is about 0.35 at a round leading edge, 0.85 at a wedge, 1.5 at a cusp, measured between 5 % and 20 %.
     """
@@ -157,7 +157,7 @@ def _sharpness(ring: Floats, end: int, other: int) -> tuple[float, float]:
 
 
 def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Section:
-    """Return the section once it is known whether the ring, cut near its start, ends in an edge or in a base."""
+    """Return the section of a ring that starts at its trailing edge: find out whether that is a base."""
     gap = float(_distance(ring[0], ring[-1])) if open_gap else 0.0
     if open_gap and gap < SHARP_GAP * chord:
         ring = ring.copy()

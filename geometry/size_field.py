@@ -1,4 +1,4 @@
-"""Cell sizes that follow the shape: small at the edges and where the curve turns, growing slowly in between."""
+"""Cell sizes that follow the shape: small at edges and where the curve turns, growing slowly in between."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -
 
 
 def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
-    """Return the absolute curvature at arc lengths s, averaged over `_WINDOW` chords and at least 0.01 a chord."""
+    """Return the absolute curvature at arc lengths s, averaged over `_WINDOW`, at least 0.01 a chord."""
     low, high = min(s[0], s[-1]), max(s[0], s[-1])
     t = np.linspace(low, high, 4 * _SAMPLES)
     d = curve.tangent(np.clip(t, low + 1e-9 * (high - low), high - 1e-9 * (high - low)))

@@ -74,7 +74,7 @@ def _pieces(points: Floats, stops: Indices) -> tuple[Floats, Floats]:
 
 
 def _periodic(points: Floats) -> Floats:
-    """Return slopes (n, 2) of the periodic spline; the corners of the matrix by Sherman and Morrison's formula."""
+    """Return slopes (n, 2) of the periodic spline, by Sherman and Morrison's formula."""
     chord = np.diff(points, axis=0, append=points[:1])
     h = np.hypot(chord[:, 0], chord[:, 1])
     delta = chord / h[:, None]
@@ -132,7 +132,7 @@ def _limited(
 
 
 def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
-    """Return slopes (n, 2) whose angle from the chord lies within `least` and `most`, their size within `LONGEST`."""
+    """Return slopes (n, 2), angles from the chord within `least` and `most`, no longer than `LONGEST`."""
     angle = np.arctan2(
         chord[:, 0] * slope[:, 1] - chord[:, 1] * slope[:, 0],
         chord[:, 0] * slope[:, 0] + chord[:, 1] * slope[:, 1],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from geometry.arrays import Floats
@@ -59,7 +61,7 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -
     place = np.interp(corners, distance, index)
     stays = sorted({0, last, *fixed})
     node = np.rint(place).astype(np.intp)
-    for low, high in zip(stays[:-1], stays[1:], strict=True):
+    for low, high in pairwise(stays):
         mine = np.flatnonzero((place > low) & (place < high))
         room = high - low - 1
         if len(mine) > room:

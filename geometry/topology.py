@@ -7,10 +7,12 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.curves import Curve
+from geometry.errors import InputError
+from geometry.lift import lift_body, mirrored
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:
-    """Return n nodes (n, 2) clockwise on a circle at equal angles from `start` (radians), the first repeated bitwise."""
+    """Return n nodes (n, 2) clockwise on a circle from `start` (radians), the first repeated bitwise."""
     angle = start - np.linspace(0.0, 2 * np.pi, n)
     nodes = centre + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
     nodes[-1] = nodes[0]
@@ -23,6 +25,16 @@ def straight(a: Floats, b: Floats, n: int) -> Floats:
     nodes = (1 - t) * a + t * b
     nodes[0], nodes[-1] = a, b
     return np.asarray(nodes)
+
+
+def _start(wall: Floats, centre: Floats) -> float:
+    """Return the angle (radians) of the first far-field node of a closed wall (ni, 2), first node repeated."""
+    try:
+        lift, w, _ = lift_body(mirrored(wall[:-1]))
+    except InputError:  # no conformal map: the direction of the first node
+        return float(np.arctan2(wall[0, 1] - centre[1], wall[0, 0] - centre[0]))
+    lead = float(np.mean(w.imag - 2.0 * np.pi * np.arange(len(w)) / len(w)))
+    return -(float(np.angle(lift.quarter)) + lift.phase + lead)
 
 
 def o_boundary(
@@ -38,12 +50,11 @@ def o_boundary(
     curve : the curve the wall was sampled from.
     name : of the shape.
 
-    The far field runs clockwise at equal angles from the direction of `wall[0]`; west and east are the
-    straight cut from there to the wall.
+    The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal
+    map, which for a symmetric body is straight behind it: a grid in between is then not sheared. West and
+    east are the straight cut from there to the wall.
     """
-    out = wall[0] - centre
-    north = far_circle(
-        np.asarray(centre, dtype=np.float64), radius, len(wall), float(np.arctan2(out[1], out[0]))
-    )
+    middle = np.asarray(centre, dtype=np.float64)
+    north = far_circle(middle, radius, len(wall), _start(wall, middle))
     cut = straight(wall[0], north[0], nj)
     return Boundary(wall, north, cut, cut, topology="o", name=name, wall=curve)

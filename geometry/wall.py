@@ -26,8 +26,8 @@ from geometry.size_field import arcs_by_curvature
 from geometry.stretch import on_corners
 
 _EDGE_STEP = 20.0
-"""Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O grids:
-smaller makes grids less orthogonal on the whole, larger folds more of them at the edge."""
+"""Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
+grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
 _BASE_GROWTH = 1.15
 _BASE_SHARE = 0.35
 """Largest part of all cells that goes to the base."""
@@ -142,7 +142,7 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
     side = min(stations.nose - stations.lower, stations.upper - stations.nose)
     if plan.te + plan.le >= side:
         raise InputError(
-            f"cells of {plan.te / stations.chord:.3g} and {plan.le / stations.chord:.3g} chords fill a whole side",
+            f"cells of {plan.te / stations.chord:.3g} and {plan.le / stations.chord:.3g} chords fill a side",
             "use smaller spacings",
         )
     return plan

@@ -1,0 +1,1 @@
+"""The paper's six families of boundaries, each with one parameter; and random airfoils to train on."""

@@ -1,0 +1,31 @@
+"""Case 3 of the paper: a wrench, a unit square with a jaw in its top.
+
+::
+
+         .          .         the opening w is the width of the jaw, centred at x = 1/2, from y = 1 to 0.6;
+       .' |        | '.       its lips stand 0.05 outside it at y = 1.15
+     .'   |   w    |   '.
+    |     |________|     |    all eight kinks of the top lie on nodes; those at the bottom of the jaw turn by
+    |                    |    270 degrees inside the domain, where elliptic grids fold
+    '--------------------'
+"""
+
+from __future__ import annotations
+
+from geometry.boundary import Boundary
+from geometry.families.edges import polyline
+from geometry.families.family import Family
+
+
+def boundary(opening: float, ni: int, nj: int) -> Boundary:
+    """Return the wrench whose jaw is `opening` wide (sides of the square)."""
+    a, b = 0.5 - 0.5 * opening, 0.5 + 0.5 * opening
+    top = [
+        (0.0, 1.0), (a - 0.05, 1.15), (a, 1.0), (a, 0.6), (b, 0.6), (b, 1.0), (b + 0.05, 1.15), (1.0, 1.0),
+    ]  # fmt: skip
+    south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(top, ni)
+    west, east = polyline([(0.0, 0.0), (0.0, 1.0)], nj), polyline([(1.0, 0.0), (1.0, 1.0)], nj)
+    return Boundary(south, north, west, east, name=f"wrench-{opening:.6g}")
+
+
+FAMILY = Family("wrench", "opening of the jaw", 0.15, 0.45, 0.02, 0.85, "quad", boundary)
