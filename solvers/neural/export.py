@@ -1,0 +1,78 @@
+"""A trained network to a model file, with its recipe and its held-out figures."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from solvers.neural.dataset import Strips
+from solvers.neural.encoding import VERSION
+from solvers.neural.strip import across, harmonic, picard
+from solvers.neural.weights import KIND
+
+QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}
+
+
+def miss(found: Complexes, goal: Complexes) -> float:
+    """Return ||found - goal|| / ||goal||."""
+    return float(np.linalg.norm(found - goal) / np.linalg.norm(goal))
+
+
+def held_out_figures(answer: Callable[[int], Complexes], test: Strips) -> dict[str, Any]:
+    """Return quantiles of ||found - R|| / ||R|| over held-out strips: the network's beside those without it.
+
+    `answer(m)` is the network's R for strip m, (2 MODES + 1, LEVELS).
+    """
+    misses: dict[str, list[float]] = {}
+    for m in range(len(test)):
+        goal, start = test.residual[m], harmonic(test.wall[m], test.far[m], across().eta)
+        found = answer(m)
+        for way, residual in (
+            ("base + 1 Picard", picard(start, 1)[0] - start),
+            ("base + 2 Picard", picard(start, 2)[0] - start),
+            ("network", found),
+            ("network + 1 Picard", picard(start + found, 1)[0] - start),
+        ):
+            misses.setdefault(way, []).append(miss(residual, goal))
+    figures: dict[str, Any] = {
+        "strips": len(test),
+        "error": "||found - R|| / ||R||, R = Winslow - harmonic base, at the Chebyshev points",
+        "base": dict.fromkeys(QUANTILES, 1.0),
+    }
+    for way, values in misses.items():
+        figures[way] = {key: round(float(np.quantile(values, q)), 6) for key, q in QUANTILES.items()}
+    return figures
+
+
+def write_model(
+    path: Path,
+    state: Mapping[str, Floats],
+    basis: Floats,
+    scale: float,
+    *,
+    name: str,
+    recipe: Mapping[str, Any],
+    figures: Mapping[str, Any],
+) -> None:
+    """Write a model file: float16 weights, the basis in float32, the header that `weights` checks."""
+    from safetensors.numpy import save
+
+    arrays = {key: np.asarray(value, dtype=np.float16) for key, value in state.items()}
+    arrays["basis"] = basis.astype(np.float32)
+    header = {
+        "kind": KIND,
+        "encoding": str(VERSION),
+        "name": name,
+        "topology": "o",
+        "scale": repr(scale),
+        "recipe": json.dumps(recipe, sort_keys=True),
+        "figures": json.dumps(figures, sort_keys=True),
+    }
+    part = path.with_name(path.name + ".part")
+    part.write_bytes(save(arrays, metadata=header))
+    part.replace(path)

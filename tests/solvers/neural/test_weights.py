@@ -1,0 +1,87 @@
+"""Model files are untrusted input."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+from safetensors.numpy import save_file
+
+from geometry.errors import InputError
+from solvers.neural.encoding import VERSION
+from solvers.neural.weights import KIND, described, load_model, model_path, read_tensors, shipped
+
+
+def tensors() -> dict[str, np.ndarray]:
+    return read_tensors(model_path(None))[1]
+
+
+def header(**changes: str) -> dict[str, str]:
+    return {
+        "kind": KIND,
+        "encoding": str(VERSION),
+        "name": "test",
+        "topology": "o",
+        "scale": "1.0",
+        **changes,
+    }
+
+
+def test_the_shipped_model_loads_and_describes_itself() -> None:
+    assert "airfoil-o" in shipped()
+    facts = described("airfoil-o")
+    assert facts["topology"] == "o"
+    assert facts["recipe"]["seed"] == 0
+    assert facts["figures"]["network"]["median"] < 0.5 * facts["figures"]["base"]["median"]
+    assert facts["parameters"] > 100_000
+
+
+def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
+    save_file(tensors(), tmp_path / "copy.safetensors", metadata=header())
+    assert load_model(str(tmp_path / "copy.safetensors")).name == "test"
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "not a safetensors file"),
+        (b"\xff" * 100, "not a safetensors file"),
+        (pickle.dumps({"weights": [1.0]}), "not a safetensors file"),
+        ((2**60).to_bytes(8, "little") + b"{}", "not a safetensors file"),
+    ],
+)
+def test_other_files_are_refused(tmp_path: Path, content: bytes, told: str) -> None:
+    path = tmp_path / "model.safetensors"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=told) as caught:
+        load_model(str(path))
+    assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"kind": "something else"}, "it holds 'something else'"),
+        ({"encoding": "999"}, "encoding 999"),
+        ({"encoding": "one"}, "lack"),
+        ({"scale": "nan"}, "do not fit"),
+    ],
+)
+def test_foreign_headers_are_refused(tmp_path: Path, changes: dict[str, str], told: str) -> None:
+    save_file(tensors(), tmp_path / "m.safetensors", metadata=header(**changes))
+    with pytest.raises(InputError, match=told):
+        load_model(str(tmp_path / "m.safetensors"))
+
+
+def test_arrays_of_other_shapes_or_not_finite_are_refused(tmp_path: Path) -> None:
+    odd = tensors() | {"basis": np.zeros((3, 3), np.float32)}
+    save_file(odd, tmp_path / "odd.safetensors", metadata=header())
+    with pytest.raises(InputError, match="do not fit"):
+        load_model(str(tmp_path / "odd.safetensors"))
+    bad = tensors()
+    bad["lift.bias"] = np.full_like(bad["lift.bias"], np.nan)
+    save_file(bad, tmp_path / "bad.safetensors", metadata=header())
+    with pytest.raises(InputError, match=r"'lift.bias' is not finite"):
+        load_model(str(tmp_path / "bad.safetensors"))
