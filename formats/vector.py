@@ -129,7 +129,7 @@ def _rings(geometry: BaseGeometry, place: str) -> Iterator[Any]:
             place=place,
         )
     ring = geometry.exterior if kind == "Polygon" else geometry
-    if not ring.is_ring and ring.coords[0] != ring.coords[-1]:
+    if ring.coords[0] != ring.coords[-1]:
         raise InputError("line is not closed", "repeat its first point at its end", place=place)
     yield ring
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 from urllib.parse import unquote
@@ -22,6 +23,7 @@ _KINDS = {
     "short": "i2", "unsigned_short": "u2", "char": "i1", "unsigned_char": "u1",
 }  # fmt: skip
 _LINE = 4096
+_WORD = re.compile(rb"\S")
 
 
 class _Cursor:
@@ -37,14 +39,13 @@ class _Cursor:
 
     def line(self) -> str:
         """Return the next line that is not blank, without its end."""
-        while self.at < len(self.data):
-            end = self.data.find(b"\n", self.at, self.at + _LINE)
-            end = end if end >= 0 else min(self.at + _LINE, len(self.data))
-            text = self.data[self.at : end].decode("latin-1").strip()
-            self.at = end + 1
-            if text:
-                return text
-        raise InputError("ends before its points", "the file is cut short: write it again")
+        start = _WORD.search(self.data, self.at)
+        if start is None:
+            raise InputError("ends before its points", "the file is cut short: write it again")
+        end = self.data.find(b"\n", start.start(), start.start() + _LINE)
+        end = end if end >= 0 else min(start.start() + _LINE, len(self.data))
+        self.at = end + 1
+        return self.data[start.start() : end].decode("latin-1").strip()
 
     def words(self, count: int) -> list[bytes]:
         """Return the next `count` blank-separated words."""

@@ -7,6 +7,7 @@ are the same stream: integers of 4 bytes, then floats, then the integers of ibla
 from __future__ import annotations
 
 import itertools
+import struct
 from collections.abc import Sequence
 from math import prod
 from typing import Any
@@ -18,6 +19,7 @@ from formats.plot3d.layouts import Candidate, Layout, layouts
 from geometry.arrays import Floats
 from geometry.errors import InputError
 
+_MOST_RECORDS = 400_000
 _NAMES = {"<": "little endian", ">": "big endian"}
 
 
@@ -99,13 +101,13 @@ def _unframed(data: bytes, order: str) -> list[memoryview] | None:
     """
     view, at = memoryview(data), 0
     records: list[memoryview] = []
+    word = struct.Struct(order + "i")
     while at < len(view):
-        if at + 8 > len(view):
+        if at + 8 > len(view) or len(records) == _MOST_RECORDS:
             return None
-        (word,) = np.frombuffer(view, order + "i4", 1, at)
-        length = abs(int(word))
+        length = abs(word.unpack_from(view, at)[0])
         end = at + 4 + length
-        if end + 4 > len(view) or abs(int(np.frombuffer(view, order + "i4", 1, end)[0])) != length:
+        if not length or end + 4 > len(view) or abs(word.unpack_from(view, end)[0]) != length:
             return None
         records.append(view[at + 4 : end])
         at = end + 4
