@@ -13,7 +13,7 @@ from geometry.arrays import Complexes, Floats
 from solvers.neural.dataset import Strips
 from solvers.neural.encoding import VERSION
 from solvers.neural.strip import across, harmonic, picard
-from solvers.neural.weights import KIND
+from solvers.neural.weights import HEADER, KIND
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}
 
@@ -66,13 +66,14 @@ def write_model(
     arrays["basis"] = basis.astype(np.float32)
     header = {
         "kind": KIND,
-        "encoding": str(VERSION),
+        "encoding": VERSION,
         "name": name,
         "topology": "o",
-        "scale": repr(scale),
-        "recipe": json.dumps(recipe, sort_keys=True),
-        "figures": json.dumps(figures, sort_keys=True),
+        "scale": scale,
+        "recipe": dict(recipe),
+        "figures": dict(figures),
     }
     part = path.with_name(path.name + ".part")
-    part.write_bytes(save(arrays, metadata=header))
+    # one entry: safetensors writes several in an order that changes from run to run
+    part.write_bytes(save(arrays, metadata={HEADER: json.dumps(header, sort_keys=True)}))
     part.replace(path)

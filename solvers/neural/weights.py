@@ -20,6 +20,7 @@ from solvers.neural.strip import LEVELS
 
 DEFAULT = "airfoil-o"
 KIND = "meshonet strip operator"
+HEADER = "meshonet"  # the metadata entry that holds the header as JSON
 LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
 
 
@@ -90,7 +91,7 @@ def _load(path: str) -> Model:
         scale = float(header["scale"])
         inputs = tensors["lift.weight"].shape[1]
         outputs = tensors["project.weight"].shape[0]
-    except (KeyError, IndexError, ValueError) as error:
+    except (KeyError, IndexError, ValueError, TypeError) as error:
         raise InputError(
             f"its header or arrays lack {error}", "use a file made by meshonet train", source=path
         ) from None
@@ -100,8 +101,8 @@ def _load(path: str) -> Model:
     return Model(header.get("name", Path(path).stem), weights, basis, scale, header)
 
 
-def read_tensors(path: Path) -> tuple[dict[str, str], dict[str, Floats]]:
-    """Return the metadata and the arrays of a safetensors file, size and finiteness checked."""
+def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, Floats]]:
+    """Return the header and the arrays of a model file, size and finiteness checked."""
     from safetensors import SafetensorError, safe_open
 
     if path.stat().st_size > LARGEST:
@@ -110,12 +111,14 @@ def read_tensors(path: Path) -> tuple[dict[str, str], dict[str, Floats]]:
         )
     try:
         with safe_open(path, framework="numpy") as file:
-            header = dict(file.metadata() or {})
+            header = json.loads((file.metadata() or {}).get(HEADER, "{}"))
             tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 - not a mapping
     except (SafetensorError, OSError, ValueError, TypeError) as error:
         raise InputError(
             f"not a safetensors file ({error})", "use a file made by meshonet train", source=str(path)
         ) from None
+    if not isinstance(header, dict):
+        raise InputError("its header is not an object", "use a file made by meshonet train", source=str(path))
     for key, array in tensors.items():
         if not np.issubdtype(array.dtype, np.floating) or not np.isfinite(array).all():
             raise InputError(
@@ -128,8 +131,8 @@ def described(name: str) -> dict[str, Any]:
     """Return what a shipped model says of itself: name, topology, recipe, figures, file."""
     path = model_path(name)
     header, tensors = read_tensors(path)
-    facts: dict[str, Any] = {key: header[key] for key in ("name", "topology") if key in header}
-    facts |= {key: json.loads(header[key]) for key in ("recipe", "figures") if key in header}
+    told = ("name", "topology", "recipe", "figures")
+    facts: dict[str, Any] = {key: header[key] for key in told if key in header}
     facts["parameters"] = int(sum(array.size for array in tensors.values()))
     facts["file"] = str(path)
     return facts

@@ -138,6 +138,6 @@ def test_a_body_the_lift_cannot_take_goes_to_the_elliptic_solver_and_says_why() 
 
 def test_an_unknown_model_is_refused_with_those_that_exist() -> None:
     with pytest.raises(
-        InputError, match="no model 'nonesuch'; use a .safetensors file or one of: base, airfoil-o"
+        InputError, match=r"no model 'nonesuch'; use a \.safetensors file or one of: base, airfoil-o"
     ):
         infer(boundary("0012", 20, 10), model="nonesuch")

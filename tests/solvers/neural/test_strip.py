@@ -52,8 +52,8 @@ def test_harmonic_extension_of_one_mode_is_its_hyperbolic_sine() -> None:
 def sheared_solution(T: float, shear: float, size: float, eta: np.ndarray) -> np.ndarray:
     """F of a Winslow solution that is not the harmonic one.
 
-    eta and theta are harmonic functions of w when T eta = Re H and theta = Im H + shear Re H for an analytic H;
-    here w = q + size exp(-q) with q = H(w).
+    eta and theta are harmonic functions of w when T eta = Re H and theta = Im H + shear Re H for an analytic
+    H; here w = q + size exp(-q) with q = H(w).
     """
     q = T * eta[None, :] * (1 - 1j * shear) + 1j * THETA[:, None]
     return q + size * np.exp(-q) - 1j * THETA[:, None]

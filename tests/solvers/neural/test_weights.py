@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 from pathlib import Path
 
@@ -11,22 +12,16 @@ from safetensors.numpy import save_file
 
 from geometry.errors import InputError
 from solvers.neural.encoding import VERSION
-from solvers.neural.weights import KIND, described, load_model, model_path, read_tensors, shipped
+from solvers.neural.weights import HEADER, KIND, described, load_model, model_path, read_tensors, shipped
 
 
 def tensors() -> dict[str, np.ndarray]:
     return read_tensors(model_path(None))[1]
 
 
-def header(**changes: str) -> dict[str, str]:
-    return {
-        "kind": KIND,
-        "encoding": str(VERSION),
-        "name": "test",
-        "topology": "o",
-        "scale": "1.0",
-        **changes,
-    }
+def header(**changes: object) -> dict[str, str]:
+    facts = {"kind": KIND, "encoding": VERSION, "name": "test", "topology": "o", "scale": 1.0, **changes}
+    return {HEADER: json.dumps(facts)}
 
 
 def test_the_shipped_model_loads_and_describes_itself() -> None:
@@ -64,12 +59,13 @@ def test_other_files_are_refused(tmp_path: Path, content: bytes, told: str) -> N
     ("changes", "told"),
     [
         ({"kind": "something else"}, "it holds 'something else'"),
-        ({"encoding": "999"}, "encoding 999"),
+        ({"encoding": 999}, "encoding 999"),
         ({"encoding": "one"}, "lack"),
+        ({"encoding": None}, "lack"),
         ({"scale": "nan"}, "do not fit"),
     ],
 )
-def test_foreign_headers_are_refused(tmp_path: Path, changes: dict[str, str], told: str) -> None:
+def test_foreign_headers_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
     save_file(tensors(), tmp_path / "m.safetensors", metadata=header(**changes))
     with pytest.raises(InputError, match=told):
         load_model(str(tmp_path / "m.safetensors"))

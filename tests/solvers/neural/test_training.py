@@ -1,0 +1,118 @@
+"""Training is deterministic, resumable, and learns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from geometry.boundary import Boundary
+from geometry.errors import InputError, SolverError
+from geometry.families import procedural
+from geometry.naca import naca
+from geometry.sampling import Sampling
+from solvers.neural.dataset import Strips, solve_strips
+from solvers.neural.strip import across, harmonic, picard
+from solvers.neural.training import Report, Settings, train
+from solvers.neural.weights import load_model, read_tensors
+
+SMALL = Settings(epochs=3, batch=8, rate=2e-3, warm_up=4, basis=6, width=8, modes=10, layers=1, held_out=4)
+
+
+@pytest.fixture(scope="module")
+def strips() -> Strips:
+    rng = np.random.default_rng(5)
+    torch.set_num_threads(1)
+    return solve_strips(procedural.boundary(rng, 97, 3) for _ in range(24))
+
+
+def fit(strips: Strips, output: Path, settings: Settings = SMALL, **rest: object) -> list[Report]:
+    reports: list[Report] = []
+    train(strips, output, settings, name="small", recipe={}, report=reports.append, **rest)  # type: ignore[arg-type]
+    return reports
+
+
+def test_strips_solve_winslows_equations(strips: Strips) -> None:
+    for m in range(3):
+        found = harmonic(strips.wall[m], strips.far[m], across().eta) + strips.residual[m]
+        assert picard(found, 1)[1][0] < 1e-4, "a solution is where another step changes nothing"
+        assert np.abs(strips.residual[m]).max() > 1e-5
+        np.testing.assert_array_equal(strips.residual[m][:, [0, -1]], 0)
+
+
+def test_the_loss_falls_and_the_file_loads(strips: Strips, tmp_path: Path) -> None:
+    reports = fit(strips, tmp_path / "m.safetensors", replace(SMALL, epochs=12))
+    assert reports[-1].loss < 0.5 * reports[0].loss
+    assert load_model(str(tmp_path / "m.safetensors")).name == "small"
+    assert not (tmp_path / "m.safetensors.checkpoint").exists()
+
+
+def test_the_same_seed_gives_the_same_weights_and_another_does_not(strips: Strips, tmp_path: Path) -> None:
+    one, two, other = (tmp_path / f"{k}.safetensors" for k in "abc")
+    fit(strips, one)
+    fit(strips, two)
+    fit(strips, other, replace(SMALL, seed=1))
+    assert one.read_bytes() == two.read_bytes()
+    assert one.read_bytes() != other.read_bytes()
+
+
+def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(strips: Strips, tmp_path: Path) -> None:
+    whole, cut = tmp_path / "whole.safetensors", tmp_path / "cut.safetensors"
+    expected = fit(strips, whole)
+
+    def stop(report: Report) -> None:
+        if report.epoch == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train(strips, cut, SMALL, name="small", recipe={}, report=stop)
+    assert not cut.exists()
+    resumed = fit(strips, cut, resume=True)
+    assert [report.epoch for report in resumed] == [3]
+    assert resumed[0].loss == expected[2].loss
+    wanted, found = read_tensors(whole)[1], read_tensors(cut)[1]
+    for key in wanted:
+        np.testing.assert_array_equal(found[key], wanted[key])
+
+
+def test_a_checkpoint_of_other_settings_is_refused(strips: Strips, tmp_path: Path) -> None:
+    output = tmp_path / "m.safetensors"
+
+    def stop(report: Report) -> None:
+        if report.epoch == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train(strips, output, SMALL, name="small", recipe={}, report=stop)
+    with pytest.raises(InputError, match="made with seed 0; repeat that or remove it"):
+        fit(strips, output, replace(SMALL, seed=3), resume=True)
+    (tmp_path / "m.safetensors.checkpoint").write_bytes(b"no checkpoint")
+    with pytest.raises(InputError, match="not a checkpoint"):
+        fit(strips, output, resume=True)
+
+
+def test_too_few_shapes_are_refused(strips: Strips, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="10 shapes to train on; give at least 12"):
+        fit(strips[:10], tmp_path / "m.safetensors")
+
+
+def test_a_loss_that_is_not_finite_stops_the_run(strips: Strips, tmp_path: Path) -> None:
+    broken = Strips(strips.wall, strips.far, strips.residual * np.nan)
+    with pytest.raises((SolverError, np.linalg.LinAlgError)):
+        fit(broken, tmp_path / "m.safetensors")
+    with pytest.raises(SolverError, match="not finite in epoch"):
+        fit(strips, tmp_path / "m.safetensors", replace(SMALL, rate=1e12, warm_up=1))
+
+
+def test_boundaries_that_cannot_be_lifted_are_left_out_and_others_refused() -> None:
+    good: Boundary = naca("2412").boundary(Sampling(ni=97, nj=3))
+    tiny = naca("0012").boundary(Sampling(ni=8, nj=3))
+    counts: list[tuple[int, int]] = []
+    found = solve_strips([good, tiny], lambda done, left_out: counts.append((done, left_out)))
+    assert len(found) == 1
+    assert counts[-1] == (1, 1)
+    with pytest.raises(InputError, match="no boundary could be lifted"):
+        solve_strips([tiny])
