@@ -19,6 +19,9 @@ Kind = Literal["blank", "text", "row", "noted", "gap", "broken"]
 MOST_BYTES = 16 * 2**20
 """A larger file is not read: an outline of a million points is a mistake."""
 
+MOST_LINES = 300_000
+"""Likewise, so that a file of nothing but line ends is refused at once."""
+
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
 _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
@@ -82,6 +85,8 @@ def read_lines(text: str) -> list[Line]:
     found = re.split(r"\r\n|\r|\n", text.replace("\x1a", ""))
     if found and not found[-1]:
         found.pop()
+    if len(found) > MOST_LINES:
+        raise InputError(f"{len(found)} lines are too many for a file of points", f"give at most {MOST_LINES}")
     return [_line(number, line) for number, line in enumerate(found, start=1)]
 
 
