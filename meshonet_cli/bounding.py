@@ -39,6 +39,21 @@ class Sampled(Timed):
     lines = line
 
 
+@dataclass(frozen=True)
+class Sampler:
+    """Samples shapes."""
+
+    sampling: Sampling
+
+    def boundary(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
+        """Return the boundary of one shape and what there is to tell of it."""
+        begun = time.perf_counter()
+        boundary = item.what.boundary(self.sampling)
+        report = Sampled(item, boundary)
+        report.seconds["boundary"] = time.perf_counter() - begun
+        return boundary, report
+
+
 def sample_shapes(
     sources: Sequence[str],
     sampling: Sampling,
@@ -47,21 +62,16 @@ def sample_shapes(
     *,
     fmt: str | None = None,
     skip_existing: bool = False,
+    jobs: int = 1,
 ) -> int:
     """Sample every shape of `sources` into `destination` and return the exit code."""
     prepare(sources, destination, session)
-
-    def make(item: Item[Shape]) -> tuple[Boundary, Sampled]:
-        begun = time.perf_counter()
-        boundary = item.what.boundary(sampling)
-        report = Sampled(item, boundary)
-        report.seconds["boundary"] = time.perf_counter() - begun
-        return boundary, report
 
     def tell(report: Sampled, path: str) -> None:
         report.finished(path)
         session.tell(report)
 
     found = items(sources, lambda source: read_shapes(source, fmt), session)
-    deliver(found, make, destination, session, tell, skip_existing=skip_existing)
+    make = Sampler(sampling).boundary
+    deliver(found, make, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
     return session.finish()

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future
 from itertools import chain
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 from geometry.boundary import Boundary
 from geometry.errors import InputError
@@ -15,97 +17,114 @@ from meshonet_cli.member import Item, Named
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
-
-class Sized(Protocol):
-    """What is written: grids and boundaries."""
-
-    @property
-    def ni(self) -> int:
-        """Nodes along xi."""
-        ...
-
-    @property
-    def nj(self) -> int:
-        """Nodes along eta."""
-        ...
-
-    @property
-    def topology(self) -> str:
-        """Kind of grid."""
-        ...
-
-
 T = TypeVar("T", bound=Named)
 S = TypeVar("S", bound=Grid | Boundary)
 R = TypeVar("R", bound=Timed)
+Make = Callable[[Item[T]], tuple[S, R]]
+
+
+def prepare(sources: Sequence[str], destination: Destination, session: Session) -> None:
+    """Raise InputError when `destination` cannot take what `sources` and `session` will give it."""
+    destination.check_room(sources)
+    session.check_output(destination.text)
 
 
 def deliver(
     found: Iterator[Item[T]],
-    make: Callable[[Item[T]], tuple[S, R]],
+    make: Make[T, S, R],
     destination: Destination,
     session: Session,
     tell: Callable[[R, str], None],
     *,
     skip_existing: bool = False,
+    jobs: int = 1,
 ) -> None:
     """Make something of every member of `found`, write it to `destination`, and tell of it.
 
-    A member that fails is told of and left out. Memory holds one member at a time.
+    A member that fails is told of and left out. Memory holds one member, or a few for each job.
 
     Parameters
     ----------
-    make : returns what to write and a report, whose stage ``write`` is timed here.
+    make : returns what to write and a report, whose stage ``write`` is timed here; with several jobs it
+        must be something that can be pickled.
     tell : is given the report and the path when the member is written.
     skip_existing : pass over members whose own file is there.
+    jobs : processes that make, and write when every member has its own file.
     """
     leading = next(found, None)
     if leading is None:
         return
     destination.check_only(leading)
     found = chain([leading], found)
-    if destination.each or not session.batch:
-        _one_file_each(found, make, destination, session, tell, skip_existing)
-        return
-    stream = _streamed(found, make, destination, session, tell)
-    first = next(stream, None)
-    if first is not None:
-        destination.write(destination.text, chain([first], stream))
+    each = destination.each or not session.batch
+    work = _Work(make, destination if each else None)
+    with _executor(jobs if session.batch else 1) as pool:
+        todo = _paths(found, destination, session, skip_existing) if each else ((item, "") for item in found)
+        done = _ahead(todo, work, pool, jobs)
+        if each:
+            for item, path, future in done:
+                with session.member(item.label, item.source):
+                    tell(future.result()[1], path)
+            return
+        stream = _streamed(done, destination, session, tell)
+        first = next(stream, None)
+        if first is not None:
+            destination.write(destination.text, chain([first], stream))
 
 
-def _one_file_each(
-    found: Iterator[Item[T]],
-    make: Callable[[Item[T]], tuple[S, R]],
-    destination: Destination,
-    session: Session,
-    tell: Callable[[R, str], None],
-    skip_existing: bool,
-) -> None:
+class _Work(Generic[T, S, R]):
+    """What is done to one member, here or in another process: make it, and write it to its own file."""
+
+    def __init__(self, make: Make[T, S, R], destination: Destination | None) -> None:
+        self.make, self.destination = make, destination
+
+    def __call__(self, item: Item[T], path: str) -> tuple[S | None, R]:
+        what, report = self.make(item)
+        report.item = item.without_content()
+        if self.destination is None:
+            return what, report
+        with report.timed("write"):
+            self.destination.write(path, [what])
+        return None, report
+
+
+def _paths(
+    found: Iterator[Item[T]], destination: Destination, session: Session, skip_existing: bool
+) -> Iterator[tuple[Item[T], str]]:
     for item in found:
         with session.member(item.label, item.source):
             path = destination.path(item)
             if skip_existing and path != "-" and Path(path).exists():
                 session.skip(item.label, path)
-                continue
-            what, report = make(item)
-            with report.timed("write"):
-                destination.write(path, [what])
-            tell(report, path)
+            else:
+                yield item, path
+
+
+def _ahead(
+    todo: Iterator[tuple[Item[T], str]], work: _Work[T, S, R], pool: Executor, jobs: int
+) -> Iterator[tuple[Item[Any], str, Future[tuple[Any, R]]]]:
+    """Yield members in order with their work, of which up to two for each job are under way."""
+    waiting: deque[tuple[Item[Any], str, Future[tuple[Any, R]]]] = deque()
+    for item, path in todo:
+        waiting.append((item.without_content(), path, pool.submit(work, item, path)))
+        while len(waiting) >= (1 if jobs == 1 else 2 * jobs):
+            yield waiting.popleft()
+    while waiting:
+        yield waiting.popleft()
 
 
 def _streamed(
-    found: Iterator[Item[T]],
-    make: Callable[[Item[T]], tuple[S, R]],
+    done: Iterator[tuple[Item[Any], str, Future[tuple[Any, R]]]],
     destination: Destination,
     session: Session,
     tell: Callable[[R, str], None],
-) -> Iterator[S]:
+) -> Iterator[Grid | Boundary]:
     """Yield what goes into one file; each is told of when the writer comes back for the next one."""
     size: tuple[int, int, str] | None = None
-    for item in found:
+    for item, _, future in done:
         made = None
         with session.member(item.label, item.source):
-            result = make(item)
+            result = future.result()
             size = _same_size(result[0], size)
             made = result
         if made is None:
@@ -116,7 +135,7 @@ def _streamed(
         tell(report, destination.text)
 
 
-def _same_size(what: Sized, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
+def _same_size(what: Grid | Boundary, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
     own = (what.ni, what.nj, what.topology)
     if size is not None and own != size:
         raise InputError(
@@ -126,7 +145,21 @@ def _same_size(what: Sized, size: tuple[int, int, str] | None) -> tuple[int, int
     return own
 
 
-def prepare(sources: Sequence[str], destination: Destination, session: Session) -> None:
-    """Raise InputError when `destination` cannot take what `sources` and `session` will give it."""
-    destination.check_room(sources)
-    session.check_output(destination.text)
+class _Here(Executor):
+    """Does the work at once, in this process."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:  # handed on, as other executors do
+            future.set_exception(error)
+        return future
+
+
+def _executor(jobs: int) -> Executor:
+    if jobs == 1:
+        return _Here()
+    from meshonet_cli.processes import Processes
+
+    return Processes(jobs)

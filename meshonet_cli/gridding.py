@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TYPE_CHECKING
 
 from formats.registry import read_grids, read_shapes
 from geometry.boundary import Boundary
@@ -22,6 +23,9 @@ from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
 from solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from solvers.tfi import Blending
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ class Recipe:
 
 def make_grids(
     sources: Sequence[str], recipe: Recipe, destination: Destination, session: Session, *,
-    fmt: str | None = None, skip_existing: bool = False,
+    fmt: str | None = None, skip_existing: bool = False, jobs: int = 1,
 ) -> int:  # fmt: skip
     """Turn every boundary of `sources` into a grid in `destination` and return the exit code.
 
@@ -93,6 +97,7 @@ def make_grids(
     ----------
     fmt : format of the sources, or None to go by endings and content.
     skip_existing : pass over members whose own file is there.
+    jobs : processes at work.
 
     Raises
     ------
@@ -101,9 +106,8 @@ def make_grids(
     """
     prepare(sources, destination, session)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
-    deliver(
-        found, recipe.grid, destination, session, partial(_tell, recipe, session), skip_existing=skip_existing
-    )
+    tell = partial(_tell, recipe, session)
+    deliver(found, recipe.grid, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
     return session.finish()
 
 
@@ -131,6 +135,13 @@ class Clock:
             spent -= part
         self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
         self._last = now
+
+
+def interpolated(edges: Boundary, blending: Blending) -> Solution:
+    """Return the transfinite interpolation of `edges` as a solution."""
+    from solvers.tfi import tfi
+
+    return Solution(tfi(edges, blending), "tfi")
 
 
 def initial_grid(text: str | None) -> Grid | None:

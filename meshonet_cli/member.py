@@ -16,6 +16,13 @@ class Named(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class Name:
+    """A name that stands for the thing."""
+
+    name: str
+
+
 T = TypeVar("T", bound=Named)
 
 
@@ -37,6 +44,10 @@ class Item(Generic[T]):
     what: T
     seconds: float
     only: bool = True
+
+    def without_content(self) -> Item[Name]:
+        """Return the same member with nothing but the name of what it holds."""
+        return Item(self.index, self.source, Name(self.what.name), self.seconds, self.only)
 
     @property
     def label(self) -> str:

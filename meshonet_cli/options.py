@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 # the library's own choices, repeated here because its modules load numpy; a test holds them equal
 TopologyName = Literal["auto", "quad", "o"]
-SpacingName = Literal["auto", "uniform", "cosine", "tanh", "curvature"]
+SpacingName = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 
 # fmt: off
 Boundaries = Annotated[
@@ -64,7 +64,9 @@ TopologyOption = Annotated[
 SpacingOption = Annotated[
     SpacingName,
     typer.Option(
-        "--spacing", metavar="auto|uniform|cosine|tanh|curvature", help="Spacing of the nodes along walls."
+        "--spacing",
+        metavar="auto|conformal|uniform|cosine|tanh|curvature",
+        help="Spacing of the nodes along walls.",
     ),
 ]
 LeSpacing = Annotated[
@@ -105,6 +107,9 @@ FailOn = Annotated[
 ]
 SkipExisting = Annotated[
     bool, typer.Option("--skip-existing", help="Pass over inputs whose output file is there already.")
+]
+Jobs = Annotated[
+    int, typer.Option("--jobs", metavar="N", min=1, max=1024, help="Processes at work on a batch.")
 ]
 AsJson = Annotated[
     bool, typer.Option("--json", help="Print one JSON object on standard output for each result.")
@@ -201,3 +206,18 @@ def polish_steps(text: str) -> Literal["auto", "off"] | int:
 
         raise InputError(f"{text!r} is not a number of steps", "use auto, off or e.g. 2", source="--polish")
     return int(text)
+
+
+def tolerance(value: float | None) -> float | None:
+    """Return `value`, which must be between 0 and 1 when it is given.
+
+    Raises
+    ------
+    InputError
+        it is not.
+    """
+    if value is not None and not 0 < value < 1:
+        from geometry.errors import InputError
+
+        raise InputError(f"{value:g} is not between 0 and 1", "use e.g. 1e-8", source="--tol")
+    return value

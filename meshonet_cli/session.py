@@ -16,6 +16,7 @@ from geometry.errors import InputError, MeshonetError
 from meshonet_cli.report import explained
 
 GATE_NOT_MET = 1
+_BAR = 24
 
 
 class Told(Protocol):
@@ -137,10 +138,14 @@ class Session:
         done = self.members - 1
         spent = time.perf_counter() - self._begun
         left = f", {(count - done) * spent / done:.0f} s left" if count and done else ""
-        of = f"{self.members}/{count}" if count else f"{self.members}"
-        width = os.get_terminal_size(sys.stderr.fileno()).columns - 1
+        filled = _BAR * done // count if count else 0
+        bar = (
+            f"[{'#' * filled}{'-' * (_BAR - filled)}] {self.members}/{count}" if count else f"{self.members}"
+        )
+        width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
         self._clear()
-        sys.stderr.write(f"[{of}] {printable(name)}{left}"[:width])
+        line = f"{bar}{left}: {printable(name)}"
+        sys.stderr.write(line[:width])
         sys.stderr.flush()
         self._bar_shown = True
 

@@ -44,6 +44,7 @@ def infer(
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
+    jobs: o.Jobs = 1,
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,
     debug: o.Debug = False,
@@ -66,5 +67,7 @@ def infer(
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")
-    return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)
+    return make_grids(
+        boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
+    )
 # fmt: on

@@ -24,6 +24,7 @@ def sample_boundary(
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
+    jobs: o.Jobs = 1,
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,
     debug: o.Debug = False,
@@ -37,4 +38,6 @@ def sample_boundary(
     sampling = o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths)
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "boundaries")
-    return sample_shapes(source, sampling, destination, session, fmt=from_format, skip_existing=skip_existing)
+    return sample_shapes(
+        source, sampling, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
+    )

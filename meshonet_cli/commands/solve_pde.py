@@ -27,7 +27,7 @@ def solve_pde(
         ),
     ] = None,
     max_cycles: Annotated[
-        int, typer.Option("--max-cycles", metavar="N", help="Multigrid cycles at the most.")
+        int, typer.Option("--max-cycles", metavar="N", min=1, help="Multigrid cycles at the most.")
     ] = 30,
     initial: Annotated[
         str | None, typer.Option("--initial", metavar="GRID", help="Grid to start from.", show_default=False)
@@ -44,6 +44,7 @@ def solve_pde(
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
+    jobs: o.Jobs = 1,
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,
     debug: o.Debug = False,
@@ -60,10 +61,12 @@ def solve_pde(
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        partial(solve, tol=tol, max_cycles=max_cycles, initial=initial_grid(initial)),
+        partial(solve, tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial)),
         allow_invalid,
         parse_gates(fail_on),
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")
-    return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)
+    return make_grids(
+        boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
+    )

@@ -35,26 +35,29 @@ def tfi(
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
+    jobs: o.Jobs = 1,
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:
     """Make grids by transfinite interpolation."""
+    from functools import partial
+
     from meshonet_cli.batch import Destination
     from meshonet_cli.gates import parse_gates
-    from meshonet_cli.gridding import Recipe, make_grids
+    from meshonet_cli.gridding import Recipe, interpolated, make_grids
     from meshonet_cli.session import Session
-    from solvers.solution import Solution
-    from solvers.tfi import tfi as interpolate
 
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        lambda edges: Solution(interpolate(edges, blending), "tfi"),
+        partial(interpolated, blending=blending),
         allow_invalid,
         parse_gates(fail_on),
         "try meshonet solve-pde, which unfolds, or --allow-invalid",
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")
-    return make_grids(boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing)
+    return make_grids(
+        boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
+    )

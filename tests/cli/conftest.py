@@ -97,8 +97,8 @@ def ellipse(ni: int = 41, nj: int = 15, thickness: float = 0.3) -> dict[str, np.
 def wave(n: int = 41) -> dict[str, np.ndarray]:
     """Edges of a channel with a breaking wave in its floor, which transfinite interpolation folds over."""
     edges = duct(n, n, bump=0.0)
-    height = np.exp(-20 * (edges["south"][:, 0] - 1) ** 2)
-    edges["south"][1:-1] += (height[:, None] * [0.7, 0.7])[1:-1]
+    height = np.exp(-8 * (edges["south"][:, 0] - 1) ** 2)
+    edges["south"][1:-1] += (height[:, None] * [0.4, 0.6])[1:-1]
     return edges
 
 

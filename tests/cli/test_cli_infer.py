@@ -1,0 +1,56 @@
+"""`meshonet infer`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Meshonet, ellipse, wave
+
+from formats.registry import read_grids
+
+
+def test_a_body_becomes_a_valid_o_grid(meshonet: Meshonet, body_h5: Path) -> None:
+    told = meshonet("infer", body_h5, "-o", "grid.vts", "--json").only
+    assert told["folded"] == 0
+    assert told["topology"] == "o"
+    assert told["model"]
+    (grid,) = read_grids("grid.vts")
+    np.testing.assert_array_equal(grid.nodes[:, 0], ellipse()["south"])
+    np.testing.assert_array_equal(grid.nodes[-1], grid.nodes[0])
+
+
+def test_base_is_the_operator_without_network(meshonet: Meshonet, body_h5: Path) -> None:
+    told = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "off", "--json").only
+    assert (told["method"], told["model"], told["cycles"]) == ("operator", "base", 0)
+
+
+def test_polish_takes_the_steps_it_is_told(meshonet: Meshonet, body_h5: Path) -> None:
+    told = meshonet("infer", body_h5, "-o", "grid.vts", "--model", "base", "--polish", "2", "--json").only
+    assert told["cycles"] == 2
+
+
+def test_a_channel_becomes_a_valid_grid_too(meshonet: Meshonet, folding_h5: Path) -> None:
+    told = meshonet("infer", folding_h5, "-o", "grid.vts", "--json").only
+    assert told["folded"] == 0
+    (grid,) = read_grids("grid.vts")
+    np.testing.assert_array_equal(grid.nodes[:, 0], wave()["south"])
+
+
+def test_a_designation_needs_no_file(meshonet: Meshonet) -> None:
+    told = meshonet("infer", "naca:2412", "-o", "{stem}.vts", "--res", "80x40", "--json").only
+    assert (told["ni"], told["nj"], told["folded"], told["output"]) == (80, 40, 0, "naca2412.vts")
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--model", "nothing"), "no model 'nothing'"),
+        (("--polish", "much"), "--polish: 'much' is not a number of steps; use auto, off or e.g. 2"),
+    ],
+)
+def test_mistakes_get_a_line(meshonet: Meshonet, body_h5: Path, words: tuple[str, ...], told: str) -> None:
+    done = meshonet("infer", body_h5, "-o", "g.vts", *words)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()

@@ -1,0 +1,85 @@
+"""`meshonet solve-pde`."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Meshonet, wave
+
+from formats.registry import read_grids
+from solvers.elliptic.winslow import residual
+
+
+def test_the_grid_solves_the_equations(meshonet: Meshonet, body_h5: Path) -> None:
+    told = meshonet("solve-pde", body_h5, "-o", "grid.vts", "--tol", "1e-10", "--json").only
+    assert told["method"] == "winslow"
+    assert told["residual"] <= 1e-10
+    assert told["cycles"] >= 1
+    assert told["folded"] == 0
+    (grid,) = read_grids("grid.vts")
+    (start,) = read_grids(str(_interpolated(meshonet, body_h5)))
+    assert np.abs(residual(grid.nodes)).max() < 1e-8 * np.abs(residual(start.nodes)).max()
+
+
+def _interpolated(meshonet: Meshonet, source: Path) -> Path:
+    meshonet("tfi", source, "-o", "start.vts")
+    return Path("start.vts")
+
+
+def test_the_report_says_residual_and_cycles(meshonet: Meshonet, duct_h5: Path) -> None:
+    told = meshonet("solve-pde", duct_h5, "-o", "grid.vts").err
+    assert "method     winslow" in told
+    assert "cycles" in told
+
+
+def test_where_interpolation_folds_it_does_not(meshonet: Meshonet, folding_h5: Path) -> None:
+    done = meshonet("solve-pde", folding_h5, "-o", "grid.vts")
+    assert done.code == 0
+    (grid,) = read_grids("grid.vts")
+    np.testing.assert_array_equal(grid.nodes[:, 0], wave()["south"])
+
+
+def test_max_cycles_stops_it(meshonet: Meshonet, duct_h5: Path) -> None:
+    told = meshonet("solve-pde", duct_h5, "-o", "g.vts", "--tol", "1e-14", "--max-cycles", "1", "--json").only
+    assert told["cycles"] == 1
+    assert told["residual"] > 1e-14
+
+
+def test_initial_starts_from_a_grid(meshonet: Meshonet, duct_h5: Path) -> None:
+    meshonet("solve-pde", duct_h5, "-o", "first.vts", "--tol", "1e-9")
+    told = meshonet(
+        "solve-pde", duct_h5, "-o", "g.vts", "--initial", "first.vts", "--tol", "1e-8", "--json"
+    ).only
+    assert told["cycles"] == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--tol", "2"), "--tol: 2 is not between 0 and 1; use e.g. 1e-8"),
+        (("--tol", "x"), "tol"),
+        (("--max-cycles", "0"), "max-cycles"),
+        (("--initial", "missing.vts"), "missing.vts: no such file"),
+        (("--initial", "duct.h5"), "duct.h5: holds boundaries, not grids"),
+        (("--res", "33", "--initial", "start.vts"), "the initial grid has 21x11 nodes, not 33x33"),
+    ],
+)
+def test_mistakes_get_a_line(meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str) -> None:
+    _interpolated(meshonet, duct_h5)
+    done = meshonet("solve-pde", "duct.h5", "-o", "g.vts", *words)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()
+
+
+def test_jobs_give_the_same_grids(meshonet: Meshonet, three_h5: Path) -> None:
+    assert meshonet("solve-pde", three_h5, "-o", "one/{name}.vts").code == 0
+    done = meshonet("solve-pde", three_h5, "missing.h5", "-o", "two/{name}.vts", "--jobs", "2")
+    assert done.code == 2
+    assert "3 done, 1 failed" in done.err
+    for path in Path("one").iterdir():
+        (one,), (two,) = read_grids(str(path)), read_grids(f"two/{path.name}")
+        np.testing.assert_array_equal(one.nodes, two.nodes)
+    assert meshonet("solve-pde", three_h5, "-o", "all.h5", "--jobs", "2").code == 0
+    assert [grid.name for grid in read_grids("all.h5")] == ["flat", "low", "high"]

@@ -1,0 +1,74 @@
+"""Gates: what they accept, which figure they look at."""
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.quality import measure
+from meshonet_cli.gates import need_percentiles, parse_gate, parse_gates
+
+
+def parallelogram() -> Grid:
+    x, y = np.meshgrid(np.arange(4.0), np.arange(3.0), indexing="ij")
+    return Grid(np.stack([x + 0.5 * y, np.sqrt(0.75) * y], axis=-1))
+
+
+@pytest.mark.parametrize(
+    ("text", "metric", "statistic", "compare", "limit"),
+    [
+        ("max_angle>170", "max_angle", "max", ">", 170),
+        (" scaled_jacobian <= 0.2 ", "scaled_jacobian", "min", "<=", 0.2),
+        ("skewness.p99>=8e-1", "skewness", "p99", ">=", 0.8),
+        ("min_angle.mean<45", "min_angle", "mean", "<", 45),
+        ("folded>0", "folded", "max", ">", 0),
+        ("orthogonality<-.5", "orthogonality", "min", "<", -0.5),
+    ],
+)
+def test_a_gate_names_metric_statistic_and_limit(
+    text: str, metric: str, statistic: str, compare: str, limit: float
+) -> None:
+    gate = parse_gate(text)
+    assert (gate.metric, gate.statistic, gate.compare, gate.limit) == (metric, statistic, compare, limit)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "max_angle", "max_angle=5", "max_angle>nan", ">5", "max_angle>5>6", "a.b.c>1", "max_angle>1_0x"],
+)
+def test_what_is_no_gate_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(InputError, match="is not a gate; write METRIC>VALUE or METRIC<VALUE"):
+        parse_gate(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "broken"),
+    [
+        ("max_angle>119", True),
+        ("max_angle>121", False),
+        ("max_angle.mean<119", False),
+        ("max_angle.mean<121", True),
+        ("min_angle<61", True),
+        ("min_angle<59", False),
+        ("folded>0", False),
+        ("folded>=0", True),
+    ],
+)
+def test_a_gate_is_broken_when_it_holds(text: str, broken: bool) -> None:
+    told = parse_gate(text).broken(measure(parallelogram()))
+    assert (told is not None) == broken
+    assert told is None or f"--fail-on '{text}'" in told
+
+
+def test_equality_counts_only_when_asked_for() -> None:
+    quality = measure(parallelogram())
+    assert parse_gate("folded>=0").broken(quality)
+    assert not parse_gate("folded>0").broken(quality)
+    assert parse_gate("folded<=0").broken(quality)
+    assert not parse_gate("folded<0").broken(quality)
+
+
+def test_percentiles_are_asked_for_only_when_needed() -> None:
+    assert need_percentiles(parse_gates(["max_angle>1", "skewness.p01<0"]))
+    assert not need_percentiles(parse_gates(["max_angle>1", "skewness.mean>0"]))
+    assert parse_gates(None) == ()
