@@ -62,7 +62,7 @@ bench: $(VENV)/.developing
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 docs: $(VENV)/.developing
-	$(BIN)/python -m docs.generate
+	$(BIN)/python docs/make_pages.py
 
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing

@@ -1,0 +1,103 @@
+"""Make the generated pages and pictures of docs/: python docs/make_pages.py (make docs).
+
+cli.md from the application, models.md from the headers of the shipped models, families.md and the pictures
+from the commands a user would type.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from geometry.families.family import FAMILIES, family
+from meshonet_cli.reference import reference
+from solvers.neural.weights import described, shipped
+
+DOCS = Path(__file__).parent
+
+
+def main() -> None:
+    """Write everything."""
+    (DOCS / "models.md").write_text(models_page(), encoding="utf-8")
+    (DOCS / "cli.md").write_text(reference(), encoding="utf-8")
+    with tempfile.TemporaryDirectory() as folder:
+        pictures(Path(folder))
+    (DOCS / "families.md").write_text(families_page(), encoding="utf-8")
+
+
+def models_page() -> str:
+    """Return docs/models.md."""
+    lines = [
+        "# Shipped models\n",
+        "<!-- made by python docs/make_pages.py; a test keeps it current -->\n",
+        "`meshonet models` lists them. Each is a safetensors file in `solvers/neural/pretrained/` that carries",
+        "its recipe and held-out figures; `make train` makes it again.\n",
+    ]
+    for name in shipped():
+        facts = described(name)
+        lines += [
+            f"## {name}\n",
+            f"{facts['topology'].upper()}-grids, {facts['parameters']:,} parameters, stored in float16.\n",
+            "Recipe:\n",
+            "```json",
+            json.dumps(facts["recipe"], indent=1),
+            "```\n",
+            f"Held out: {facts['figures']['strips']} procedural airfoils, never trained on.",
+            f"Error: {facts['figures']['error']}.\n",
+            "| way | median | 90 % | worst |",
+            "| --- | --- | --- | --- |",
+        ]
+        for way, q in facts["figures"].items():
+            if isinstance(q, dict):
+                lines.append(f"| {way} | {q['median']:.4f} | {q['p90']:.4f} | {q['worst']:.4f} |")
+        lines.append("")
+    lines.append("What that means for grids is on [the benchmark page](benchmarks.md).\n")
+    return "\n".join(lines)
+
+
+def families_page() -> str:
+    """Return docs/families.md."""
+    lines = [
+        "# The six families\n",
+        "<!-- made by python docs/make_pages.py -->\n",
+        "The test cases of the MeshONet paper, each a shape that one number varies. `sample-boundary --family",
+        "NAME --count N` spreads N members over the range; `--range A:B` chooses another. Grids: `solve-pde`.\n",
+    ]
+    for name in FAMILIES:
+        one = family(name)
+        lines += [
+            f"## {name}\n",
+            f"{one.parameter}, {one.low:g} to {one.high:g}; topology {one.topology}.\n",
+            f"![{name}](img/{name}.png)\n",
+        ]
+    return "\n".join(lines)
+
+
+def pictures(folder: Path) -> None:
+    """Write docs/img/*.png."""
+    grid = folder / "grid.vts"
+    meshonet("infer", "naca:2412", "--res", "161x81", "-o", grid)
+    meshonet("plot", grid, "--zoom=-0.35,1.35,-0.5,0.5", "-o", DOCS / "img" / "naca2412.png")
+    for name in FAMILIES:
+        boundary = folder / f"{name}.h5"
+        zoom = ["--zoom=-0.6,1.6,-0.8,0.8"] if name == "airfoil" else []
+        meshonet("sample-boundary", "--family", name, "--count", "1", "--res", "61x41", "-o", boundary)
+        meshonet("solve-pde", boundary, "-o", grid)
+        meshonet("plot", grid, *zoom, "-o", DOCS / "img" / f"{name}.png")
+
+
+def meshonet(*words: object) -> None:
+    """Run the command line quietly."""
+    run(sys.executable, "-m", "meshonet_cli", *(str(word) for word in words), "--quiet")
+
+
+def run(*words: str) -> None:
+    """Run a program; stop when it fails."""
+    subprocess.run(words, check=True)  # noqa: S603 - our own program
+
+
+if __name__ == "__main__":
+    main()
