@@ -9,6 +9,7 @@ https://m-selig.ae.illinois.edu/ads/coord_database.html
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -91,7 +92,17 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int]]:
         raise InputError(f"{count} lines of coordinates", _ASK)
     widths = [len(line.values) for block in blocks for line in block]
     usual = max(set(widths), key=lambda w: (widths.count(w), -w))
-    blocks = [kept for block in blocks if (kept := [line for line in block if len(line.values) >= usual])]
+    # a longer row among the data has a remark behind it, above the data it is a heading of its own
+    third = [line.number for block in blocks for line in block if len(line.values) == usual][:3][-1]
+    fits = [
+        [
+            line
+            for line in block
+            if len(line.values) == usual or (len(line.values) > usual and line.number > third)
+        ]
+        for block in blocks
+    ]
+    blocks = [block for block in fits if block]
     while len(blocks) > 1 and len(blocks[-1]) < 3 and _far_or_told(blocks, lines):
         blocks.pop()  # numbers in the prose behind the data
     rows: list[Line] = []
@@ -122,18 +133,23 @@ def _without_heading(rows: list[Line], starts: list[int], width: int) -> tuple[l
     """Return rows and starts of blocks without rows of numbers above the data that are no coordinates.
 
     Those are Lednicer's counts, and names or conditions that happen to be numbers: they lie far outside the
-    rest, or are whole numbers, unlike the rest, and far from the next point and from the last.
+    rest, or are whole numbers, unlike the rest, and begin with 0 or stand far from the points next to them.
     """
-    while len(rows) > 4 and width == 2:
+    if width != 2:
+        return rows, starts
+    for k, line in enumerate(rows[: min(4, len(rows) - 4)]):
+        upper, lower = line.values[:2]
+        whole = upper == int(upper) and lower == int(lower)
+        if whole and min(upper, lower) >= 2 and upper + lower == len(rows) - k - 1:
+            return rows[k + 1 :], [0, int(upper)]
+    while len(rows) > 4:
         rest = np.array([line.values[:2] for line in rows[1:]])
-        upper, lower = rows[0].values[:2]
-        counts = upper >= 2 and lower >= 2 and upper == int(upper) and lower == int(lower)
-        if counts and upper + lower == len(rest):
-            return rows[1:], sorted({0, int(upper)})
+        point = np.array(rows[0].values[:2])
         extent = float(np.ptp(rest, axis=0).max())
+        apart = float(np.hypot(*(rest[[0, -1]] - point).T).min())
         whole = "." not in rows[0].text and sum("." in line.text for line in rows[1:]) > 0.8 * len(rest)
-        apart = np.hypot(*(rest[[0, -1]] - (upper, lower)).T)
-        if not (_outside(np.array([upper, lower]), rest) or (whole and apart.min() > 0.2 * extent)):
+        named = any(re.fullmatch(r"0\d+", word) for word in rows[0].text.split())
+        if not (_outside(point, rest) or (whole and (named or apart > 0.2 * extent))):
             break
         rows, starts = rows[1:], sorted({max(start - 1, 0) for start in starts})
     return rows, starts

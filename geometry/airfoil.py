@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -19,8 +20,12 @@ from geometry.wall import Stations, wall_arcs
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
-_PIECES = 8
-"""Straight pieces an interval of the curve is cut into when it is searched for crossings."""
+_CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
+"""Where an interval of the curve is cut into straight pieces to be searched for crossings."""
+
+
+class CrossingError(InputError):
+    """A wall so coarse, where the section is thin, that its polygon crosses itself."""
 
 
 class Airfoil:
@@ -61,7 +66,7 @@ class Airfoil:
 
     def __init__(self, points: Floats, name: str = "", places: Sequence[str] = ()) -> None:
         self.name = name
-        section = clean_section(points)
+        self._section = section = clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
         self.curve = _fitted(section, places)
         self.trailing_edge = self.curve.points[0]
@@ -99,6 +104,11 @@ class Airfoil:
         off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
         return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
 
+    def moved_apart(self) -> Airfoil:
+        """Return the same airfoil with surfaces at least 9e-5 chords apart where they all but touch."""
+        section = self._section.moved_apart()
+        return Airfoil(section.points, self.name)
+
     def wall(self, ni: int, sampling: Sampling) -> Floats:
         """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
 
@@ -108,15 +118,20 @@ class Airfoil:
             fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
         """
         stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius)
-        nodes = self.curve.at(wall_arcs(stations, ni, sampling))
-        nodes[-1] = nodes[0]
-        crossing = find_crossing(nodes[:-1])
-        if crossing is not None:
-            raise InputError(
-                f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
-                "use more nodes where the section is thin",
-            )
-        return nodes
+        second = (replace(sampling, spacing="tanh"),) if sampling.spacing == "auto" else ()
+        for choice in (
+            sampling,
+            *second,
+        ):  # where one distribution cuts through a thin edge the other may not
+            nodes = self.curve.at(wall_arcs(stations, ni, choice))
+            nodes[-1] = nodes[0]
+            crossing = find_crossing(nodes[:-1])
+            if crossing is None:
+                return nodes
+        raise CrossingError(
+            f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
+            "use more nodes where the section is thin",
+        )
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the O boundary: this wall within a circle around mid-chord, `far_field` chords in radius."""
@@ -125,25 +140,35 @@ class Airfoil:
         if sampling.corners is not None:
             raise InputError("an airfoil has no corners to choose", "leave --corners out")
         body = self.normalised() if sampling.normalise else self
+        ni = sampling.ni or DEFAULT_NI
+        try:
+            wall = body.wall(ni, sampling)
+        except CrossingError:
+            body = body.moved_apart()
+            wall = body.wall(ni, sampling)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
-        wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
         radius = sampling.far_field * body.chord
         return o_boundary(wall, sampling.nj or DEFAULT_NJ, centre, radius, body.curve, self.name)
 
 
 def _fitted(section: Section, places: Sequence[str]) -> Curve:
-    """Return the curve through a section's points, straight where it would otherwise cross itself."""
+    """Return the curve through a section's points, straight where it would otherwise cross itself.
+
+    Points whose surfaces touch or cross by rounding are moved apart first (`geometry.thin`).
+    """
     crossing = find_crossing(section.points)
     if crossing is not None:
-        raise _crossed(section, crossing, places)
+        section = section.moved_apart()
+        if find_crossing(section.points) is not None:
+            raise _crossed(section, crossing, places)
     points, corners = section.points, section.corners
     if section.blunt:  # node 0 is the middle of the base
         points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
     straight = np.zeros(len(points), dtype=bool)
     while True:
         curve = Curve(points, closed=True, corners=corners, straight=straight)
-        found = find_crossings(curve.polyline(_PIECES))
-        where = np.array([k // _PIECES for c in found for k in (c.first, c.second)], dtype=np.intp)
+        found = find_crossings(curve.polyline(_CUTS))
+        where = np.array([k // len(_CUTS) for c in found for k in (c.first, c.second)], dtype=np.intp)
         if straight[where].all():
             return curve
         straight[where] = True

@@ -141,10 +141,10 @@ class Curve:
         bend = 2 * c[i] + 6 * t[..., None] * e[i]
         return np.asarray((d[..., 0] * bend[..., 1] - d[..., 1] * bend[..., 0]) / _norm(d) ** 3)
 
-    def polyline(self, pieces: int = 4) -> Floats:
-        """Return points (intervals * pieces, 2) on the curve; the end of an open one is added."""
+    def polyline(self, places: Floats) -> Floats:
+        """Return points on the curve at `places`, 0 to below 1, of every interval, and the end of an open one."""
         i = np.arange(self._cubic.shape[1])[:, None]
-        t = (np.arange(pieces) / pieces)[None, :, None]
+        t = places[None, :, None]
         a, b, c, d = self._cubic[:, i]
         points = np.asarray((a + t * (b + t * (c + t * d))).reshape(-1, 2))
         return points if self.closed else np.concatenate([points, self.points[-1:]])

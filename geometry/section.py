@@ -5,14 +5,15 @@ Nothing is moved here, except that the two ends of a trailing-edge gap too small
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import polygon_area
-from geometry.corners import Indices, find_corners, growth_exponent, turning
+from geometry.corners import Indices, find_corners, turning
 from geometry.errors import InputError
+from geometry.thin import moved_apart
 
 SHARP_GAP = 2e-4
 """Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without it."""
@@ -44,6 +45,11 @@ class Section:
     blunt: bool
     gap: float
     corners: Indices
+
+    def moved_apart(self) -> Section:
+        """Return the same section with its surfaces moved apart where they all but touch (`geometry.thin`)."""
+        edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
+        return replace(self, points=moved_apart(self.points, int(np.argmax(_distance(self.points, edge)))))
 
 
 def clean_section(points: Floats) -> Section:
@@ -122,13 +128,34 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
         edge = max((nose, tail), key=lambda k: _sharpness(ring, k, tail if k == nose else nose)[0])
     else:
         start = tail if open_gap else 0
-        mine, other = _sharpness(ring, start, nose), _sharpness(ring, nose, start)
-        swapped = mine[0] < 0.6 and other[0] > 0.7 and other[1] < 0.7 * mine[1]
-        edge = nose if swapped else -1
+        edge = nose if _starts_at_nose(ring, start, nose, open_gap) else -1
     if edge >= 0:
         ring, index, open_gap = np.roll(ring, -edge, axis=0), np.roll(index, -edge), False
         chord = float(_distance(ring, ring[0]).max())
     return _based(ring, index, open_gap, chord)
+
+
+def _starts_at_nose(ring: Floats, start: int, other: int, open_gap: bool) -> bool:
+    """Say whether the place where the points start is round and the other end is clearly the edge."""
+    mine, his = _sharpness(ring, start, other), _sharpness(ring, other, start)
+    if mine[0] >= 0.6:
+        return False
+    if his[0] > 0.7 and his[1] < 0.7 * mine[1]:
+        return True
+    return not open_gap and _has_base(ring, other) and not _has_base(ring, start)
+
+
+def _has_base(ring: Floats, k: int) -> bool:
+    """Say whether two neighbouring points near point k turn by more than 50 degrees each and 130 together."""
+    n = len(ring)
+    turn = -turning(ring, closed=True)
+    near = np.arange(k - 3, k + 4) % n
+    one, next_one = turn[near], turn[(near + 1) % n]
+    return bool(
+        (
+            (one > np.radians(50.0)) & (next_one > np.radians(50.0)) & (one + next_one > np.radians(130.0))
+        ).any()
+    )
 
 
 def _sharpness(ring: Floats, end: int, other: int) -> tuple[float, float]:
@@ -202,7 +229,7 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
     apart = np.minimum((found - nose) % n, (nose - found) % n)
     near_nose = (apart <= 1) | (_distance(ring[found], ring[nose]) < 0.03 * distance[nose])
     corners = set(found[~near_nose].tolist())
-    if turn[nose] > np.radians(60.0) and growth_exponent(ring, nose) >= 0.75:
+    if turn[nose] > np.radians(60.0) and _sharpness(ring, nose, 0)[0] > 0.7:
         corners.add(nose)
     if blunt:
         corners |= {0, n - 1}

@@ -128,15 +128,38 @@ def _limited(
         start, chord, -np.maximum(free_start, 0) - slack_start, -np.minimum(free_start, 0) + slack_start
     )
     stop = _turned(stop, chord, np.minimum(free_stop, 0) - slack_stop, np.maximum(free_stop, 0) + slack_stop)
+    inner = corners if closed else corners[(corners > 0) & (corners < len(points) - 1)]
+    return _edges_kept_open(start, stop, chord, inner)
+
+
+def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indices) -> tuple[Floats, Floats]:
+    """Return slopes that follow the chords at sharp edges where the two sides would otherwise cross.
+
+    Behind a corner of more than 120 degrees lies a wedge; the tangents are to leave at least a quarter of
+    the angle that the chords enclose.
+    """
+    before, after = chord[corners - 1], chord[corners]
+    angle, kept = _angle(before, after), _angle(stop[corners - 1], start[corners])
+    open_by = np.where(np.sign(kept) == np.sign(angle), np.pi - np.abs(kept), np.abs(kept) - np.pi)
+    closed_up = (np.abs(angle) > np.radians(120.0)) & (open_by < 0.25 * (np.pi - np.abs(angle)))
+    if not closed_up.any():
+        return start, stop
+    start, stop, at = start.copy(), stop.copy(), corners[closed_up]
+    start[at] = chord[at] / np.hypot(chord[at, 0], chord[at, 1])[:, None]
+    stop[at - 1] = chord[at - 1] / np.hypot(chord[at - 1, 0], chord[at - 1, 1])[:, None]
     return start, stop
+
+
+def _angle(a: Floats, b: Floats) -> Floats:
+    """Return the angle (n,) from vectors a to b (n, 2), left positive."""
+    return np.asarray(
+        np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
+    )
 
 
 def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
     """Return slopes (n, 2), angles from the chord within `least` and `most`, no longer than `LONGEST`."""
-    angle = np.arctan2(
-        chord[:, 0] * slope[:, 1] - chord[:, 1] * slope[:, 0],
-        chord[:, 0] * slope[:, 0] + chord[:, 1] * slope[:, 1],
-    )
+    angle = _angle(chord, slope)
     size = np.hypot(slope[:, 0], slope[:, 1])
     wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))
     if wrong.size == 0:
