@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from formats.registry import read_shapes
 from geometry.boundary import Boundary
@@ -16,6 +16,8 @@ from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
+
+T = TypeVar("T", bound=Shape)
 
 
 @dataclass
@@ -45,7 +47,7 @@ class Sampler:
 
     sampling: Sampling
 
-    def boundary(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
+    def boundary(self, item: Item[T]) -> tuple[Boundary, Sampled]:
         """Return the boundary of one shape and what there is to tell of it."""
         begun = time.perf_counter()
         boundary = item.what.boundary(self.sampling)
@@ -66,12 +68,46 @@ def sample_shapes(
 ) -> int:
     """Sample every shape of `sources` into `destination` and return the exit code."""
     prepare(sources, destination, session)
+    found = items(sources, lambda source: read_shapes(source, fmt), session)
+    return _sampled(found, sampling, destination, session, skip_existing, jobs)
 
+
+def sample_family(
+    drawn: tuple[str, int, str | None, int],
+    sampling: Sampling,
+    output: str,
+    to_format: str | None,
+    session: Session,
+    *,
+    skip_existing: bool = False,
+    jobs: int = 1,
+) -> int:
+    """Sample members of a family to `output` and return the exit code.
+
+    Parameters
+    ----------
+    drawn : family, count, range and seed, as `meshonet_cli.drawn.draws` takes them.
+    """
+    from meshonet_cli.drawn import draws, family_file
+
+    found = draws(*drawn, session)
+    destination = family_file(output, to_format, drawn[0])
+    prepare([drawn[0]], destination, session)
+    return _sampled(found, sampling, destination, session, skip_existing, jobs)
+
+
+def _sampled(
+    found: Iterator[Item[T]],
+    sampling: Sampling,
+    destination: Destination,
+    session: Session,
+    skip_existing: bool,
+    jobs: int,
+) -> int:
     def tell(report: Sampled, path: str) -> None:
         report.finished(path)
         session.tell(report)
 
-    found = items(sources, lambda source: read_shapes(source, fmt), session)
     make = Sampler(sampling).boundary
     deliver(found, make, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
     return session.finish()

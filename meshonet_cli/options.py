@@ -221,3 +221,12 @@ def tolerance(value: float | None) -> float | None:
 
         raise InputError(f"{value:g} is not between 0 and 1", "use e.g. 1e-8", source="--tol")
     return value
+
+
+def either(sources: list[str] | None, family: str | None) -> None:
+    """Raise InputError unless there are either sources or a family."""
+    if bool(sources) == bool(family):
+        from geometry.errors import InputError
+
+        problem = "both a source and --family" if sources else "neither a source nor --family"
+        raise InputError(problem, "give one of them, see meshonet sample-boundary --help")

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from meshonet_cli.commands import convert, infer, models, plot, quality, sample_boundary, solve_pde, tfi
+from meshonet_cli.commands import (
+    convert,
+    infer,
+    models,
+    plot,
+    quality,
+    sample_boundary,
+    solve_pde,
+    tfi,
+    train,
+)
 
 
 class Command(NamedTuple):
@@ -25,6 +35,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("sample-boundary", sample_boundary.sample_boundary, sample_boundary.EXAMPLES),
     Command("tfi", tfi.tfi, tfi.EXAMPLES),
     Command("solve-pde", solve_pde.solve_pde, solve_pde.EXAMPLES),
+    Command("train", train.train, train.EXAMPLES),
     Command("infer", infer.infer, infer.EXAMPLES),
     Command("quality", quality.quality, quality.EXAMPLES),
     Command("convert", convert.convert, convert.EXAMPLES),

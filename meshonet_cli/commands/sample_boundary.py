@@ -2,18 +2,48 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
+import typer
+
 from meshonet_cli import options as o
 
 EXAMPLES = (
     "meshonet sample-boundary airfoil.dat --res 200x100 --te-spacing 0.001 -o boundary.h5",
+    "meshonet sample-boundary --family wrench --count 8 --seed 1 -o wrenches.h5",
     "meshonet sample-boundary naca:2412 -o - | meshonet tfi - -o - | meshonet quality -",
 )
 
 
+# fmt: off
 def sample_boundary(
-    source: o.Boundaries,
     output: o.Output,
+    source: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="SOURCE", show_default=False,
+            help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. "
+            "None with --family.",
+        ),
+    ] = None,
     res: o.Resolution = None,
+    family: Annotated[
+        str | None,
+        typer.Option(
+            "--family", metavar="NAME", show_default=False,
+            help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of "
+            "the paper) or procedural (random airfoils). 101x101 nodes unless --res says otherwise.",
+        ),
+    ] = None,
+    count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Members of the family.")] = 1,
+    spread: Annotated[
+        str | None,
+        typer.Option(
+            "--range", metavar="A:B", show_default=False,
+            help="Range that the family's parameter is drawn from. [default: the paper's]",
+        ),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", metavar="S", min=0, help="Seed of the draw.")] = 0,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -31,13 +61,20 @@ def sample_boundary(
 ) -> int:
     """Turn geometry into boundaries of four edges."""
     from meshonet_cli.batch import Destination
-    from meshonet_cli.bounding import sample_shapes
+    from meshonet_cli.bounding import sample_family, sample_shapes
     from meshonet_cli.session import Session
 
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     sampling = o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths)
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    o.either(source, family)
+    if family is not None:
+        drawn = (family, count, spread, seed)
+        return sample_family(
+            drawn, sampling, output, to_format, session, skip_existing=skip_existing, jobs=jobs
+        )
     destination = Destination(output, to_format, "boundaries")
     return sample_shapes(
-        source, sampling, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
+        source or [], sampling, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
     )
+# fmt: on

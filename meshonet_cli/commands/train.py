@@ -50,7 +50,7 @@ def train(
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:
-    """Fit the airfoil operator to a dataset of boundaries (needs the extra meshonet[train])."""
+    """Fit the airfoil operator to boundaries (needs the extra `train`)."""
     from meshonet_cli.learning import Run, learn
     from meshonet_cli.session import Session
 

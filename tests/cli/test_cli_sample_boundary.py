@@ -75,3 +75,71 @@ def test_a_format_without_boundaries_is_refused(meshonet: Meshonet) -> None:
     done = meshonet("sample-boundary", "naca:0012", "-o", "b.vts")
     assert done.code == 2
     assert "vts cannot hold boundaries; write one of hdf5" in done.err
+
+
+@pytest.mark.parametrize("name", ["arch", "hexagon", "wrench", "semicircle", "airfoil", "hole", "procedural"])
+def test_a_family_becomes_a_dataset(meshonet: Meshonet, name: str) -> None:
+    done = meshonet("sample-boundary", "--family", name, "--count", "3", "--res", "41x21", "-o", "b.h5")
+    assert done.code == 0
+    assert "3 done" in done.err
+    with h5py.File("b.h5") as file:
+        assert file["south"].shape == (3, 41, 2)
+        assert file["west"].shape == (3, 21, 2)
+        edges = [np.concatenate([file[side][k] for side in ("south", "north", "west")]) for k in (0, 1)]
+        assert not np.array_equal(*edges)
+        if name != "procedural":
+            assert len(np.unique(file["parameters"][:, 0])) == 3
+
+
+def test_the_range_holds_the_parameters(meshonet: Meshonet) -> None:
+    words = ("--family", "arch", "--count", "20", "--range", "0.1:0.2", "--res", "21")
+    meshonet("sample-boundary", *words, "-o", "b.h5")
+    with h5py.File("b.h5") as file:
+        heights = file["parameters"][:, 0]
+        assert (heights >= 0.1).all()
+        assert (heights <= 0.2).all()
+        assert np.ptp(heights) > 0.05
+        np.testing.assert_allclose(file["north"][:, 10, 1], 1 + heights, atol=1e-12)
+
+
+def test_the_seed_decides_the_members(meshonet: Meshonet) -> None:
+    def made(seed: int, count: int) -> np.ndarray:
+        words = ("--family", "hole", "--count", count, "--seed", seed, "--res", "21", "-o", "b.h5")
+        assert meshonet("sample-boundary", *words).code == 0
+        with h5py.File("b.h5") as file:
+            return np.array(file["parameters"])
+
+    np.testing.assert_array_equal(made(1, 4), made(1, 4))
+    np.testing.assert_array_equal(made(1, 4), made(1, 6)[:4])  # whichever others are drawn
+    assert not np.array_equal(made(1, 4), made(2, 4))
+
+
+def test_a_family_gives_101_nodes_and_names(meshonet: Meshonet) -> None:
+    told = meshonet(
+        "sample-boundary", "--family", "hole", "--count", "2", "-o", "{name}.h5", "--json"
+    ).objects
+    assert [(item["ni"], item["nj"], item["output"]) for item in told] == [
+        (101, 101, "hole-0.h5"),
+        (101, 101, "hole-1.h5"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--family", "tree"), "--family: family 'tree' is not known; use one of arch, hexagon"),
+        (("--family", "arch", "--range", "2:1"), "--range: '2:1' is not a range; use A:B with A <= B"),
+        (("--family", "arch", "--range", "a:b"), "--range: 'a:b' is not a range"),
+        (("--family", "arch", "--range", "5:90"), "--range: 5:90 leaves what height"),
+        (("--family", "procedural", "--range", "0:1"), "--range: random airfoils have no parameter"),
+        (("naca:0012", "--family", "arch"), "both a source and --family; give one of them"),
+        ((), "neither a source nor --family; give one of them"),
+        (("--family", "arch", "--count", "0"), "count"),
+    ],
+)
+def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], told: str) -> None:
+    done = meshonet("sample-boundary", *words, "-o", "b.h5")
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("b.h5").exists()

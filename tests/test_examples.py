@@ -1,0 +1,71 @@
+"""The worked examples of every ``--help`` do what they say."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from meshonet_cli.commands import COMMANDS
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = [(command.name, example) for command in COMMANDS for example in command.examples]
+SLOW = ("train",)  # an hour; here it only has to get as far as asking for its dataset
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the examples take for granted: airfoils, a channel, grids, and `meshonet` on the path."""
+    made = tmp_path_factory.mktemp("examples")
+    (made / "bin").mkdir()
+    script = made / "bin" / "meshonet"
+    script.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m meshonet_cli "$@"\n')
+    script.chmod(0o755)
+    x = 0.5 * (1 + np.cos(np.linspace(0, np.pi, 41)))
+    half = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    points = np.concatenate([np.stack([x, half], axis=-1), np.stack([x, -half], axis=-1)[-2::-1]])
+    rows = "\n".join(f"{px:.6f} {py:.6f}" for px, py in points)
+    (made / "airfoils").mkdir()
+    for name in ("airfoil.dat", "airfoils/one.dat", "airfoils/two.dat"):
+        (made / name).write_text(f"section\n{rows}\n")
+    (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
+    for name in ("grid.vts", "other.vts"):
+        assert shell(f"meshonet tfi airfoil.dat --res 120x60 -o {name}", made).returncode == 0
+    (made / "grids").mkdir()
+    for name in ("a.vts", "b.vts"):
+        shutil.copy(made / "grid.vts", made / "grids" / name)
+    return made
+
+
+def shell(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "MPLBACKEND": "Agg"}
+    command = ["bash", "-o", "pipefail", "-c", line]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=120)
+
+
+@pytest.mark.parametrize(("command", "example"), EXAMPLES, ids=[example for _, example in EXAMPLES])
+def test_the_examples_of_the_help_work(folder: Path, command: str, example: str) -> None:
+    done = shell(example, folder)
+    if command in SLOW:
+        assert done.returncode == 2
+        assert done.stderr.startswith("error: ")
+        assert "--help" not in done.stderr  # that would be an error of usage
+    else:
+        assert done.returncode == 0, done.stderr
+        assert "error" not in done.stderr
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.name)
+def test_every_help_shows_its_examples(folder: Path, command: object) -> None:
+    name, examples = command.name, command.examples  # type: ignore[attr-defined]
+    told = shell(f"meshonet {name} --help", folder).stdout
+    assert told == shell(f"meshonet {name} -h", folder).stdout
+    assert examples
+    for example in examples:
+        assert f"  {example}\n" in told
+    assert any(
+        example.startswith(f"meshonet {name}") or f" meshonet {name} " in example for example in examples
+    )
