@@ -79,9 +79,8 @@ def usable(nodes: Floats) -> Floats:
     InputError
         a coordinate is not finite, or so large that products of two are not.
     """
-    fine = np.abs(nodes) < LARGEST  # NaN compares false
-    if not fine.all():
-        i, j, axis = (int(k) for k in np.argwhere(~fine)[0])
+    if not -LARGEST < nodes.min() <= nodes.max() < LARGEST:  # NaN passes through min and compares false
+        i, j, axis = (int(k) for k in np.argwhere(~(np.abs(nodes) < LARGEST))[0])
         raise InputError(
             f"node i={i}, j={j} has {'xy'[axis]} = {nodes[i, j, axis]:.6g}",
             "check the file for wrong numbers",

@@ -61,11 +61,18 @@ class Writer:
 
         self._file = h5py.File(path, "w")
         self._file.attrs.update(format=kind, version=VERSION)
+        self._data: dict[str, h5py.Dataset] = {}
         self._count = 0
         self._first: tuple[int, int, str] | None = None
         if parameter_names:
-            self._row("parameters", np.empty(len(parameter_names)))
-            self._file["parameters"].attrs["names"] = list(parameter_names)
+            self._data["parameters"] = self._file.create_dataset(
+                "parameters",
+                (0, len(parameter_names)),
+                "f8",
+                maxshape=(None, len(parameter_names)),
+                chunks=True,
+            )
+            self._data["parameters"].attrs["names"] = list(parameter_names)
 
     def __enter__(self) -> Writer:
         return self
@@ -108,28 +115,31 @@ class Writer:
         self._count += 1
 
     def _row(self, name: str, values: Floats) -> h5py.Dataset:
-        if name not in self._file:
+        if name not in self._data:
             shape = values.shape
-            self._file.create_dataset(name, (0, *shape), "f8", maxshape=(None, *shape), chunks=(1, *shape))
-        data = self._file[name]
+            self._data[name] = self._file.create_dataset(
+                name, (0, *shape), "f8", maxshape=(None, *shape), chunks=(1, *shape)
+            )
+        data = self._data[name]
         if values.shape != data.shape[1:]:
             raise InputError(
                 f"{name} of sample {self._count} has shape {values.shape}", f"the first has {data.shape[1:]}"
             )
-        if len(data) <= self._count:
-            data.resize(self._count + 1, axis=0)
+        data.resize(self._count + 1, axis=0)
         return data
 
     def _text(self, name: str, text: str) -> None:
         """Set the entry of this sample; a dataset of nothing but empty texts is never made."""
         import h5py
 
-        if name not in self._file:
+        if name not in self._data:
             if not text:
                 return
-            self._file.create_dataset(name, (0,), h5py.string_dtype(), maxshape=(None,), chunks=(64,))
-        self._file[name].resize(self._count + 1, axis=0)
-        self._file[name][self._count] = text
+            self._data[name] = self._file.create_dataset(
+                name, (0,), h5py.string_dtype(), maxshape=(None,), chunks=(64,)
+            )
+        self._data[name].resize(self._count + 1, axis=0)
+        self._data[name][self._count] = text
 
     def _provenance(self, facts: Mapping[str, Any]) -> None:
         if not facts:

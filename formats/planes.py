@@ -6,11 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, planar_nodes
 from geometry.errors import InputError
 
 _SAME = 1e-6
 """Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""
+
+_ROWS = 16
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
@@ -35,15 +37,14 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
     for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
         if dims[axis] > 2:
             break
-        first = [np.take(c, 0, axis) for c in coordinates]
+        first = [_plane(c, axis, 0) for c in coordinates]
         if min(first[0].shape) < 2:
             raise InputError(
                 f"a grid of {told} nodes has no cells", "give at least 2 nodes in two directions"
             )
         if dims[axis] == 1:
             return _nodes(_without_constant(first, told))
-        second = [np.take(c, 1, axis) for c in coordinates]
-        kept = _without_shift(first, second)
+        kept = _without_shift(first, [_plane(c, axis, 1) for c in coordinates])
         if kept:
             return _nodes(kept)
     raise InputError(
@@ -52,9 +53,23 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
     )
 
 
+def _plane(values: Floats, axis: int, index: int) -> Floats:
+    """Return plane `index` of (n1, n2, n3) along `axis`, a view."""
+    return values[(slice(None),) * axis + (index,)]
+
+
 def _nodes(coordinates: list[Floats]) -> Floats:
-    """Return (ni, nj, 2) float64 of x and y, each (ni, nj), in the layout that `Grid` keeps."""
-    return np.moveaxis(np.stack(coordinates, dtype=np.float64), 0, -1)
+    """Return (ni, nj, 2) float64 of x and y, each (ni, nj), in the layout that `Grid` keeps.
+
+    Files have i fastest and grids j, so this transposes; a few rows at a time stay in the cache.
+    """
+    ni, nj = coordinates[0].shape
+    nodes = planar_nodes(ni, nj)
+    for start in range(0, nj, _ROWS):
+        rows = slice(start, start + _ROWS)
+        for k, values in enumerate(coordinates):
+            nodes[:, rows, k] = values[:, rows]
+    return nodes
 
 
 def _without_constant(plane: list[Floats], told: str) -> list[Floats]:
