@@ -5,13 +5,11 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import secrets
-import shutil
 import stat
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from formats.source import printable
 from geometry.errors import InputError
@@ -43,7 +41,8 @@ def whole_file(destination: str, *, make_folder: bool = False) -> Iterator[Path]
 
     Examples
     --------
-    >>> with tempfile.TemporaryDirectory() as folder:
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
     ...     with whole_file(f"{folder}/a.txt") as path:
     ...         _ = path.write_text("whole")
     ...     os.listdir(folder)
@@ -91,13 +90,15 @@ def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
             f"make it: mkdir -p {printable(str(destination.parent))}",
             source=name,
         )
-    part = target.with_name(f".{target.name[:150]}.{os.getpid()}-{secrets.token_hex(4)}{PART_SUFFIX}")
+    part = target.with_name(f".{target.name[:150]}.{os.getpid()}-{os.urandom(4).hex()}{PART_SUFFIX}")
     # made here, not by tempfile, so that the permissions are those of the umask as for any new file
     os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     return part
 
 
 def _part_in_tmp() -> Path:
+    import tempfile
+
     handle, name = tempfile.mkstemp(suffix=PART_SUFFIX)
     os.close(handle)
     return Path(name)
@@ -115,11 +116,16 @@ def _copy_out(part: Path, destination: str) -> None:
     with part.open("rb") as finished:
         if destination != "-":
             with Path(destination).open("wb") as stream:
-                shutil.copyfileobj(finished, stream, 1 << 20)
+                _copy(finished, stream)
             return
         try:
-            shutil.copyfileobj(finished, sys.stdout.buffer, 1 << 20)
+            _copy(finished, sys.stdout.buffer)
             sys.stdout.buffer.flush()
         except BrokenPipeError:
             # the reader (head, say) had enough; the interpreter's own flush at exit must not complain either
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _copy(finished: BinaryIO, stream: BinaryIO) -> None:
+    while piece := finished.read(1 << 20):
+        stream.write(piece)
