@@ -9,7 +9,7 @@ https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from formats.facts import facts_of
 from formats.format import Format, only_one
-from formats.source import printable
-from formats.vts_read import read_grids, sniff
+from formats.source import Source, printable
 from geometry.errors import InputError
 from geometry.grid import Grid
 
@@ -69,6 +68,24 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
     """Write the one grid of `grids`, one cell thick in z."""
     write(path, only_one(grids, "a .vts file"), heights=(0.0, thickness))
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grid of a ``.vts`` file in any encoding; writing does not load what that takes.
+
+    Raises
+    ------
+    InputError
+        not such a file, damaged, compressed with LZ4, three-dimensional.
+    """
+    from formats.vts_read import read_grids as read
+
+    yield from read(source)
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is the start of a ``.vts`` file."""
+    return b"<VTKFile" in head[:2048] and b"StructuredGrid" in head[:4096]
 
 
 def _write_points(stream: BinaryIO, grid: Grid, height: float) -> None:

@@ -46,11 +46,6 @@ def read_grids(source: Source) -> Iterator[Grid]:
     yield grid_with(planar([points[..., k].T for k in range(3)]), facts, source.stem)
 
 
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is the start of a ``.vts`` file."""
-    return b"<VTKFile" in head[:2048] and b"StructuredGrid" in head[:4096]
-
-
 def _parsed(raw: bytes) -> tuple[Element, int, int]:
     """Return the XML and where the appended bytes, which are not XML, start and end."""
     from xml.etree.ElementTree import ParseError, fromstring
