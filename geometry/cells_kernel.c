@@ -146,14 +146,15 @@ MESHONET_INLINE void corners(const double *restrict x, const double *restrict y,
         double l0 = __builtin_sqrt(e0x * e0x + e0y * e0y), l1 = __builtin_sqrt(e1x * e1x + e1y * e1y);
         double l2 = __builtin_sqrt(e2x * e2x + e2y * e2y), l3 = __builtin_sqrt(e3x * e3x + e3y * e3y);
 
-        double pa = l3 * l0, pb = l0 * l1, pc = l1 * l2, pd = l2 * l3;
-        double ra = 1.0 / larger(pa, SMALL), rb = 1.0 / larger(pb, SMALL);
-        double rc = 1.0 / larger(pc, SMALL), rd = 1.0 / larger(pd, SMALL);
+        /* one division for all four corners, whose products of lengths share these two */
+        double la = l3 * l0, lc = l1 * l2, lb = l0 * l1, ld = l2 * l3;
+        double product = la * lc, r = 1.0 / larger(product, SMALL);
+        double ra = lc * r, rb = ld * r, rc = la * r, rd = lb * r;
         double ca = (e3x * e0x + e3y * e0y) * ra, cb = (e0x * e1x + e0y * e1y) * rb;
         double cc = (e1x * e2x + e1y * e2y) * rc, cd = (e2x * e3x + e2y * e3y) * rd;
         at->inner[j] = -smaller(smaller(ca, cb), smaller(cc, cd));
         at->outer[j] = larger(larger(ca, cb), larger(cc, cd));
-        at->product[j] = smaller(smaller(pa, pb), smaller(pc, pd));
+        at->product[j] = product;
         at->jacobian[j] = smaller(smaller(ja, jb), smaller(jc, jd));
         scaled[j] = smaller(smaller(ja * ra, jb * rb), smaller(jc * rc, jd * rd));
 
@@ -171,7 +172,7 @@ MESHONET_INLINE void corners(const double *restrict x, const double *restrict y,
 /* All metrics of one row of cells into out[metric * (nj-1) + j].
 
    before, here, after: areas of this row of cells and of its neighbours, from cells_areas. An edge of no length
-   has no direction: its corners count as 180 degrees with a scaled Jacobian of 0. */
+   has no direction: such a cell has angles of 0 and 180 degrees and a scaled Jacobian of 0. */
 MESHONET_CLONES
 void cells_row(const double *restrict x, const double *restrict y, ptrdiff_t nj, const double *restrict before,
                const double *restrict here, const double *restrict after, double *restrict out)
@@ -194,6 +195,7 @@ void cells_row(const double *restrict x, const double *restrict y, ptrdiff_t nj,
         for (ptrdiff_t j = 0; j < count; ++j) {
             double turn = at.product[j] > 0 ? at.outer[j] : 0.0;
             max_angle[j] = at.jacobian[j] < 0 ? 180.0 + turn : 180.0 - turn;
+            min_angle[j] = at.product[j] > 0 ? min_angle[j] : 0.0;
             skewness[j] = larger(max_angle[j] - 90.0, 90.0 - min_angle[j]) * (1.0 / 90.0);
         }
     }

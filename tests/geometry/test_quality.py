@@ -218,6 +218,7 @@ def test_collapsed_cells_have_finite_figures() -> None:
             [quality[metric.name].min, quality[metric.name].mean, quality[metric.name].max]
         ).all()
     assert quality["aspect_ratio"].max == 1e30
+    assert (quality["min_angle"].max, quality["max_angle"].min, quality["scaled_jacobian"].max) == (0, 180, 0)
 
 
 def test_nodes_that_are_no_numbers_count_as_folded() -> None:
