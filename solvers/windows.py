@@ -1,0 +1,74 @@
+"""Windows of cells around groups of bad ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+LARGEST = 2500
+"""A window with more cells than this is split, when its bad cells can be."""
+
+NEIGHBOURS = [(da, db) for da in (-1, 0, 1) for db in (-1, 0, 1) if (da, db) != (0, 0)]
+
+
+@dataclass(frozen=True)
+class Window:
+    """Nodes i0 .. i1 and j0 .. j1, both included; i may run past the seam of an O grid.
+
+    Examples
+    --------
+    >>> Window(-2, 4, 0, 3).cells
+    18
+    """
+
+    i0: int
+    i1: int
+    j0: int
+    j1: int
+
+    @property
+    def cells(self) -> int:
+        """Count of cells."""
+        return (self.i1 - self.i0) * (self.j1 - self.j0)
+
+
+def windows(bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool) -> Iterator[Window]:
+    """Yield windows around the groups of cells `bad` (n, 2), with `margin` cells and more about each.
+
+    Bad cells whose `margin`-sized tiles touch are one group. Windows stay inside the (ni, nj) nodes of
+    `shape`; where `periodic`, one may run past the seam, but not onto itself.
+
+    Examples
+    --------
+    >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False))
+    [Window(i0=12, i1=30, j0=0, j1=12)]
+    """
+    around = -(-(shape[0] - 1) // margin)
+    waiting = {(int(a), int(b)) for a, b in np.unique(bad // margin, axis=0)}
+    while waiting:
+        group = [waiting.pop()]
+        for a, b in group:
+            for da, db in NEIGHBOURS:
+                near = ((a + da) % around if periodic else a + da, b + db)
+                if near in waiting:
+                    waiting.remove(near)
+                    group.append((a + da, b + db))
+        yield from _cover(np.array(sorted(group)), margin, shape, periodic)
+
+
+def _cover(tiles: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool) -> Iterator[Window]:
+    """Yield windows over `tiles` (n, 2) of `margin` cells; a large group is halved until they are small."""
+    low, high = tiles.min(axis=0), tiles.max(axis=0)
+    i0, j0 = (int(k) for k in (low - 1) * margin)
+    i1, j1 = (int(k) for k in (high + 2) * margin)
+    i0, i1 = (i0, min(i1, i0 + shape[0] - 2)) if periodic else (max(i0, 0), min(i1, shape[0] - 1))
+    window = Window(i0, i1, max(j0, 0), min(j1, shape[1] - 1))
+    if window.cells <= LARGEST or len(tiles) == 1:
+        yield window
+        return
+    along = int(np.argmax(high - low))
+    for half in np.array_split(tiles[np.argsort(tiles[:, along], kind="stable")], 2):
+        yield from _cover(half, margin, shape, periodic)

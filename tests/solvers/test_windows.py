@@ -1,0 +1,46 @@
+"""Windows cover every bad cell, with room about it, and stay inside the grid."""
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from solvers.windows import LARGEST, windows
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    ni=st.integers(3, 90), nj=st.integers(3, 90), margin=st.sampled_from([6, 12, 24]),
+    periodic=st.booleans(), count=st.integers(1, 40), seed=st.integers(0, 99),
+)  # fmt: skip
+def test_every_bad_cell_lies_in_a_window_inside_the_grid(
+    ni: int, nj: int, margin: int, periodic: bool, count: int, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    bad = np.unique(
+        np.stack([rng.integers(0, ni - 1, count), rng.integers(0, nj - 1, count)], axis=1), axis=0
+    )
+    found = list(windows(bad, margin, (ni, nj), periodic))
+    for i, j in bad:
+        assert any(
+            w.j0 <= j < w.j1 and (w.i0 <= i < w.i1 or (periodic and (i - w.i0) % (ni - 1) < w.i1 - w.i0))
+            for w in found
+        ) or (periodic and any(w.i1 - w.i0 == ni - 2 for w in found))
+    for w in found:
+        assert 0 <= w.j0 < w.j1 < nj
+        assert w.i1 - w.i0 < ni - 1 + (not periodic)
+        assert periodic or 0 <= w.i0 < w.i1 < ni
+
+
+def test_a_group_on_both_sides_of_the_seam_is_one_window() -> None:
+    bad = np.array([[0, 3], [98, 3], [97, 4]])
+    (window,) = windows(bad, 6, (100, 40), True)
+    rows = np.arange(window.i0, window.i1) % 99
+    assert set(bad[:, 0]) <= set(rows)
+    assert window.cells < 40 * 20
+
+
+def test_a_long_group_is_split() -> None:
+    bad = np.stack([np.arange(300), np.arange(300)], axis=1)
+    found = list(windows(bad, 6, (400, 400), False))
+    assert len(found) > 4
+    assert max(w.cells for w in found) <= LARGEST
