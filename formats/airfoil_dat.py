@@ -137,8 +137,8 @@ def _without_heading(rows: list[Line], starts: list[int], width: int) -> tuple[l
     """
     if width != 2:
         return rows, starts
-    for k, line in enumerate(rows[: min(4, len(rows) - 4)]):
-        upper, lower = line.values[:2]
+    for k in reversed(range(min(4, len(rows) - 4))):
+        upper, lower = rows[k].values[:2]
         whole = upper == int(upper) and lower == int(lower)
         if whole and min(upper, lower) >= 2 and upper + lower == len(rows) - k - 1:
             return rows[k + 1 :], [0, int(upper)]

@@ -118,16 +118,13 @@ class Airfoil:
             fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
         """
         stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius)
-        second = (replace(sampling, spacing="tanh"),) if sampling.spacing == "auto" else ()
-        for choice in (
-            sampling,
-            *second,
-        ):  # where one distribution cuts through a thin edge the other may not
-            nodes = self.curve.at(wall_arcs(stations, ni, choice))
-            nodes[-1] = nodes[0]
-            crossing = find_crossing(nodes[:-1])
-            if crossing is None:
-                return nodes
+        nodes = self.curve.at(wall_arcs(stations, ni, sampling))
+        nodes[-1] = nodes[0]
+        crossing = find_crossing(nodes[:-1])
+        if crossing is None:
+            return nodes
+        if sampling.spacing == "auto":  # where one distribution cuts through a thin edge another may not
+            return self.wall(ni, replace(sampling, spacing="tanh"))
         raise CrossingError(
             f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
             "use more nodes where the section is thin",
@@ -165,13 +162,14 @@ def _fitted(section: Section, places: Sequence[str]) -> Curve:
     if section.blunt:  # node 0 is the middle of the base
         points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
     straight = np.zeros(len(points), dtype=bool)
-    while True:
+    for left in reversed(range(8)):
         curve = Curve(points, closed=True, corners=corners, straight=straight)
-        found = find_crossings(curve.polyline(_CUTS))
+        found = find_crossings(curve.polyline(_CUTS), limit=4096)
         where = np.array([k // len(_CUTS) for c in found for k in (c.first, c.second)], dtype=np.intp)
         if straight[where].all():
-            return curve
-        straight[where] = True
+            break
+        straight[where if left > 1 else slice(None)] = True
+    return curve
 
 
 def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:

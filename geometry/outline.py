@@ -21,6 +21,7 @@ from geometry.corners import Indices, turning
 from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+from geometry.section import check_extent
 from geometry.simple import find_crossing
 from geometry.stretch import stretch_arcs
 from geometry.topology import o_boundary
@@ -53,6 +54,7 @@ class Outline:
         places: Sequence[str] = (),
     ) -> None:
         self.name, self.corners = name, corners
+        check_extent(float(np.ptp(points, axis=0).max()) if len(points) else 0.0)
         self.curve = Curve(points, closed=True)
         p = self.curve.points
         if corners is not None:

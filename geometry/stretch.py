@@ -11,6 +11,9 @@ from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.sampling import Spacing, monotone_cubic, spacing_cosine, spacing_tanh, spacing_uniform
 
+MANY = 64
+"""More corners than this, and than a quarter of the cells, are the steps of a drawing: no node seeks them."""
+
 
 def stretch_arcs(
     curve: Curve, begin: float, end: float, cells: int, spacing: Spacing, *, forward: bool = True
@@ -39,7 +42,9 @@ def stretch_arcs(
         distance = length * spacing_uniform(cells + 1)
     corners = np.sort((sign * (curve.corners - begin)) % curve.length)
     tiny = 1e-12 * curve.length
-    distance = on_corners(distance, corners[(corners > tiny) & (corners < length - tiny)])
+    corners = corners[(corners > tiny) & (corners < length - tiny)]
+    if len(corners) <= max(MANY, cells // 4):
+        distance = on_corners(distance, corners)
     return begin + sign * distance
 
 
