@@ -33,8 +33,8 @@ def models_page() -> str:
     lines = [
         "# Shipped models\n",
         "<!-- made by python docs/make_pages.py; a test keeps it current -->\n",
-        "`meshonet models` lists them. Each is a safetensors file in `solvers/neural/pretrained/` that carries",
-        "its recipe and held-out figures; `make train` makes it again.\n",
+        "`meshonet models` lists them. Each is a safetensors file in `solvers/neural/pretrained/` that",
+        "carries its recipe and held-out figures; `make train` makes it again.\n",
     ]
     for name in shipped():
         facts = described(name)
@@ -52,7 +52,7 @@ def models_page() -> str:
         ]
         for way, q in facts["figures"].items():
             if isinstance(q, dict):
-                lines.append(f"| {way} | {q['median']:.4f} | {q['p90']:.4f} | {q['worst']:.4f} |")
+                lines.append(f"| {way} | {q['median']:.1e} | {q['p90']:.1e} | {q['worst']:.1e} |")
         lines.append("")
     lines.append("What that means for grids is on [the benchmark page](benchmarks.md).\n")
     return "\n".join(lines)
@@ -63,8 +63,9 @@ def families_page() -> str:
     lines = [
         "# The six families\n",
         "<!-- made by python docs/make_pages.py -->\n",
-        "The test cases of the MeshONet paper, each a shape that one number varies. `sample-boundary --family",
-        "NAME --count N` spreads N members over the range; `--range A:B` chooses another. Grids: `solve-pde`.\n",
+        "The test cases of the MeshONet paper, each a shape that one number varies.",
+        "`sample-boundary --family NAME --count N` spreads N members over the range; `--range A:B`",
+        "chooses another. Grids: `solve-pde`.\n",
     ]
     for name in FAMILIES:
         one = family(name)

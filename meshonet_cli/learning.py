@@ -65,7 +65,8 @@ def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None
     if session.as_json:
         session.result({"output": run.output, "shapes": len(strips), "figures": figures})
     else:
-        session.note(f"{run.output}: network error {figures['network']['median']:.4f} of the base's (median)")
+        network, base = figures["network"]["median"], figures["base"]["median"]
+        session.note(f"{run.output}: held-out error {network:.1e}, without the network {base:.1e} (medians)")
     return session.finish()
 
 
@@ -106,7 +107,7 @@ class _Log:
         left = (self.epochs - report.epoch) * report.seconds
         self.session.note(
             f"epoch {report.epoch}/{self.epochs}  loss {report.loss:.5f}  held-out error "
-            f"{report.median:.4f} (p90 {report.p90:.4f})  {report.seconds:.1f} s, {left / 60:.0f} min left"
+            f"{report.median:.1e} (p90 {report.p90:.1e})  {report.seconds:.1f} s, {left / 60:.0f} min left"
         )
         if self.path is not None:
             row = dataclasses.asdict(report)

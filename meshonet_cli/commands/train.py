@@ -9,7 +9,7 @@ import typer
 from meshonet_cli import options as o
 
 EXAMPLES = (
-    "meshonet train airfoils.h5 -o model.safetensors --epochs 36 --log-csv train.csv --resume",
+    "meshonet train airfoils.h5 -o model.safetensors --epochs 24 --log-csv train.csv --resume",
     "meshonet infer airfoil.dat --model model.safetensors --res 200 -o grid.vts",
 )
 
@@ -27,7 +27,7 @@ def train(
         str,
         typer.Option("-o", "--output", metavar="FILE", show_default=False, help="Model file, .safetensors."),
     ],
-    epochs: Annotated[int, typer.Option("--epochs", min=1, help="Passes over the shapes.")] = 36,
+    epochs: Annotated[int, typer.Option("--epochs", min=1, help="Passes over the shapes.")] = 24,
     batch: Annotated[int, typer.Option("--batch", min=1, help="Shapes a step.")] = 32,
     rate: Annotated[float, typer.Option("--rate", help="Largest learning rate.")] = 2e-3,
     held_out: Annotated[

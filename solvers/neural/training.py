@@ -17,7 +17,7 @@ from geometry.errors import InputError, SolverError
 from solvers.neural.checkpoint import load_checkpoint, save_checkpoint
 from solvers.neural.dataset import Strips
 from solvers.neural.encoding import CHANNELS, SCALARS, decode, encode
-from solvers.neural.export import held_out_figures, miss, write_model
+from solvers.neural.export import distance, held_out_figures, write_model
 from solvers.neural.models.strip_fno import StripFNO
 from solvers.neural.targets import Targets, make_targets
 
@@ -30,13 +30,13 @@ class Settings:
     and `layers` are the network's.
     """
 
-    epochs: int = 60
+    epochs: int = 24
     batch: int = 32
     rate: float = 2e-3
     warm_up: int = 100
     basis: int = 16
-    width: int = 48
-    modes: int = 40
+    width: int = 32
+    modes: int = 32
     layers: int = 3
     held_out: int = 300
     seed: int = 0
@@ -44,7 +44,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Report:
-    """One epoch: mean training loss; relative error of R over the held-out strips; learning rate; seconds."""
+    """One epoch: mean training loss; distance to R over the held-out strips; learning rate; seconds."""
 
     epoch: int
     loss: float
@@ -93,7 +93,7 @@ def train(
         begun = time.perf_counter()
         loss, rate = _one_epoch(net, optimiser, targets, settings, epoch)
         answers = _answers(net, test, targets)
-        errors = [miss(found, goal) for found, goal in zip(answers, test.residual, strict=True)]
+        errors = [distance(found, goal) for found, goal in zip(answers, test.residual, strict=True)]
         median, p90, worst = (float(q) for q in np.quantile(errors, [0.5, 0.9, 1.0]))
         if report is not None:
             report(Report(epoch + 1, loss, median, p90, worst, rate, time.perf_counter() - begun))

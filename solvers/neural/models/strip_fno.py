@@ -29,11 +29,11 @@ class StripFNO(nn.Module):
     Parameters
     ----------
     inputs, scalars, outputs : channel counts.
-    width, modes, layers : of the hidden state; 48, 40 and 3 make about a million parameters.
+    width, modes, layers : of the hidden state.
     """
 
     def __init__(
-        self, inputs: int, scalars: int, outputs: int, width: int = 48, modes: int = 40, layers: int = 3
+        self, inputs: int, scalars: int, outputs: int, width: int = 32, modes: int = 32, layers: int = 3
     ) -> None:
         super().__init__()
         self.lift = nn.Conv1d(inputs + scalars, 2 * width, 1)
