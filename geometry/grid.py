@@ -56,7 +56,9 @@ class Grid:
     def __post_init__(self) -> None:
         nodes = np.asarray(self.nodes)
         if nodes.ndim != 3 or nodes.shape[2] != 2 or min(nodes.shape[:2]) < 2:
-            raise InputError(f"grid nodes have shape {nodes.shape}", "give (ni, nj, 2) with ni and nj at least 2")
+            raise InputError(
+                f"grid nodes have shape {nodes.shape}", "give (ni, nj, 2) with ni and nj at least 2"
+            )
         nodes = as_planar(nodes)
         if self.topology not in TOPOLOGIES:
             raise InputError(f"topology {self.topology!r} is not known", "use " + "/".join(TOPOLOGIES))
@@ -68,7 +70,9 @@ class Grid:
                 raise InputError(f"node i={i}, j={j} is not finite", "check the file for NaN or infinity")
         if self.topology == "o" and not np.array_equal(nodes[0], nodes[-1]):
             j = int(np.argmax((nodes[0] != nodes[-1]).any(axis=-1)))
-            raise InputError(f"column ni-1 differs from column 0 at j={j}", "close the O grid or call it quad")
+            raise InputError(
+                f"column ni-1 differs from column 0 at j={j}", "close the O grid or call it quad"
+            )
         object.__setattr__(self, "nodes", nodes)
         object.__setattr__(self, "parts", tuple(self.parts) or default_parts(self.topology, self.ni, self.nj))
         check_parts(self.parts, self.ni, self.nj)

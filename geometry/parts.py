@@ -47,7 +47,10 @@ def check_parts(parts: Iterable[Part], ni: int, nj: int) -> None:
     for part in parts:
         count = ni if part.side in ("south", "north") else nj
         if not part.name or part.side not in SIDES:
-            raise InputError(f"part {part.name!r} on side {part.side!r} is not usable", "name it and use " + "/".join(SIDES))
+            raise InputError(
+                f"part {part.name!r} on side {part.side!r} is not usable",
+                "name it and use " + "/".join(SIDES),
+            )
         if not 0 <= part.start < part.stop < count:
             raise InputError(
                 f"part {part.name!r} runs from node {part.start} to {part.stop} of a side with {count} nodes",
