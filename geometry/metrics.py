@@ -2,8 +2,8 @@
 
 A cell has its corners at nodes a = (i, j), b = (i+1, j), c = (i+1, j+1), d = (i, j+1). Where Verdict has a
 metric, this is Verdict's definition for a quadrilateral that lies in the plane; a cell whose corners run
-clockwise has no orientation there and is folded here. An edge of no length has no direction: such a cell counts
-as having angles of 0 and 180 degrees and a scaled Jacobian of 0.
+clockwise has no orientation there and is folded here. An edge of no length has no direction: such a cell
+counts as having angles of 0 and 180 degrees and a scaled Jacobian of 0.
 
 ==================  ========================================================================================
 max_angle           greatest included angle, degrees; 360 minus the greatest angle between two edges when a

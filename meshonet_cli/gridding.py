@@ -22,6 +22,7 @@ from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
+from solvers.guard import guard
 from solvers.solution import Solution
 
 if TYPE_CHECKING:
@@ -38,14 +39,14 @@ class Recipe:
     method : the solver.
     allow_invalid : whether a folded grid is a result.
     gates : conditions that end the program with 1.
-    advice : what to try when the grid is folded.
+    repair : whether a folded grid goes to the guard, which unfolds it or makes another.
     """
 
     sampling: Sampling
     method: Callable[[Boundary], Solution]
     allow_invalid: bool = False
     gates: tuple[Gate, ...] = ()
-    advice: str = "use --allow-invalid to write it all the same"
+    repair: bool = True
     facts: dict[str, object] = field(default_factory=dict)
 
     def grid(self, item: Item[Shape]) -> tuple[Grid, Report]:
@@ -61,12 +62,7 @@ class Recipe:
         clock.lap("boundary")
         solution = self.method(boundary)
         clock.lap("grid", inside={"guard": solution.seconds.get("guard", 0.0)})
-        grid = solution.grid
-        folded = count_folded(grid.nodes)
-        if folded and not self.allow_invalid:
-            cells = (grid.ni - 1) * (grid.nj - 1)
-            problem = f"{folded} of {cells} cells are folded by {solution.method}; {self.advice}"
-            raise NoValidGridError(problem, worst_cells(grid.nodes))
+        grid, path = self._guarded(solution, boundary)
         clock.lap("guard")
         quality = measure(grid, percentiles=need_percentiles(self.gates))
         clock.lap("quality")
@@ -78,13 +74,24 @@ class Recipe:
             topology=grid.topology,
             quality=quality,
             model=solution.model,
-            path=solution.path,
+            path=(*solution.path, *path),
             residual=solution.residual,
             cycles=solution.cycles,
             notes=solution.notes,
         )
         report.seconds |= clock.seconds
         return grid.with_provenance(**provenance(), **self.facts), report
+
+    def _guarded(self, solution: Solution, boundary: Boundary) -> tuple[Grid, tuple[str, ...]]:
+        grid = solution.grid
+        if self.repair:
+            return guard(grid, boundary, allow_invalid=self.allow_invalid)
+        folded = count_folded(grid.nodes)
+        if folded and not self.allow_invalid:
+            cells = (grid.ni - 1) * (grid.nj - 1)
+            problem = f"{folded} of {cells} cells are folded; use --repair, solve-pde or --allow-invalid"
+            raise NoValidGridError(problem, worst_cells(grid.nodes))
+        return grid, ()
 
 
 def make_grids(

@@ -30,6 +30,9 @@ def tfi(
     far_field: o.FarField = 15.0,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Unfold folded cells, which interpolation alone does not.")
+    ] = False,
     allow_invalid: o.AllowInvalid = False,
     fail_on: o.FailOn = None,
     from_format: o.From = None,
@@ -54,7 +57,7 @@ def tfi(
         partial(interpolated, blending=blending),
         allow_invalid,
         parse_gates(fail_on),
-        "try meshonet solve-pde, which unfolds, or --allow-invalid",
+        repair,
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

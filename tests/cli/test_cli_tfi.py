@@ -92,6 +92,13 @@ def test_a_folded_grid_that_is_allowed_is_said_to_be_folded(meshonet: Meshonet, 
     assert "folded cells" in done.err
 
 
+def test_repair_unfolds_and_says_so(meshonet: Meshonet, folding_h5: Path) -> None:
+    told = meshonet("tfi", folding_h5, "-o", "grid.vts", "--repair", "--json").only
+    assert (told["method"], told["folded"], told["path"]) == ("tfi", 0, ["repair"])
+    done = meshonet("tfi", folding_h5, "-o", "grid.vts", "--repair")
+    assert "method     tfi, then repair" in done.err
+
+
 def test_a_gate_ends_with_one_and_leaves_the_grid(meshonet: Meshonet, duct_h5: Path) -> None:
     done = meshonet(
         "tfi", duct_h5, "-o", "grid.vts", "-q", "--fail-on", "max_angle>91", "--fail-on", "folded>0"
