@@ -11,7 +11,9 @@ from geometry.airfoil import Airfoil
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.families import procedural
+from geometry.families.family import family
 from geometry.naca import naca
+from geometry.outline import Outline
 from geometry.quality import count_folded
 from geometry.sampling import Sampling
 from geometry.topology import o_boundary
@@ -134,6 +136,18 @@ def test_a_body_the_lift_cannot_take_goes_to_the_elliptic_solver_and_says_why() 
     solution = infer(o_boundary(wall, 12, np.zeros(2), 6.0))
     assert solution.method == "winslow"
     assert "the operator cannot take this body" in solution.notes[0]
+
+
+@pytest.mark.parametrize("name", ["hole", "square"])
+def test_bodies_and_far_fields_with_corners_go_to_the_elliptic_solver(name: str) -> None:
+    if name == "hole":
+        edges = family("hole").boundary(0.3, 101, 61)
+    else:
+        body = Outline(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
+        edges = body.boundary(Sampling(ni=121, nj=61, topology="o"))
+    solution = infer(edges)
+    assert solution.method == "winslow"
+    assert "that the strip does not resolve" in solution.notes[0]
 
 
 def test_an_unknown_model_is_refused_with_those_that_exist() -> None:
