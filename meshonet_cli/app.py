@@ -26,6 +26,7 @@ from types import FrameType
 from typing import Annotated, Any, NoReturn
 
 import typer
+import typer.core
 
 from meshonet_cli.commands import COMMANDS
 from meshonet_cli.version import VERSION
@@ -57,8 +58,18 @@ def options(
     """Structured grids from a boundary: algebraic, elliptic, and by neural operator."""
 
 
+class Plain(typer.core.TyperCommand):
+    """A command whose usage line says ``GRID...``, where typer's says ``{GRID}``."""
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return the words of the usage line; every argument of ours can be given more than once."""
+        pieces = super().collect_usage_pieces(ctx)
+        words = [piece.strip("{}") for piece in pieces]
+        return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
+
+
 for _command in COMMANDS:
-    app.command(_command.name, epilog=_command.epilog)(_command.function)
+    app.command(_command.name, epilog=_command.epilog, cls=Plain)(_command.function)
 
 
 def run(arguments: Sequence[str]) -> int:

@@ -52,7 +52,7 @@ def _section(command: Command, parsed: Any) -> Iterator[str]:
 
 def _spelled(option: Any) -> str:
     if option.param_type_name == "argument":
-        return f"`{option.metavar}...`"
+        return f"`{option.metavar}`" if "..." in option.metavar else f"`{option.metavar}...`"
     value = f" {option.metavar}" if option.metavar else ""
     return "`" + ", ".join(option.opts).replace("|", r"\|") + value.replace("|", r"\|") + "`"
 

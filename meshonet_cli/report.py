@@ -100,7 +100,7 @@ class Report(Timed):
         i, j = angle.worst
         rows = {
             "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
-            "residual": f"{self.residual:.1e} after {self.cycles} cycles"
+            "residual": f"{self.residual:.1e} after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
             if self.residual is not None
             else "",
             "folded": f"{self.quality.folded} of {self.quality.cells} cells",

@@ -16,8 +16,14 @@ EXAMPLES = [(command.name, example) for command in COMMANDS for example in comma
 SLOW = ("train",)  # an hour; here it only has to get as far as asking for its dataset
 
 
+@pytest.fixture
+def folder(inputs: Path, tmp_path: Path) -> Path:
+    """The inputs in a folder of their own, so that one example cannot live on what another left behind."""
+    return Path(shutil.copytree(inputs, tmp_path / "here"))
+
+
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What the examples take for granted: airfoils, a channel, grids, and `meshonet` on the path."""
     made = tmp_path_factory.mktemp("examples")
     (made / "bin").mkdir()

@@ -20,7 +20,7 @@ def convert(
     files: Annotated[
         list[str],
         typer.Argument(
-            metavar="IN", show_default=False,
+            metavar="IN... [OUT]", show_default=False,
             help="Files to read, or - for standard input; without -o the last name is the file to write.",
         ),
     ],
