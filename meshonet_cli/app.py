@@ -20,7 +20,6 @@ import contextlib
 import os
 import signal
 import sys
-import traceback
 from collections.abc import Sequence
 from types import FrameType
 from typing import Annotated, Any, NoReturn
@@ -85,6 +84,8 @@ def run(arguments: Sequence[str]) -> int:
         return 0
     except Exception as error:  # the last place: whatever it is, the user gets a line and not a traceback
         if debug:
+            import traceback
+
             traceback.print_exc()
         print(f"error: {_told(error)}", file=sys.stderr)  # noqa: T201
         return int(getattr(error, "exit_code", BAD_INPUT))

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, Future
 from itertools import chain
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from geometry.boundary import Boundary
 from geometry.errors import InputError
@@ -101,10 +101,10 @@ def _paths(
 
 
 def _ahead(
-    todo: Iterator[tuple[Item[T], str]], work: _Work[T, S, R], pool: Executor, jobs: int
-) -> Iterator[tuple[Item[Any], str, Future[tuple[Any, R]]]]:
+    todo: Iterator[tuple[Item[T], str]], work: _Work[T, S, R], pool: Pool, jobs: int
+) -> Iterator[tuple[Item[Any], str, Promise]]:
     """Yield members in order with their work, of which up to two for each job are under way."""
-    waiting: deque[tuple[Item[Any], str, Future[tuple[Any, R]]]] = deque()
+    waiting: deque[tuple[Item[Any], str, Promise]] = deque()
     for item, path in todo:
         waiting.append((item.without_content(), path, pool.submit(work, item, path)))
         while len(waiting) >= (1 if jobs == 1 else 2 * jobs):
@@ -114,7 +114,7 @@ def _ahead(
 
 
 def _streamed(
-    done: Iterator[tuple[Item[Any], str, Future[tuple[Any, R]]]],
+    done: Iterator[tuple[Item[Any], str, Promise]],
     destination: Destination,
     session: Session,
     tell: Callable[[R, str], None],
@@ -145,21 +145,47 @@ def _same_size(what: Grid | Boundary, size: tuple[int, int, str] | None) -> tupl
     return own
 
 
-class _Here(Executor):
-    """Does the work at once, in this process."""
+class Promise(Protocol):
+    """Work that is done, or will be when it is asked for."""
 
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        try:
-            future.set_result(fn(*args, **kwargs))
-        except Exception as error:  # handed on, as other executors do
-            future.set_exception(error)
-        return future
+    def result(self) -> Any:
+        """Return what came of it; raise what went wrong."""
+        ...
 
 
-def _executor(jobs: int) -> Executor:
+class Pool(Protocol):
+    """Something that does work, like the executors of `concurrent.futures`."""
+
+    def __enter__(self) -> Any: ...
+
+    def __exit__(self, *error: Any) -> Any: ...
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Promise:
+        """Return the promise of ``fn(*args)``."""
+        ...
+
+
+class _Later:
+    def __init__(self, fn: Callable[..., Any], args: tuple[Any, ...]) -> None:
+        self._fn, self._args = fn, args
+
+    def result(self) -> Any:
+        return self._fn(*self._args)
+
+
+class _Here(contextlib.AbstractContextManager["_Here"]):
+    """Does the work in this process, when its result is asked for."""
+
+    def __exit__(self, *error: Any) -> None:
+        return None
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any) -> Promise:
+        return _Later(fn, args)
+
+
+def _executor(jobs: int) -> Pool:
     if jobs == 1:
         return _Here()
-    from meshonet_cli.processes import Processes
+    from meshonet_cli.processes import Processes  # and with it concurrent.futures: 10 ms
 
     return Processes(jobs)

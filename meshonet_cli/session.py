@@ -7,7 +7,6 @@ import json
 import os
 import sys
 import time
-import traceback
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
@@ -78,6 +77,8 @@ class Session:
         self.worst = max(self.worst, code)
         told = explained(error, label)
         if self.debug:
+            import traceback
+
             self._write("".join(traceback.format_exception(error)).rstrip())
         self._write(f"error: {told}")
         if self.as_json:
