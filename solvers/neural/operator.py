@@ -30,7 +30,7 @@ AUTO_STEPS = 4  # the most steps that "auto" takes
 SETTLED = 2e-4  # and the change (radians) below which it stops: what is left is a tenth of that, or less
 WILD = 0.5  # a change of phi above this means that Picard's iteration diverges
 SHARPEST = {
-    "wall": 0.025,
+    "wall": 0.017,
     "far field": 1e-3,
 }  # amplitude (radians) that a wall may have beyond half the modes
 
