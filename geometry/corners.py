@@ -18,7 +18,8 @@ SHARP = np.radians(40.0)
 ALWAYS = np.radians(75.0)
 """A turn that counts whatever its neighbours do."""
 HAIRPIN = np.radians(100.0)
-"""From here on a point may be the coarsely given round end of a thin body."""
+"""From here on a point may be the coarse round end of a thin body; from `SHARP` on where it turns alone."""
+ALONE = np.radians(50.0)
 FEW = 12
 """A closed polygon of at most so many points is meant as one."""
 
@@ -72,7 +73,7 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     found = np.flatnonzero(sharp)
     if polygon:
         return found
-    hairpin = angle[found] > HAIRPIN
+    hairpin = (angle[found] > HAIRPIN) | ((angle[found] > SHARP) & (beside[found] < ALONE))
     round_end = [
         h and growth_exponent(points, int(k), closed=closed) < 0.75
         for k, h in zip(found, hairpin, strict=True)

@@ -134,7 +134,8 @@ class TanhLaw:
             u = 0.5 + 0.5 * np.tanh(d * (u - 0.5)) / math.tanh(0.5 * d)
         elif d < 0:
             u = 0.5 + 0.5 * np.tan(d * (u - 0.5)) / math.tan(0.5 * d)
-        return np.asarray(u / (a + (1.0 - a) * u))
+        s = u / (a + (1.0 - a) * u)
+        return np.asarray(np.where(np.asarray(q) >= 1.0, 1.0, np.where(np.asarray(q) <= 0.0, 0.0, s)))
 
     def _end_steps(self, one: float, other: float) -> tuple[float, float]:
         """Return s at `one` and 1 - s at 1 - `other`, both small, without loss of digits."""

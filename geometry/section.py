@@ -151,11 +151,16 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
             "give both surfaces of an airfoil",
         )
     tail = int(np.argmax(_distance(ring, ring[nose])))
+    start = tail if open_gap else 0
+    turn = -turning(ring, closed=True)
     if _distance(ring[tail], seam) > max(0.15 * chord, gap):
         edge = max((nose, tail), key=lambda k: _sharpness(ring, k, tail if k == nose else nose)[0])
+    elif _starts_at_nose(ring, start, nose, open_gap):
+        edge = nose
+    elif not open_gap and turn[0] < _CORNER < turn[tail]:
+        edge = tail  # the points start beside their edge, or on its base
     else:
-        start = tail if open_gap else 0
-        edge = nose if _starts_at_nose(ring, start, nose, open_gap) else -1
+        edge = -1
     if edge >= 0:
         ring, index, open_gap = np.roll(ring, -edge, axis=0), np.roll(index, -edge), False
         chord = float(_distance(ring, ring[0]).max())
@@ -259,6 +264,10 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
     corners = set(far.tolist() if len(far) <= MOST_CORNERS else [])
     if turn[nose] > np.radians(60.0) and _sharpness(ring, nose, 0)[0] > 0.7:
         corners.add(nose)
+    for k in (nose - 1, nose):  # a flat front: two corners side by side, and straight on from both
+        around = turn[np.arange(k - 1, k + 3) % n]
+        if around[1:3].min() > np.radians(70.0) and around[[0, 3]].max() < np.radians(15.0):
+            corners |= {k, (k + 1) % n}
     if blunt:
         corners |= {0, n - 1}
     elif turn[0] > np.radians(60.0):

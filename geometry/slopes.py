@@ -10,20 +10,15 @@ import numpy as np
 
 from geometry._spline import solve_tridiagonal
 from geometry.arrays import Floats
-from geometry.corners import Indices, turning
-
-SLACK = 0.5
-"""How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
-LEAST_SLACK = np.radians(0.5)
-LONGEST = 2.0
-"""Largest size of a slope: a longer one makes a loop or a cusp."""
+from geometry.corners import Indices
+from geometry.limits import limited
 
 
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
     Between corners the curve is the cubic spline whose tangent and curvature are continuous, with a
-    parabola in the intervals next to a corner. Then `_limited` turns back tangents that would invent a bump.
+    parabola in the intervals next to a corner. Then `geometry.limits` turns back what would be a bump.
 
     Parameters
     ----------
@@ -41,7 +36,7 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
         start, stop = np.roll(start, shift, axis=0), np.roll(stop, shift, axis=0)
     else:
         start, stop = _pieces(points, np.unique(np.concatenate([[0], corners, [len(points) - 1]])))
-    return _limited(points, start, stop, closed=closed, corners=corners)
+    return limited(points, start, stop, closed=closed, corners=corners)
 
 
 def _pieces(points: Floats, stops: Indices) -> tuple[Floats, Floats]:
@@ -90,84 +85,3 @@ def _periodic(points: Floats) -> Floats:
     v = up / pivot
     factor = (right[0, :2] + v * right[-1, :2]) / (1 + right[0, 2] + v * right[-1, 2])
     return np.asarray(right[:, :2] - right[:, 2:] * factor)
-
-
-def _limited(
-    points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
-) -> tuple[Floats, Floats]:
-    """Return slopes turned back into the angle between the two chords of their point, give or take the slack.
-
-    A curve without bumps leaves a point between the directions of the chords before and after it. A cubic
-    spline does not always: next to a short interval or an unmarked kink it swings out. Beside a corner,
-    where there is one chord only, the tangent may turn from it by as much as the polygon does at the
-    other end of the interval.
-    """
-    ends = np.concatenate([points, points[:1]]) if closed else points
-    chord = np.diff(ends, axis=0)
-    turn = turning(points, closed=closed)
-    turn[corners] = 0.0
-    if not closed:
-        turn[[0, -1]] = 0.0
-    at_start, at_stop = turn, np.roll(turn, -1)
-    if not closed:
-        at_start, at_stop = turn[:-1], turn[1:]
-    size = np.abs(turn)
-    around = np.maximum(size, np.maximum(np.roll(size, 1), np.roll(size, -1)))
-    slack = SLACK * around + LEAST_SLACK
-    slack_start, slack_stop = (slack, np.roll(slack, -1)) if closed else (slack[:-1], slack[1:])
-    is_corner = np.zeros(len(points), dtype=bool)
-    is_corner[corners] = True
-    if not closed:
-        is_corner[[0, -1]] = True
-    corner_start, corner_stop = (
-        (is_corner, np.roll(is_corner, -1)) if closed else (is_corner[:-1], is_corner[1:])
-    )
-    free_start = np.where(corner_start, at_stop, at_start)
-    free_stop = np.where(corner_stop, at_start, at_stop)
-    start = _turned(
-        start, chord, -np.maximum(free_start, 0) - slack_start, -np.minimum(free_start, 0) + slack_start
-    )
-    stop = _turned(stop, chord, np.minimum(free_stop, 0) - slack_stop, np.maximum(free_stop, 0) + slack_stop)
-    inner = corners if closed else corners[(corners > 0) & (corners < len(points) - 1)]
-    return _edges_kept_open(start, stop, chord, inner)
-
-
-def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indices) -> tuple[Floats, Floats]:
-    """Return slopes that follow the chords at sharp edges where the two sides would otherwise cross.
-
-    Behind a corner of more than 120 degrees lies a wedge; the tangents are to leave at least a quarter of
-    the angle that the chords enclose.
-    """
-    before, after = chord[corners - 1], chord[corners]
-    angle, kept = _angle(before, after), _angle(stop[corners - 1], start[corners])
-    open_by = np.where(np.sign(kept) == np.sign(angle), np.pi - np.abs(kept), np.abs(kept) - np.pi)
-    closed_up = (np.abs(angle) > np.radians(120.0)) & (open_by < 0.25 * (np.pi - np.abs(angle)))
-    if not closed_up.any():
-        return start, stop
-    start, stop, at = start.copy(), stop.copy(), corners[closed_up]
-    start[at] = chord[at] / np.hypot(chord[at, 0], chord[at, 1])[:, None]
-    stop[at - 1] = chord[at - 1] / np.hypot(chord[at - 1, 0], chord[at - 1, 1])[:, None]
-    return start, stop
-
-
-def _angle(a: Floats, b: Floats) -> Floats:
-    """Return the angle (n,) from vectors a to b (n, 2), left positive."""
-    return np.asarray(
-        np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
-    )
-
-
-def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
-    """Return slopes (n, 2), angles from the chord within `least` and `most`, no longer than `LONGEST`."""
-    angle = _angle(chord, slope)
-    size = np.hypot(slope[:, 0], slope[:, 1])
-    wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))
-    if wrong.size == 0:
-        return slope
-    out = slope.copy()
-    unit = chord[wrong] / np.hypot(chord[wrong, 0], chord[wrong, 1])[:, None]
-    a = np.clip(angle[wrong], least[wrong], most[wrong])
-    length = np.minimum(size[wrong], LONGEST)
-    out[wrong, 0] = length * (unit[:, 0] * np.cos(a) - unit[:, 1] * np.sin(a))
-    out[wrong, 1] = length * (unit[:, 0] * np.sin(a) + unit[:, 1] * np.cos(a))
-    return out

@@ -203,7 +203,7 @@ def _half_base(plan: Plan, half_base: float) -> Floats:
 def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
     """Return distances along a side from its trailing edge at the places `q` of 0 to 1."""
     asked = sampling.te_spacing is not None or sampling.le_spacing is not None
-    if sampling.spacing == "uniform":
+    if sampling.spacing == "uniform" or (plan.cells < 4 and not asked):
         return np.asarray(length * q)
     if sampling.spacing == "cosine" and not asked and not plan.half:
         return np.asarray(length * np.sin(0.5 * np.pi * q) ** 2)

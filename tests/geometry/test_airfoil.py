@@ -1,0 +1,148 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geometry.airfoil import Airfoil
+from geometry.boundary import polygon_area
+from geometry.errors import InputError
+from geometry.sampling import Sampling
+from geometry.simple import find_crossing
+from tests.geometry.sections import STATIONS, farthest, selig, surfaces
+
+FORMULA = np.linspace(0, 1, 150) ** 2
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    ratio=st.floats(0.03, 0.4),
+    camber=st.floats(-0.02, 0.09),
+    base=st.sampled_from([0.0, 1e-4, 3e-4, 2e-3, 0.02, 0.15]),
+    coarse=st.booleans(),
+    digits=st.integers(4, 8),
+    turn=st.floats(-3.1, 3.1),
+    size=st.sampled_from([1e-3, 1.0, 250.0]),
+)
+def test_curve_passes_every_given_point_and_does_not_cross_itself(
+    ratio, camber, base, coarse, digits, turn, size
+):
+    points = selig(ratio, camber, base, STATIONS if coarse else None).round(digits)
+    points = size * points @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]]) + size
+    airfoil = Airfoil(points)
+    curve = airfoil.curve
+    s = np.union1d(np.linspace(0, curve.length, 4001), curve.knots)
+    dense = curve.at(s)
+    assert farthest(points, dense) < 1e-4 * airfoil.chord
+    assert find_crossing(dense[:-1]) is None
+    assert airfoil.chord == pytest.approx(size, rel=0.03)
+
+
+@pytest.mark.parametrize("ratio", [0.06, 0.12, 0.21])
+def test_fits_the_formula_between_the_stations_of_old_reports(ratio):
+    """The formula is known between the points; 35 of them should give it to 0.05 % of chord."""
+    airfoil = Airfoil(selig(ratio, x=STATIONS))
+    curve = airfoil.curve.at(np.linspace(0, airfoil.curve.length, 20_001))
+    assert farthest(selig(ratio, x=FORMULA), curve) < 5e-4
+    fine = Airfoil(selig(ratio, x=0.5 - 0.5 * np.cos(np.linspace(0, np.pi, 101))))
+    assert farthest(selig(ratio, x=FORMULA), fine.curve.at(np.linspace(0, fine.curve.length, 40_001))) < 1e-5
+
+
+def test_edges_chord_and_gap_of_a_known_section():
+    airfoil = Airfoil(selig(0.12, base=0.004))
+    assert airfoil.blunt
+    assert airfoil.gap == pytest.approx(0.004)
+    np.testing.assert_allclose(airfoil.trailing_edge, [1, 0], atol=1e-15)
+    np.testing.assert_allclose(airfoil.leading_edge, [0, 0], atol=1e-12)
+    assert airfoil.chord == pytest.approx(1)
+    assert airfoil.nose_radius == pytest.approx(1.1019 * 0.12**2, rel=0.15)  # the formula's own radius
+    slope = 2 * np.degrees(np.arctan(5 * 0.12 * 0.24225 - 0.002))
+    assert airfoil.wedge == pytest.approx(slope, abs=0.3)
+
+
+def test_leading_edge_is_the_farthest_place_of_the_curve():
+    airfoil = Airfoil(selig(0.15, 0.06))
+    dense = airfoil.curve.at(np.linspace(0, airfoil.curve.length, 200_001))
+    far = np.hypot(*(dense - airfoil.trailing_edge).T).max()
+    assert airfoil.chord == pytest.approx(far, rel=1e-9)
+
+
+def test_a_symmetric_flat_front_has_its_leading_edge_in_the_middle():
+    plate = np.array([[1, 0.01], [0.5, 0.02], [0, 0.02], [0, -0.02], [0.5, -0.02], [1, -0.01]])
+    np.testing.assert_allclose(Airfoil(plate).leading_edge, [0, 0], atol=1e-12)
+
+
+@pytest.mark.parametrize("ni", [50, 101, 200])
+@pytest.mark.parametrize("spacing", ["uniform", "cosine", "tanh", "curvature"])
+@pytest.mark.parametrize("base", [0.0, 0.004, 0.05])
+def test_a_symmetric_section_gets_symmetric_nodes(ni, spacing, base):
+    for x in (STATIONS, None):
+        wall = Airfoil(selig(0.12, base=base, x=x)).wall(ni, Sampling(spacing=spacing))
+        np.testing.assert_allclose(wall, wall[::-1] * [1, -1], atol=1e-12)
+
+
+def test_wall_nodes_are_points_of_the_curve_bitwise():
+    airfoil = Airfoil(selig(0.12, 0.02, 0.003))
+    boundary = airfoil.boundary(Sampling(ni=101, nj=11, spacing="tanh"))
+    from geometry.wall import Stations, wall_arcs
+
+    stations = Stations(airfoil.curve, *airfoil._arcs, airfoil.chord, airfoil.nose_radius)
+    nodes = boundary.wall.at(wall_arcs(stations, 101, Sampling(spacing="tanh")))
+    np.testing.assert_array_equal(boundary.south[:-1], nodes[:-1])
+    np.testing.assert_array_equal(boundary.south[-1], boundary.south[0])
+
+
+def test_boundary_is_an_o_of_the_size_asked_for():
+    boundary = Airfoil(10 * selig(0.12, 0.02), "ten").boundary(
+        Sampling(ni=61, nj=21, far_field=20, spacing="tanh")
+    )
+    assert (boundary.topology, boundary.ni, boundary.nj, boundary.name) == ("o", 61, 21, "ten")
+    assert polygon_area(boundary.south[:-1]) < 0
+    centre = boundary.north[:-1].mean(axis=0)
+    np.testing.assert_allclose(np.hypot(*(boundary.north - centre).T), 200, rtol=1e-3)
+
+
+def test_units_and_position_stay_unless_normalised():
+    turn = np.array([[np.cos(0.3), np.sin(0.3)], [-np.sin(0.3), np.cos(0.3)]])
+    airfoil = Airfoil(250 * selig(0.12) @ turn + [7, -3])
+    np.testing.assert_allclose(airfoil.leading_edge, [7, -3], atol=1e-9)
+    unit = airfoil.normalised()
+    np.testing.assert_allclose([*unit.leading_edge, *unit.trailing_edge], [0, 0, 1, 0], atol=1e-12)
+    south = airfoil.boundary(Sampling(ni=51, nj=9, normalise=True, spacing="tanh")).south
+    np.testing.assert_allclose(south, Airfoil(selig(0.12)).wall(51, Sampling(spacing="tanh")), atol=1e-9)
+
+
+def test_crossing_surfaces_are_refused_with_the_place_and_the_points():
+    points = selig(0.12)
+    points[5:8, 1] = [-0.04, -0.05, -0.06]
+    with pytest.raises(InputError) as caught:
+        Airfoil(points, places=[f"line {k + 2}" for k in range(len(points))])
+    told = str(caught.value)
+    assert "crosses itself at (0.9" in told
+    assert "between line 6 and line 7" in told or "between line 7 and line 6" in told
+    assert "correct these points" in told
+
+
+def test_surfaces_that_touch_by_rounding_are_still_an_airfoil():
+    x = np.linspace(0, 1, 41)
+    upper, lower = surfaces(0.12, 0.04, x=x)
+    thin = 0.5 * (upper - lower) * (1 - (1 - x[:, None]) ** 2 * 0) * ((1 - x[:, None]) ** 2.5)
+    middle = 0.5 * (upper + lower)
+    points = np.concatenate([(middle + thin)[::-1], (middle - thin)[1:]]).round(4)
+    airfoil = Airfoil(points)
+    dense = airfoil.curve.at(np.union1d(np.linspace(0, airfoil.curve.length, 8001), airfoil.curve.knots))
+    assert find_crossing(dense[:-1]) is None
+    assert farthest(points, dense) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("sampling", "message"),
+    [
+        (Sampling(topology="quad"), "topology quad is not made from an airfoil; use o"),
+        (Sampling(corners=(0, 1, 2, 3)), "an airfoil has no corners to choose"),
+        (Sampling(ni=4), "4 nodes around an airfoil; use at least"),
+        (Sampling(spacing="uniform", le_spacing=0.01), "uniform spacing leaves no cell size to choose"),
+    ],
+)
+def test_says_what_an_airfoil_cannot_be(sampling, message):
+    with pytest.raises(InputError, match=message):
+        Airfoil(selig()).boundary(sampling)
