@@ -55,6 +55,7 @@ def picture_file(output: str, to_format: str | None, picture: Picture) -> Destin
     InputError
         `output` is no picture.
     """
+    to_format = to_format or ("png" if output == "-" else None)
     found = format_for_output(output, to_format)
     if found.name not in PICTURES:
         raise InputError(f"{found.name} is no picture", "use .png, .svg or .pdf", source=output)

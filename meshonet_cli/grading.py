@@ -78,6 +78,8 @@ def grade_grids(
     """
     for destination in outputs:
         destination.check_room(sources)
+        if destination.text == "-":
+            raise InputError("standard output has the table", "write to a file", source="-")
     others = _partners(other) if other else None
     for item in items(sources, lambda source: read_grids(source, fmt), session):
         with session.member(item.label, item.source):

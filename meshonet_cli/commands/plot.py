@@ -40,7 +40,13 @@ def plot(
         ),
     ] = None,
     from_format: o.From = None,
-    to_format: o.To = None,
+    to_format: Annotated[
+        str | None,
+        typer.Option(
+            "--to", metavar="FORMAT", show_default=False,
+            help="png, svg or pdf, when the ending does not say. Standard output is png unless told.",
+        ),
+    ] = None,
     skip_existing: o.SkipExisting = False,
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -12,12 +12,17 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
 )
+MethodName = Literal["winslow"]
 
 
+# fmt: off
 def solve_pde(
     boundary: o.Boundaries,
     output: o.Output,
     res: o.Resolution = None,
+    method: Annotated[
+        MethodName, typer.Option("--method", metavar="winslow", help="Equations to solve.")
+    ] = "winslow",
     tol: Annotated[
         float | None,
         typer.Option(
@@ -30,7 +35,7 @@ def solve_pde(
         int, typer.Option("--max-cycles", metavar="N", min=1, help="Multigrid cycles at the most.")
     ] = 30,
     initial: Annotated[
-        str | None, typer.Option("--initial", metavar="GRID", help="Grid to start from.", show_default=False)
+        str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
     ] = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
@@ -48,8 +53,8 @@ def solve_pde(
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,
     debug: o.Debug = False,
-) -> int:  # fmt: skip
-    """Make smooth grids by solving Winslow's equations."""
+) -> int:
+    """Make smooth grids by solving an elliptic equation."""
     from functools import partial
 
     from meshonet_cli.batch import Destination
@@ -58,10 +63,13 @@ def solve_pde(
     from meshonet_cli.session import Session
     from solvers.elliptic.solve import solve
 
+    solvers = {"winslow": solve}
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    settings: dict[str, Any] = {"tol": o.tolerance(tol), "max_cycles": max_cycles}
+    settings["initial"] = initial_grid(initial)
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        partial(solve, tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial)),
+        partial(solvers[method], **settings),
         allow_invalid,
         parse_gates(fail_on),
     )
@@ -70,3 +78,4 @@ def solve_pde(
     return make_grids(
         boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
     )
+# fmt: on

@@ -39,6 +39,7 @@ class Outcome:
 
 
 Meshonet = Callable[..., Outcome]
+Process = Callable[..., subprocess.CompletedProcess[bytes]]
 
 
 @pytest.fixture
@@ -58,7 +59,7 @@ def meshonet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.Cap
 
 
 @pytest.fixture
-def process(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[bytes]]:
+def process(tmp_path: Path) -> Process:
     """The program in a fresh process, in a folder of its own."""
 
     def call(*words: object, **options: Any) -> subprocess.CompletedProcess[bytes]:

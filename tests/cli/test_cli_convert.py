@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet
+from conftest import Meshonet, Process
 
 from formats.registry import read_grids, read_shapes
 
@@ -60,9 +60,9 @@ def test_boundaries_become_boundaries(meshonet: Meshonet, three_h5: Path) -> Non
     assert "holds boundaries, not grids" in done.err
 
 
-def test_a_pipe_needs_no_file(meshonet: Meshonet, process: object, grid_vts: Path, tmp_path: Path) -> None:
+def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Path, tmp_path: Path) -> None:
     read = (tmp_path / grid_vts).read_bytes()
-    done = process("convert", "-", "-", "--from", "vts", "--to", "plot3d-ascii", input=read)  # type: ignore[operator]
+    done = process("convert", "-", "-", "--from", "vts", "--to", "plot3d-ascii", input=read)
     assert done.returncode == 0
     assert done.stdout.split()[:2] in ([b"1", b"41"], [b"41", b"15"])
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from conftest import Meshonet
+from conftest import Meshonet, Process
 
 
 @pytest.fixture
@@ -34,6 +34,11 @@ def test_options_change_the_picture(meshonet: Meshonet, grid_vts: Path) -> None:
 def test_json_says_what_was_drawn(meshonet: Meshonet, grid_vts: Path) -> None:
     told = meshonet("plot", grid_vts, "-o", "g.png", "--metric", "none", "--json").only
     assert (told["input"], told["output"], told["metric"], told["ni"]) == ("grid.vts", "g.png", None, 41)
+
+
+def test_a_picture_goes_to_standard_output(meshonet: Meshonet, process: Process, grid_vts: Path) -> None:
+    assert process("plot", grid_vts, "-o", "-").stdout.startswith(b"\x89PNG")
+    assert process("plot", grid_vts, "-o", "-", "--to", "pdf").stdout.startswith(b"%PDF")
 
 
 def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) -> None:

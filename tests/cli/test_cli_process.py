@@ -6,13 +6,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, dataset, ellipse
-
-Process = Callable[..., subprocess.CompletedProcess[bytes]]
+from conftest import ROOT, Process, dataset, ellipse
 
 
 def command(*words: str) -> list[str]:
@@ -110,6 +107,33 @@ def test_undecodable_names_are_told_printably(process: Process, tmp_path: Path) 
     assert done.returncode == 2
     assert b"\x1b" not in done.stderr
     assert b"no such file" in done.stderr
+
+
+def test_a_terminal_that_lacks_letters_still_gets_the_table(process: Process, duct_h5: Path) -> None:
+    assert process("tfi", duct_h5, "-o", "größe.vts").returncode == 0
+    asked = {**environment(), "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command("quality", "größe.vts"), cwd=duct_h5.parent, env=asked, capture_output=True)
+    assert done.returncode == 0
+    assert done.stdout.startswith(b"gr\\xf6\\xdfe.vts: 21 x 11")
+
+
+def test_a_command_that_is_none_is_told_in_a_line(process: Process) -> None:
+    done = process("grid")
+    assert done.returncode == 2
+    assert done.stderr.startswith(b"error: no such command 'grid'")
+    assert done.stderr.endswith(b"; see meshonet --help\n")
+
+
+def test_too_many_nodes_for_the_memory_are_told_in_a_line(process: Process) -> None:
+    resource = pytest.importorskip("resource")
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
+
+    done = process("tfi", "naca:0012", "--res", "20000", "-o", "g.vts", preexec_fn=limited)
+    assert done.returncode == 2
+    assert b"naca:0012: not enough memory" in done.stderr
+    assert done.stderr.endswith(b"use a smaller --res\n")
 
 
 def test_help_is_quick(process: Process) -> None:

@@ -32,6 +32,13 @@ def test_the_report_says_residual_and_cycles(meshonet: Meshonet, duct_h5: Path) 
     assert "cycles" in told
 
 
+def test_the_method_can_be_named(meshonet: Meshonet, duct_h5: Path) -> None:
+    assert meshonet("solve-pde", duct_h5, "--method", "winslow", "-o", "g.vts").code == 0
+    done = meshonet("solve-pde", duct_h5, "--method", "magic", "-o", "g.vts")
+    assert done.code == 2
+    assert "magic" in done.err
+
+
 def test_where_interpolation_folds_it_does_not(meshonet: Meshonet, folding_h5: Path) -> None:
     done = meshonet("solve-pde", folding_h5, "-o", "grid.vts")
     assert done.code == 0
