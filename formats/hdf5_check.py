@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from formats.edges import known_topology
+from formats.hdf5_heap import check_heaps, check_texts
 from formats.source import Source, printable
 from geometry.arrays import SIDES, Floats, Topology
 from geometry.errors import InputError
@@ -26,6 +27,7 @@ class Checked:
     Parameters
     ----------
     file : an open HDF5 file.
+    source : its bytes.
 
     Attributes
     ----------
@@ -33,8 +35,8 @@ class Checked:
     topology : the one all samples share.
     """
 
-    def __init__(self, file: h5py.File) -> None:
-        self._file = file
+    def __init__(self, file: h5py.File, source: Source) -> None:
+        self._file, self._source = file, source
         self._text_cache: dict[str, Any] = {}
         kind = _attribute(file, "format")
         if kind not in ("meshonet-boundary", "meshonet-grid"):
@@ -78,6 +80,8 @@ class Checked:
             data = self._dataset(name) if name in self else None
             if data is not None and (data.ndim != 1 or h5py.check_string_dtype(data.dtype) is None):
                 raise InputError(f"dataset {name!r} is not a list of texts", "store strings, one a sample")
+            if data is not None:
+                check_texts(data, self._source)
             self._text_cache[name] = data
         data = self._text_cache[name]
         if data is None or k >= len(data):
@@ -136,17 +140,20 @@ def checked(source: Source) -> Iterator[Checked]:
     """Open `source` as a dataset; what HDF5's library complains of becomes an InputError."""
     import h5py
 
+    check_heaps(source)
     with contextlib.ExitStack() as stack:
         try:
             given = source.path or stack.enter_context(source.open())
             file = stack.enter_context(h5py.File(given, "r", locking="best-effort"))
-        except (OSError, RuntimeError, ValueError, KeyError) as error:
+        except Exception as error:  # a damaged file makes h5py raise almost anything
             raise InputError(
                 f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"
             ) from error
         try:
-            yield Checked(file)
-        except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+            yield Checked(file, source)
+        except InputError:
+            raise
+        except Exception as error:
             raise InputError(f"HDF5 data is damaged ({_short(error)})", "write the file again") from error
 
 

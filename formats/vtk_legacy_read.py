@@ -122,7 +122,7 @@ def _read(cursor: _Cursor) -> tuple[Floats, dict[str, list[str]]]:
             break
     if min(dims) < 1 or dims[0] * dims[1] * dims[2] != int(words[1]):
         raise InputError(
-            f"has {words[1][:20]} points and DIMENSIONS {'x'.join(map(str, dims))[:60]}", "make them agree"
+            f"has {words[1][:20]!r} points and DIMENSIONS {'x'.join(map(str, dims))[:60]}", "make them agree"
         )
     points = _numbers(cursor, words[2], 3 * int(words[1]), text=text).reshape(*dims[::-1], 3)
     return planar([points[..., k].T for k in range(3)]), facts
@@ -139,7 +139,8 @@ def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
         if kind.lower() != "string":
             codes = _numbers(cursor, kind, total, text=text)
             if kind.lower() == "unsigned_char":
-                facts[name] = codes.astype(np.uint8).tobytes().decode("utf-8", "replace").split("\n")
+                with np.errstate(invalid="ignore"):  # text may hold NaN here, which then is no name
+                    facts[name] = codes.astype(np.uint8).tobytes().decode("utf-8", "replace").split("\n")
         elif text:
             facts[name] = [unquote(_raw_line(cursor)) for _ in range(total)]
         else:

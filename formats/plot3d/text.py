@@ -15,6 +15,7 @@ from geometry.errors import InputError
 
 _FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
 _NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)
+_MOST_NODES = 1e12
 _MOST_REPEATED = 4
 """Numbers a byte of file, repeats expanded; constant planes and iblank stay far below."""
 
@@ -31,7 +32,7 @@ def candidates(data: bytes) -> list[Candidate]:
 
     def integer(k: int) -> int | None:
         number = float(values[k]) if k < len(values) else 0.5
-        return int(number) if number.is_integer() else None
+        return int(number) if number.is_integer() and abs(number) < _MOST_NODES else None
 
     tried = list(layouts(integer))
     fitting = [layout for layout in tried if _length(layout) == len(values)]

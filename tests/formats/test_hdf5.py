@@ -208,3 +208,32 @@ def test_names_from_a_file_cannot_act_on_a_terminal() -> None:
 def test_single_precision_and_big_endian_are_read() -> None:
     (grid,) = read_grids(memory(changed("n = f['nodes'][:]; del f['nodes']; f['nodes'] = n.astype('>f4')")))
     assert np.allclose(grid.nodes, channel().nodes, atol=1e-6)
+
+
+def patched(at: int, new: bytes) -> bytes:
+    """Return a good dataset with other bytes at one place."""
+    data = bytearray(changed("pass"))
+    data[at : at + len(new)] = new
+    return bytes(data)
+
+
+def test_a_heap_that_would_hold_the_library_for_ever_is_refused() -> None:
+    heap = changed("pass").index(b"GCOL")
+    for size in (0, 1, 2**63, 2**64 - 1):
+        data = patched(heap + 16 + 8, size.to_bytes(8, "little"))
+        with pytest.raises(InputError, match=f"byte {heap}: HDF5 data is damaged .a heap of texts.; write"):
+            list(read_grids(memory(data)))
+    free = patched(heap + 16, bytes(16))
+    with pytest.raises(InputError, match="a heap of texts"):
+        list(read_grids(memory(free)))
+
+
+@pytest.mark.parametrize(
+    "more", ["", "; del f['names']; f.create_dataset('names', (1,), h5py.string_dtype(), maxshape=(None,))"]
+)
+def test_a_text_that_would_take_all_memory_is_refused(more: str) -> None:
+    data = changed(f"pass{more}; f['names'][0] = 'seven..'")
+    descriptor = data.rindex((7).to_bytes(4, "little"))
+    spoilt = data[:descriptor] + b"\xff" * 4 + data[descriptor + 4 :]
+    with pytest.raises(InputError, match="dataset 'names' claims a text longer than the file; write"):
+        list(read_grids(memory(spoilt)))

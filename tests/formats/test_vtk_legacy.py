@@ -111,9 +111,9 @@ CASES = {
     "cut header": (vtk_text()[:60], "byte .*: ends before its points; the file is cut short"),
     "cut body": (vtk_text()[:-2], "should have 18 more numbers and is too short"),
     "padded body": (vtk_text(body="1 " * 17 + " " * 9), "should have 18 more numbers and has 17"),
-    "dims": (vtk_text("3 3 1"), "has 6 points and DIMENSIONS 3x3x1; make them agree"),
-    "no dims": (vtk_text().replace(b"DIMENSIONS", b"SIZES"), "has 6 points and DIMENSIONS 0x0x0"),
-    "negative": (vtk_text("-3 -2 1"), "has 6 points and DIMENSIONS -3x-2x1"),
+    "dims": (vtk_text("3 3 1"), "has '6' points and DIMENSIONS 3x3x1; make them agree"),
+    "no dims": (vtk_text().replace(b"DIMENSIONS", b"SIZES"), "has '6' points and DIMENSIONS 0x0x0"),
+    "negative": (vtk_text("-3 -2 1"), "has '6' points and DIMENSIONS -3x-2x1"),
     "huge": (
         vtk_text("1000000000 1000000000 1", "1000000000000000000 double"),
         "should have .* is too short",

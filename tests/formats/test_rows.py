@@ -1,0 +1,114 @@
+import pytest
+
+from formats.rows import MOST_BYTES, decode, read_lines, table
+from geometry.errors import InputError
+
+
+def one(text: str) -> tuple[str, tuple[float, ...]]:
+    (line,) = read_lines(text)
+    return line.kind, line.values
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("1.0 0.5", (1, 0.5)),
+        ("  1.0\t.5  ", (1, 0.5)),
+        ("1.,-.5", (1, -0.5)),
+        ("1.0 , 0.5,", (1, 0.5)),
+        ("1;0.5", (1, 0.5)),
+        ("1.0E+00 5.0d-01", (1, 0.5)),
+        ("1.0D0 5Q-1", (1, 0.5)),
+        ("1,0 0,5", (1, 0.5)),
+        ("1,0;0,5", (1, 0.5)),
+        ("1,5", (1, 5)),
+        ("1.00000-0.50000", (1, -0.5)),
+        ("(1.0, 0.5)", (1, 0.5)),
+        ("1.0 (0.5)", (1, 0.5)),
+        ("[1.0 0.5]", (1, 0.5)),
+        ("1.0 0.5 # the edge", (1, 0.5)),
+        ("1.0 0.5 ! the edge", (1, 0.5)),
+        ("1 2 3", (1, 2, 3)),
+        ("+1 -2", (1, -2)),
+    ],
+)
+def test_numbers_are_read_as_people_write_them(text, values):
+    assert one(text) == ("row", values)
+
+
+@pytest.mark.parametrize(
+    ("text", "kind"),
+    [
+        ("", "blank"),
+        (" \t ", "blank"),
+        ("NACA 2412", "text"),
+        ("2032c", "text"),
+        ("64(1)-212", "text"),
+        ("17", "text"),
+        ("21.01.2003", "text"),
+        ("# 1 2", "text"),
+        ("0.99 -0.01 -> 0.99 -0.02", "text"),
+        ("1.0 ......", "gap"),
+        ("1.0 ****", "gap"),
+        ("0.5 0.06 thickest", "noted"),
+        ("0.5 O.06", "broken"),
+        ("0.5", "broken"),
+        ("nan 0.1", "broken"),
+        ("0.5 nan", "broken"),
+        ("0.5 1e999", "broken"),
+        ("1_0 2_0", "text"),
+    ],
+)
+def test_what_is_no_row_is_told_apart(text, kind):
+    assert one(text + "\n")[0] == kind
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_lines_are_counted_as_editors_do(end):
+    lines = read_lines(end.join(["a", "", "1 2", "3 4"]) + end)
+    assert [(line.number, line.kind) for line in lines] == [(1, "text"), (2, "blank"), (3, "row"), (4, "row")]
+
+
+def test_blocks_are_divided_by_blank_lines_and_prose():
+    blocks = table(read_lines("t\n1 2\n3 4\n\n5 6\n7 ...\n8 9\nlower\n1 1\n"))
+    assert [[line.values for line in block] for block in blocks] == [
+        [(1, 2), (3, 4)],
+        [(5, 6), (8, 9)],
+        [(1, 1)],
+    ]
+
+
+def test_a_remark_behind_numbers_counts_beside_rows_only():
+    rows = [
+        line.number for block in table(read_lines("1 2 first\n3 4\n\nsee 5 6\n7 8 pages\n")) for line in block
+    ]
+    assert rows == [1, 2]
+
+
+def test_a_broken_line_among_rows_is_refused_with_its_number():
+    with pytest.raises(
+        InputError, match=r"line 2: '0.5 O.06' is no pair of numbers; correct or remove the line"
+    ):
+        table(read_lines("1 0\n0.5 O.06\n0 0\n"))
+
+
+@pytest.mark.parametrize(
+    ("data", "text"),
+    [
+        (b"\xef\xbb\xbf1 2", "1 2"),
+        ("1 2 é".encode("utf-16"), "1 2 é"),
+        ("é".encode(), "é"),
+        (b"\xe9\xff", "éÿ"),
+    ],
+)
+def test_any_text_is_decoded(data, text):
+    assert decode(data) == text
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [(b"1 2\0", "binary data"), (b" " * (MOST_BYTES + 1), "too much for a file of points")],
+)
+def test_what_is_no_text_is_refused(data, message):
+    with pytest.raises(InputError, match=message):
+        decode(data)
