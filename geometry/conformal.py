@@ -66,7 +66,7 @@ def _one_way(curve: Curve, marks: Floats, count: int, *, mirror: bool) -> Floats
 
 
 def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
-    """Return rising arc lengths (m,), clustered like a square at both ends of a piece, and their parameter u.
+    """Return rising arc lengths (m,), clustered at both ends of every piece, and their parameter u.
 
     u counts pieces: on piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
     """

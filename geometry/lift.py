@@ -171,7 +171,7 @@ def _slit(wall: Complexes, sharp: bool, base: list[int]) -> tuple[complex, compl
     half chord: the foci when the body is an ellipse. A sharp edge is itself an end.
     """
     reach = np.abs(wall - wall[0])
-    nose = int(np.argmax(reach > (1.0 - 1e-12) * reach.max()))  # the first of equals, however they are rounded
+    nose = int(np.argmax(reach > (1.0 - 1e-12) * reach.max()))  # the first of equals, rounding aside
     if sharp:
         tail = complex(wall[0])
     elif len(base) == 2:

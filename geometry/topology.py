@@ -28,7 +28,7 @@ def straight(a: Floats, b: Floats, n: int) -> Floats:
 
 
 def _start(wall: Floats, centre: Floats) -> float:
-    """Return the angle (radians) of the first far-field node of a closed wall (ni, 2), first node repeated."""
+    """Return the angle (radians) of the first far-field node around a closed wall (ni, 2)."""
     try:
         lift, w, _ = lift_body(mirrored(wall[:-1]))
     except InputError:  # no conformal map: the direction of the first node
