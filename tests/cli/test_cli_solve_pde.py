@@ -78,15 +78,3 @@ def test_mistakes_get_a_line(meshonet: Meshonet, duct_h5: Path, words: tuple[str
     assert told in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
-
-
-def test_jobs_give_the_same_grids(meshonet: Meshonet, three_h5: Path) -> None:
-    assert meshonet("solve-pde", three_h5, "-o", "one/{name}.vts").code == 0
-    done = meshonet("solve-pde", three_h5, "missing.h5", "-o", "two/{name}.vts", "--jobs", "2")
-    assert done.code == 2
-    assert "3 done, 1 failed" in done.err
-    for path in Path("one").iterdir():
-        (one,), (two,) = read_grids(str(path)), read_grids(f"two/{path.name}")
-        np.testing.assert_array_equal(one.nodes, two.nodes)
-    assert meshonet("solve-pde", three_h5, "-o", "all.h5", "--jobs", "2").code == 0
-    assert [grid.name for grid in read_grids("all.h5")] == ["flat", "low", "high"]
