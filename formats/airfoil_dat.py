@@ -231,8 +231,10 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
                 "correct or remove it",
                 place=f"line {numbers[k]}",
             )
-    if length.sum() > 3.5 * extent:
-        k = int(np.argmax(length))
+    back = np.flatnonzero(np.hypot(*(points - points[0]).T) < 0.02 * extent)
+    closed = [k for k in back.tolist() if 8 <= k < n - 7 and length[k] > 0.02 * extent]
+    if closed or length.sum() > 3.5 * extent:
+        k = closed[0] if closed else int(np.argmax(length))
         raise InputError(
             f"the points go more than once around: widest step, line {numbers[k]} to {numbers[(k + 1) % n]}",
             "give one element alone, " + _ASK.removeprefix("give an airfoil "),

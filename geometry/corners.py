@@ -44,9 +44,10 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     """Return the indices of the points that are corners, in order.
 
     A corner turns sharply while the points beside it do not: by more than `KINK` and five times as much
-    as each of them, or more than `SHARP` and twice as much, or more than `ALWAYS`. Left out is the round
-    end of a thin body given by few points, which turns by up to 155 degrees at one of them: there the
-    thickness grows like the square root of the distance, at an edge like the distance (`growth_exponent`).
+    as each of them, or more than `SHARP` and twice as much, or more than `ALWAYS`; or two side by side more
+    than `SHARP` and five times as much as the points beyond them. Left out is the round end of a thin body
+    given by few points, which turns by up to 155 degrees at one of them: there the thickness grows like the
+    square root of the distance, at an edge like the distance (`growth_exponent`).
 
     Parameters
     ----------
@@ -70,6 +71,10 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
         | (angle > SHARP) & (polygon | (angle > 2 * beside))
         | (angle > ALWAYS)
     )
+    if closed:  # two side by side, as at a base, with little turning beyond them
+        ahead, after = np.roll(angle, -1), np.roll(angle, -2)
+        pair = (np.minimum(angle, ahead) > SHARP) & (np.roll(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
+        sharp |= pair | np.roll(pair, 1)
     found = np.flatnonzero(sharp)
     if polygon:
         return found

@@ -25,7 +25,7 @@ from geometry.arrays import Floats
 from geometry.errors import InputError
 
 POINTS = 161
-"""Points a surface: the spline through them is then within 1e-7 chord of the formula."""
+"""Points a surface: the spline through them is then within 2e-6 chord of the formula."""
 
 _SIMPLE = {
     1: (0.0580, 361.400),

@@ -257,6 +257,8 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
     nose = int(np.argmax(distance))
     turn = np.abs(turning(ring, closed=True))
     n = len(ring)
+    if blunt and nose in (0, n - 1):
+        raise InputError("the base is wider than the section is long", "give both surfaces of an airfoil")
     found = find_corners(ring, closed=True, few=0)
     apart = np.minimum((found - nose) % n, (nose - found) % n)
     near_nose = (apart <= 1) | (_distance(ring[found], ring[nose]) < 0.03 * distance[nose])

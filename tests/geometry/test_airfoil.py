@@ -2,13 +2,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sections import STATIONS, farthest, selig, surfaces
 
 from geometry.airfoil import Airfoil
 from geometry.boundary import polygon_area
 from geometry.errors import InputError
 from geometry.sampling import Sampling
 from geometry.simple import find_crossing
-from tests.geometry.sections import STATIONS, farthest, selig, surfaces
 
 FORMULA = np.linspace(0, 1, 150) ** 2
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from sections import STATIONS, selig
 
 from geometry.corners import find_corners, growth_exponent, turning
-from tests.geometry.sections import STATIONS, selig
 
 
 def ring(n: int) -> np.ndarray:

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from sections import STATIONS, selig
 
 from geometry.curves import Curve, resample_like
 from geometry.errors import InputError
-from tests.geometry.sections import STATIONS, selig
 
 
 def circle(n: int, turns: float = 1.0) -> np.ndarray:

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
+from sections import STATIONS, selig, surfaces
 
 from geometry.boundary import polygon_area
 from geometry.errors import InputError
 from geometry.section import clean_section
-from tests.geometry.sections import STATIONS, selig, surfaces
 
 SHARP, BLUNT = selig(0.12, 0.03), selig(0.12, 0.03, base=0.01)
 

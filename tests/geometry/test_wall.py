@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
+from sections import selig
 
 from geometry.airfoil import Airfoil
 from geometry.sampling import Sampling
-from tests.geometry.sections import selig
 
 BASES = [2.2e-4, 8e-4, 3e-3, 0.02, 0.2]
 

@@ -1,0 +1,71 @@
+import numpy as np
+import pytest
+from sections import farthest
+
+from geometry.errors import InputError
+from geometry.naca import naca, naca_points, thickness
+
+
+def test_ordinates_are_those_of_the_reports():
+    """NACA Report 460, table of the 0012 (percent of chord); Report 537, ordinates of the 23012 at 30 %."""
+    x = np.array([1.25, 5, 20, 50, 80, 95]) / 100
+    np.testing.assert_allclose(
+        100 * thickness(x, 0.12), [1.894, 3.555, 5.738, 5.294, 2.623, 0.807], atol=6e-4
+    )
+    curve = naca("23012").curve.at(np.linspace(0, naca("23012").curve.length, 40_001))
+    upper, lower = curve[20_000:], curve[:20_000]
+    for at, top, bottom in ((0.30, 0.0755, -0.0446), (0.05, 0.0491, -0.0226), (0.80, 0.0308, -0.0216)):
+        assert upper[np.argmin(np.abs(upper[:, 0] - at)), 1] == pytest.approx(top, abs=3e-4)
+        assert lower[np.argmin(np.abs(lower[:, 0] - at)), 1] == pytest.approx(bottom, abs=3e-4)
+
+
+@pytest.mark.parametrize(
+    ("designation", "camber", "place"), [("2412", 0.02, 0.4), ("6309", 0.06, 0.3), ("23012", 0.0184, 0.15)]
+)
+def test_camber_is_as_large_and_where_the_digits_say(designation, camber, place):
+    points = naca_points(designation, 2001)
+    upper, lower = points[:2001][::-1], points[2000:]
+    middle = 0.5 * (upper + lower)
+    k = int(np.argmax(middle[:, 1]))
+    assert middle[k, 1] == pytest.approx(camber, rel=0.01)
+    assert middle[k, 0] == pytest.approx(place, abs=0.01)
+
+
+@pytest.mark.parametrize("designation", ["0006", "2412", "4421-sharp", "23012", "23112-sharp", "44018"])
+def test_curve_is_the_formula(designation):
+    airfoil = naca(designation)
+    curve = airfoil.curve
+    dense = curve.at(np.union1d(np.linspace(0, curve.length, 30_001), curve.knots))
+    assert farthest(naca_points(designation, 100), dense) < 2e-6  # most where the mean line's curvature jumps
+    assert airfoil.chord == pytest.approx(1, abs=4e-3)
+
+
+def test_base_is_open_unless_sharp_is_asked_for():
+    assert naca("0012").gap == pytest.approx(0.00252)
+    assert naca("0012").blunt
+    assert naca("0012-sharp").gap == 0
+    assert naca("NACA 0012").name == "NACA 0012"
+
+
+@pytest.mark.parametrize("designation", ["4412", "23012", "25112"])
+def test_mean_lines_are_smooth_where_their_parts_meet(designation):
+    points = naca_points(designation, 2001)
+    middle = 0.5 * (points[:2001][::-1] + points[2000:])
+    slope = np.diff(middle[:, 1]) / np.diff(middle[:, 0])
+    assert np.abs(np.diff(slope)).max() < 3e-3
+
+
+@pytest.mark.parametrize(
+    ("designation", "message"),
+    [
+        ("24", "'24' is no NACA designation; use four digits"),
+        ("64-212", "is no NACA designation"),
+        ("2400", "NACA 2400 has no thickness"),
+        ("2012", "NACA 2012 has its camber at the leading edge"),
+        ("29012", "no tabulated mean line"),
+        ("21112", "no tabulated mean line"),
+    ],
+)
+def test_designations_that_stand_for_nothing_are_refused(designation, message):
+    with pytest.raises(InputError, match=message):
+        naca(designation)

@@ -1,0 +1,107 @@
+import numpy as np
+import pytest
+import shapely
+
+from geometry.boundary import polygon_area
+from geometry.errors import InputError
+from geometry.outline import Outline
+from geometry.sampling import Sampling
+
+SQUARE = np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])
+T = np.linspace(0, 2 * np.pi, 80, endpoint=False)
+CIRCLE = np.stack([3 + np.cos(T), np.sin(T)], axis=1)
+L_SHAPE = np.array([[0.0, 0], [2, 0], [2, 0.4], [1, 0.4], [1, 1], [0, 1]])
+WAVY = np.array([[x, 0.1 * np.sin(5 * x)] for x in np.linspace(0, 2, 31)] + [[2, 1.0], [0, 1.0]])
+
+
+@pytest.mark.parametrize("turned", [0, 1, 2, 3])
+@pytest.mark.parametrize("way", [1, -1])
+def test_the_lowest_edge_is_south_from_any_start_and_either_way(turned, way):
+    b = Outline(np.roll(SQUARE, turned, axis=0)[::way]).boundary(Sampling(ni=21, nj=11))
+    assert b.topology == "quad"
+    corners = [b.south[0], b.south[-1], b.north[-1], b.north[0]]
+    np.testing.assert_array_equal(corners, SQUARE)
+
+
+@pytest.mark.parametrize("spacing", ["auto", "uniform", "cosine", "tanh", "curvature"])
+def test_every_corner_of_the_outline_is_a_node(spacing):
+    b = Outline(L_SHAPE).boundary(Sampling(ni=33, nj=24, spacing=spacing))
+    outline = b.outline()
+    for corner in L_SHAPE:
+        assert (outline == corner).all(axis=1).any()
+    assert shapely.Polygon(outline).equals_exact(shapely.Polygon(outline), 0)
+    assert shapely.Polygon(outline).area == pytest.approx(1.4)
+
+
+def test_asked_corners_start_at_the_south_west_one_and_go_on_counter_clockwise():
+    for points, corners in ((SQUARE, (1, 2, 3, 0)), (SQUARE, (1, 0, 3, 2)), (SQUARE[::-1], (2, 1, 0, 3))):
+        b = Outline(points).boundary(Sampling(ni=9, nj=9, corners=corners))
+        np.testing.assert_array_equal(
+            [b.south[0], b.south[-1], b.north[-1], b.north[0]], SQUARE[[1, 2, 3, 0]]
+        )
+
+
+def test_a_smooth_side_is_followed():
+    b = Outline(WAVY).boundary(Sampling(ni=61, nj=11))
+    np.testing.assert_allclose(b.south[:, 1], 0.1 * np.sin(5 * b.south[:, 0]), atol=2e-3)
+
+
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize("start", [0, 13, 50])
+def test_a_body_without_corners_is_surrounded(way, start):
+    outline = Outline(np.roll(CIRCLE, start, axis=0)[::way], "disc")
+    assert outline.topology == "o"
+    b = outline.boundary(Sampling(ni=41, nj=11, far_field=10))
+    np.testing.assert_allclose(b.south[0], [4, 0], atol=1e-12)
+    assert polygon_area(b.south[:-1]) < 0
+    np.testing.assert_allclose(np.hypot(*(b.north - [3, 0]).T), 20, rtol=1e-9)
+    assert b.wall is outline.curve
+    assert b.name == "disc"
+
+
+@pytest.mark.parametrize("start", [0, 1, 2, 3])
+def test_a_square_body_starts_in_the_middle_of_its_right_side(start):
+    for points in (SQUARE, SQUARE[::-1]):
+        b = Outline(np.roll(points, start, axis=0)).boundary(Sampling(ni=41, nj=5, topology="o"))
+        np.testing.assert_allclose(b.south[0], [2, 0.5], atol=1e-12)
+        for corner in SQUARE:
+            assert np.hypot(*(b.south - corner).T).min() < 1e-12
+
+
+def test_a_round_outline_can_be_a_quad_all_the_same():
+    b = Outline(CIRCLE).boundary(Sampling(ni=21, nj=21, topology="quad"))
+    np.testing.assert_allclose(
+        b.south[[0, -1]], [[3 - 0.5**0.5, -(0.5**0.5)], [3 + 0.5**0.5, -(0.5**0.5)]], atol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("points", "message"),
+    [
+        (
+            [[0, 0], [1, 1], [1, 0], [0, 1]],
+            r"crosses itself at \(0.5, 0.5\), behind point 0 and behind point 2",
+        ),
+        ([[0, 0], [1, 0]], "give at least 3"),
+        ([[0, 0], [1, 0], [1, 0], [1, 1]], "the same"),
+        ([[0, 0], [1e-200, 0], [0, 1e-200]], "extent"),
+    ],
+)
+def test_refuses_what_is_no_outline(points, message):
+    with pytest.raises(InputError, match=message):
+        Outline(np.array(points, dtype=float))
+
+
+@pytest.mark.parametrize(
+    ("sampling", "message"),
+    [
+        (Sampling(topology="c"), "needs the trailing edge of an airfoil"),
+        (Sampling(te_spacing=0.01), "le_spacing and te_spacing need an airfoil"),
+        (Sampling(normalise=True), "only an airfoil can be normalised"),
+        (Sampling(corners=(0, 1, 2, 9)), "corner 9 of 4 points does not exist; use 0 to 3"),
+        (Sampling(corners=(0, 2, 1, 3)), "are not in order along the outline"),
+    ],
+)
+def test_says_what_an_outline_cannot_be(sampling, message):
+    with pytest.raises(InputError, match=message):
+        Outline(SQUARE).boundary(sampling)
