@@ -34,23 +34,7 @@ def read_wkt(source: Source) -> Iterator[Outline]:
     InputError
         text that is no WKT, a geometry that is no outline; with its line.
     """
-    from shapely import from_wkt
-    from shapely.errors import ShapelyError
-
-    text = _text(source)
-    found: list[tuple[str, BaseGeometry]] = []
-    with np.errstate(invalid="ignore"):  # shapely lets numpy warn of NaN; it is refused below
-        try:
-            found = [("", from_wkt(text))]
-        except ShapelyError:
-            for number, line in enumerate(text.splitlines(), start=1):
-                if line.strip() and not line.lstrip().startswith("#"):
-                    try:
-                        found.append((f"line {number}", from_wkt(line)))
-                    except ShapelyError as error:
-                        told = f"is not WKT ({_short(error)})"
-                        raise InputError(told, _ASK, place=f"line {number}") from None
-    yield from _named([(source.stem, place, geometry) for place, geometry in found])
+    yield from _named([(source.stem, place, geometry) for place, geometry in _geometries(_text(source))])
 
 
 def read_geojson(source: Source) -> Iterator[Outline]:
@@ -94,6 +78,27 @@ def sniff_wkt(head: bytes) -> bool:
 def sniff_geojson(head: bytes) -> bool:
     """Say whether `head` starts as a JSON object that names a GeoJSON type."""
     return head.lstrip()[:1] == b"{" and b'"type"' in head
+
+
+def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
+    """Return (place, geometry) of a text that is one geometry, or else of each of its lines."""
+    from shapely import from_wkt
+    from shapely.errors import ShapelyError
+
+    found: list[tuple[str, BaseGeometry]] = []
+    with np.errstate(invalid="ignore"):  # shapely lets numpy warn of NaN; it is refused later
+        try:
+            return [("", from_wkt(text))]
+        except ShapelyError:
+            pass
+        for number, line in enumerate(text.splitlines(), start=1):
+            if not line.strip() or line.lstrip().startswith("#"):
+                continue
+            try:
+                found.append((f"line {number}", from_wkt(line)))
+            except ShapelyError as error:
+                raise InputError(f"is not WKT ({_short(error)})", _ASK, place=f"line {number}") from None
+    return found
 
 
 def _named(found: list[tuple[str, str, BaseGeometry]]) -> Iterator[Outline]:
