@@ -53,7 +53,7 @@ def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
 
 
 def _one_way(curve: Curve, marks: Floats, count: int, *, mirror: bool) -> Floats:
-    """Return arc lengths (count,) walking clockwise, or the mirror image of the curve walked the other way."""
+    """Return arc lengths (count,) walking clockwise, or along the mirrored curve walked the other way."""
     s, u = _dense(curve, marks)
     nodes = curve.at(curve.length - s[:-1]) * np.array([1.0, -1.0]) if mirror else curve.at(s[:-1])
     _, w, _ = lift_body(mirrored(nodes))
