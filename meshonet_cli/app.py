@@ -19,19 +19,18 @@ from __future__ import annotations
 import contextlib
 import io
 import os
-import signal
 import sys
 from collections.abc import Sequence
-from types import FrameType
 from typing import Annotated, Any, NoReturn
 
 import typer
 import typer.core
 
 from meshonet_cli.commands import COMMANDS
+from meshonet_cli.stopping import install
 from meshonet_cli.version import VERSION
 
-INTERRUPTED, TERMINATED, BAD_INPUT = 130, 143, 2
+INTERRUPTED, BAD_INPUT = 130, 2
 
 app = typer.Typer(
     name="meshonet",
@@ -96,7 +95,7 @@ def run(arguments: Sequence[str]) -> int:
 
 def main() -> NoReturn:
     """Run the command line on the program's arguments and exit."""
-    signal.signal(signal.SIGTERM, _terminated)
+    install()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names from files, on a terminal that lacks them
     code = run(sys.argv[1:])
@@ -122,11 +121,6 @@ def _told(error: Exception) -> str:
 def _interrupted() -> int:
     print("interrupted", file=sys.stderr)  # noqa: T201
     return INTERRUPTED
-
-
-def _terminated(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
-    # an exception, so that unfinished files are removed on the way out
-    raise SystemExit(TERMINATED)
 
 
 def _silence_stdout() -> None:

@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from formats.source import printable
 from geometry.errors import InputError, MeshonetError
 from meshonet_cli.report import explained
+from meshonet_cli.stopping import check
 
 GATE_NOT_MET = 1
 _BAR = 24
@@ -132,7 +133,8 @@ class Session:
             )
 
     def begin(self, name: str, count: int | None = None) -> None:
-        """Show on a terminal which member of how many (None: not known) is at work."""
+        """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
+        check()
         self.members += 1
         if not self._bar or (count is None and self.members == 1):
             return

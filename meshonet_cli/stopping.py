@@ -1,0 +1,41 @@
+"""Interrupts that are not lost: Python drops an exception that a signal raises inside a clean-up callback.
+
+The handlers raise at once, as Python's own does, and also remember; `check`, called between the members of a
+batch, raises what was dropped.
+"""
+
+from __future__ import annotations
+
+import signal
+from types import FrameType
+from typing import NoReturn
+
+_asked: list[BaseException] = []
+
+
+def install() -> None:
+    """Let SIGINT raise KeyboardInterrupt, SIGTERM and SIGHUP SystemExit, so that unfinished files are removed.
+
+    A signal that whoever started the program had it ignore (nohup, a shell's ``&``) stays ignored.
+    """
+    handlers = {"SIGINT": _interrupt, "SIGTERM": _terminate, "SIGHUP": _terminate}
+    for name, handler in handlers.items():
+        number = getattr(signal, name, None)  # not every system has SIGHUP
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, handler)
+
+
+def check() -> None:
+    """Raise what a signal asked for, if it was dropped where it came."""
+    if _asked:
+        raise _asked[-1]
+
+
+def _interrupt(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001
+    _asked.append(KeyboardInterrupt())
+    raise _asked[-1]
+
+
+def _terminate(number: int, frame: FrameType | None) -> NoReturn:  # noqa: ARG001  (the signature is Python's)
+    _asked.append(SystemExit(128 + number))
+    raise _asked[-1]

@@ -1,0 +1,53 @@
+"""Signals are honoured even when Python drops the exception they raise."""
+
+import os
+import signal
+import subprocess
+import sys
+
+import pytest
+from conftest import ROOT
+
+from meshonet_cli.stopping import check
+
+DROPPED = """
+import os, signal, sys, weakref
+from meshonet_cli.session import Session
+from meshonet_cli.stopping import install
+
+install()
+
+class Thing: pass
+
+thing = Thing()
+reference = weakref.ref(thing, lambda _: os.kill(os.getpid(), int(sys.argv[1])))
+del thing  # the signal comes inside the callback, where Python drops what it raises
+print("went on", flush=True)
+try:
+    Session(quiet=True).begin("next member")
+except BaseException as error:
+    print(type(error).__name__)
+"""
+
+
+@pytest.mark.parametrize(
+    ("number", "raised"),
+    [(signal.SIGINT, "KeyboardInterrupt"), (signal.SIGTERM, "SystemExit"), (signal.SIGHUP, "SystemExit")],
+)
+def test_a_dropped_signal_stops_at_the_next_member(number: int, raised: str) -> None:
+    command = [sys.executable, "-c", DROPPED, str(int(number))]
+    done = subprocess.run(
+        command, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True
+    )
+    assert done.stdout.split("\n")[:2] == ["went on", raised]
+
+
+def test_an_ignored_signal_stays_ignored() -> None:
+    code = "import os, signal; signal.signal(signal.SIGHUP, signal.SIG_IGN); "
+    code += "from meshonet_cli.stopping import install; install(); os.kill(os.getpid(), signal.SIGHUP)"
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    assert subprocess.run([sys.executable, "-c", code], env=environment).returncode == 0
+
+
+def test_without_a_signal_nothing_is_raised() -> None:
+    check()
