@@ -14,7 +14,7 @@ _asked: list[BaseException] = []
 
 
 def install() -> None:
-    """Let SIGINT raise KeyboardInterrupt, SIGTERM and SIGHUP SystemExit, so that unfinished files are removed.
+    """Let SIGINT raise KeyboardInterrupt, SIGTERM and SIGHUP SystemExit, so that unfinished files go.
 
     A signal that whoever started the program had it ignore (nohup, a shell's ``&``) stays ignored.
     """
