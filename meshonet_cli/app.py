@@ -26,21 +26,11 @@ from typing import Annotated, Any, NoReturn
 import typer
 import typer.core
 
-from meshonet_cli.commands import COMMANDS
+from meshonet_cli.commands import COMMANDS, Command
 from meshonet_cli.stopping import install
 from meshonet_cli.version import VERSION
 
 INTERRUPTED, BAD_INPUT = 130, 2
-
-app = typer.Typer(
-    name="meshonet",
-    help="Structured grids from a boundary: algebraic, elliptic, and by neural operator.",
-    epilog="\b\nStart with:  meshonet infer airfoil.dat --res 200 -o grid.vts\n"
-    "Exit codes:  0 done, 1 gate not met, 2 bad usage or input, 3 no valid grid, 130 interrupted",
-    rich_markup_mode=None,  # rich costs 0.2 s at every --help
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-)
 
 
 def _version(asked: bool) -> None:
@@ -49,7 +39,6 @@ def _version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
 def options(
     version: Annotated[
         bool, typer.Option("--version", help="Show the version and exit.", callback=_version, is_eager=True)
@@ -68,16 +57,29 @@ class Plain(typer.core.TyperCommand):
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
 
 
-for _command in COMMANDS:
-    app.command(_command.name, epilog=_command.epilog, cls=Plain)(_command.function)
+def application(commands: Sequence[Command] = COMMANDS) -> Any:
+    """Return the parser of `commands`; of one alone it is made in a tenth of the time."""
+    app = typer.Typer(
+        name="meshonet",
+        epilog="\b\nStart with:  meshonet infer airfoil.dat --res 200 -o grid.vts\n"
+        "Exit codes:  0 done, 1 gate not met, 2 bad usage or input, 3 no valid grid, 130 interrupted",
+        rich_markup_mode=None,  # rich costs 0.2 s at every --help
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    )
+    app.callback()(options)
+    for command in commands:
+        app.command(command.name, epilog=command.epilog, cls=Plain)(command.function)
+    return typer.main.get_command(app)
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the command line on `arguments` (without the program's name) and return its exit code."""
     debug = "--debug" in arguments
     words = list(arguments) or ["--help"]
+    meant = [command for command in COMMANDS if command.name == words[0]]
     try:
-        code: Any = typer.main.get_command(app).main(words, prog_name="meshonet", standalone_mode=False)
+        code: Any = application(meant or COMMANDS).main(words, prog_name="meshonet", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
     except BrokenPipeError:

@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import typer
-
 from meshonet_cli import app
 from meshonet_cli.commands import COMMANDS, Command
 
@@ -23,7 +21,7 @@ Installed as `meshonet`; `python -m meshonet_cli` is the same program. Every com
 
 def reference() -> str:
     """Return the reference of every command in Markdown."""
-    group: Any = typer.main.get_command(app.app)
+    group = app.application()
     overview = ["| command | does |", "| --- | --- |"]
     sections = []
     for command in COMMANDS:

@@ -1,7 +1,5 @@
 """``meshonet models``."""
 
-from __future__ import annotations
-
 from meshonet_cli import options as o
 
 EXAMPLES = ("meshonet models", "meshonet models --json")

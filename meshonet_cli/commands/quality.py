@@ -1,7 +1,5 @@
 """``meshonet quality``."""
 
-from __future__ import annotations
-
 from typing import Annotated
 
 import typer

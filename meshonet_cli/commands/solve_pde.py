@@ -1,7 +1,5 @@
 """``meshonet solve-pde``."""
 
-from __future__ import annotations
-
 from typing import Annotated, Any, Literal
 
 import typer

@@ -2,16 +2,14 @@
 
 import re
 from pathlib import Path
-from typing import Any
 
 import h5py
 import numpy as np
 import pytest
-import typer
 from conftest import Meshonet
 
 from formats.registry import read_grids
-from meshonet_cli.app import app
+from meshonet_cli.app import application
 
 BOUNDARY_COMMANDS = ("sample-boundary", "tfi", "solve-pde", "infer")
 GRID_COMMANDS = ("tfi", "solve-pde", "infer")
@@ -156,7 +154,7 @@ def test_debug_shows_the_traceback(meshonet: Meshonet, command: str) -> None:
 
 
 def options() -> list[tuple[str, str]]:
-    group: Any = typer.main.get_command(app)
+    group = application()
     return [
         (name, option.opts[-1])
         for name, command in group.commands.items()
