@@ -7,11 +7,11 @@ blanks, tabs, commas, semicolons.
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import dataclass
 from typing import Literal
 
+from formats.edges import LARGEST
 from geometry.errors import InputError
 
 Kind = Literal["blank", "text", "row", "noted", "gap", "broken"]
@@ -86,7 +86,9 @@ def read_lines(text: str) -> list[Line]:
     if found and not found[-1]:
         found.pop()
     if len(found) > MOST_LINES:
-        raise InputError(f"{len(found)} lines are too many for a file of points", f"give at most {MOST_LINES}")
+        raise InputError(
+            f"{len(found)} lines are too many for a file of points", f"give at most {MOST_LINES}"
+        )
     return [_line(number, line) for number, line in enumerate(found, start=1)]
 
 
@@ -126,7 +128,7 @@ def _line(number: int, text: str) -> Line:
         except ValueError:
             pass
         else:
-            if math.isfinite(pair[0]) and math.isfinite(pair[1]) and "_" not in text:
+            if abs(pair[0]) < LARGEST and abs(pair[1]) < LARGEST and "_" not in text:
                 return Line(number, "row", pair, text)
     if not words:
         return Line(number, "blank", (), text)
@@ -146,7 +148,7 @@ def _words(text: str) -> list[str]:
     words = []
     for word in _SPLIT.split(text.strip(" \t,;")):
         fused = _FUSED.fullmatch(word)
-        words += list(fused.groups()) if fused else [word]
+        words += list(fused.groups()) if fused else [word] if word else []
     return words
 
 
@@ -158,7 +160,7 @@ def _difficult(number: int, text: str, words: list[str]) -> Line:
     for place, word in enumerate(bare):
         if _ONE.fullmatch(word):
             value = float(re.sub("[dDqQ]", "e", word))
-            if not math.isfinite(value):
+            if not abs(value) < LARGEST:
                 return Line(number, "broken" if place else "text", (), text)
             values.append(value)
         elif place == 0:

@@ -86,7 +86,7 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
     from shapely.errors import ShapelyError
 
     found: list[tuple[str, BaseGeometry]] = []
-    with np.errstate(invalid="ignore"):  # shapely lets numpy warn of NaN; it is refused later
+    with np.errstate(all="ignore"):  # shapely lets numpy warn of NaN and infinity; they are refused later
         try:
             return [("", from_wkt(text))]
         except ShapelyError:
