@@ -60,6 +60,16 @@ def hexagon(ni: int, nj: int) -> Boundary:
     return quad(south, north, segment((0, 0), (0, 1), nj), segment((1, 0), (1, 1), nj), "hexagon")
 
 
+def bump(ni: int, nj: int) -> Boundary:
+    """Unit square with a half circle of radius 0.2 on the floor; its two kinks are nodes."""
+    flat = round((ni - 1) * 0.3 / (0.6 + 0.2 * np.pi))
+    angle = np.linspace(np.pi, 0, ni - 2 * flat)
+    half_circle = np.stack([0.5 + 0.2 * np.cos(angle), 0.2 * np.sin(angle)], axis=1)
+    floor = [segment((0, 0), (0.3, 0), flat + 1)[:-1], half_circle, segment((0.7, 0), (1, 0), flat + 1)[1:]]
+    sides = segment((0, 0), (0, 1), nj), segment((1, 0), (1, 1), nj)
+    return quad(np.concatenate(floor), segment((0, 1), (1, 1), ni), *sides, "bump")
+
+
 def wrench(ni: int, nj: int) -> Boundary:
     """Unit square with a notch in the roof: two re-entrant corners of 270 degrees."""
     roof = [(0, 1), (0.3, 1.15), (0.35, 1.0), (0.35, 0.6), (0.65, 0.6), (0.65, 1.0), (0.7, 1.15), (1, 1)]

@@ -1,0 +1,164 @@
+"""A grid of any resolution from a small one: solve with few nodes, then evaluate at many.
+
+A smooth grid differs from the transfinite interpolation of its edges by something smooth, which a few nodes
+describe. So the boundary is thinned to the coarse counts, a solver works there, and ::
+
+    x = TFI + S (x_c - TFI_c) Tᵀ
+
+with S and T the matrices of cubic splines along xi and eta (`solvers.spline`). Thinned edges are taken
+between the given nodes at equal steps of their index, so that both interpolations agree at the coarse nodes.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import Floats, as_planar, planar_nodes
+from geometry.boundary import Boundary
+from geometry.corners import Indices, find_corners
+from geometry.errors import InputError
+from geometry.grid import Grid
+from solvers._combine import add_rows
+from solvers.solution import Solution
+from solvers.spline import bending, places, spline_matrix
+from solvers.tfi import Four, interpolate, parameters
+
+LEAST = 9
+"""Fewest coarse nodes along a direction that describe anything."""
+
+REACH = 1.5
+"""Coarse cells to each side of a kink that are relaxed at full resolution."""
+
+SWEEPS = 2
+"""Sweeps there."""
+
+
+def solve_coarse(
+    boundary: Boundary, method: Callable[[Boundary], Solution], n: int, *, smooth: bool
+) -> Solution:
+    """Solve with `method` on at most n x n nodes and return the grid at the node counts of `boundary`.
+
+    Parameters
+    ----------
+    boundary : quad or o.
+    method : a solver of boundary to solution.
+    n : coarse nodes along each direction that has more.
+    smooth : whether to end with sweeps of Winslow's equations at full resolution around the lines that leave
+        kinks of the boundary (elsewhere they change nothing that counts).
+
+    Returns
+    -------
+    Solution
+        the method's, with the fine grid; residual and cycles are those of the coarse solve. The edges equal
+        those of `boundary` bitwise.
+
+    Raises
+    ------
+    InputError
+        fewer than 9 coarse nodes.
+    """
+    if n < LEAST:
+        raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST}")
+    counts = min(n, boundary.ni), min(n, boundary.nj)
+    if counts == (boundary.ni, boundary.nj):
+        return method(boundary)
+    begun = time.perf_counter()
+    solution = method(thinned(boundary, *counts))
+    nodes = evaluate(solution.grid.nodes, boundary)
+    if smooth:
+        sweep_kinks(nodes, boundary, counts)
+    facts = {**solution.grid.provenance, "coarse": counts}
+    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    return replace(solution, grid=grid, seconds={**solution.seconds, "grid": time.perf_counter() - begun})
+
+
+def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
+    """Return `boundary` with ni x nj nodes, at equal steps of the index of the given ones."""
+    south, north = _between(boundary.south, ni), _between(boundary.north, ni)
+    west, east = _between(boundary.west, nj), _between(boundary.east, nj)
+    return Boundary(south, north, west, east, boundary.topology, name=boundary.name)
+
+
+def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
+    """Return planar nodes inside `boundary` from a grid (m, n, 2) inside its thinned edges."""
+    periodic = boundary.topology == "o"
+    fine = (boundary.south, boundary.north, boundary.west, boundary.east)
+    along = parameters(fine, "arclength")
+    m, n = coarse.shape[:2]
+    counts = m, m, n, n
+    base = planar_nodes(m, n)
+    edges: Four = (coarse[:, 0], coarse[:, -1], coarse[0], coarse[-1])
+    if periodic:
+        edges = (*edges[:2], _between(boundary.west, n), _between(boundary.east, n))
+    thin_along = [_between(law[:, None], count)[:, 0] for law, count in zip(along, counts, strict=True)]
+    interpolate(base[..., 0], base[..., 1], edges, tuple(thin_along))  # type: ignore[arg-type]
+    nodes = planar_nodes(boundary.ni, boundary.nj)
+    interpolate(nodes[..., 0], nodes[..., 1], fine, along)
+    first, weights = places(m, boundary.ni)
+    across = np.ascontiguousarray(spline_matrix(n, boundary.nj).T)
+    for c in (0, 1):
+        values = (coarse[..., c] - base[..., c]) @ across
+        add_rows(nodes[..., c], first, weights, values, bending(m, periodic) @ values, periodic)
+    if periodic:
+        nodes[-1] = nodes[0]
+    return nodes
+
+
+def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> None:
+    """Relax planar `nodes` in place by sweeps of Winslow's equations around the lines that leave kinks.
+
+    Transfinite interpolation carries a kink of an edge along the whole line that starts there, and no spline
+    through the `counts` coarse nodes takes it out again.
+    """
+    for axis, sides in ((0, ("south", "north")), (1, ("west", "east"))):
+        if boundary.topology == "o" and axis == 1:
+            continue
+        kinks = np.concatenate([find_corners(getattr(boundary, side)) for side in sides])
+        n = nodes.shape[axis]
+        reach = int(np.ceil(REACH * (n - 1) / (counts[axis] - 1)))
+        for start, stop in _joined(np.unique(kinks), reach, n):
+            if axis == 0:
+                _sweep(nodes[start:stop])
+            else:
+                strip = as_planar(nodes[:, start:stop])
+                _sweep(strip)
+                nodes[:, start:stop] = strip
+
+
+def _joined(kinks: Indices, reach: int, n: int) -> Iterator[tuple[int, int]]:
+    """Yield ranges of indices, none touching another, `reach` to each side of the `kinks`, within n."""
+    start = stop = 0
+    for kink in kinks:
+        if stop and kink - reach > stop:
+            yield start, stop
+            stop = 0
+        start = start if stop else max(int(kink) - reach, 0)
+        stop = min(int(kink) + reach + 1, n)
+    if stop:
+        yield start, stop
+
+
+def _sweep(nodes: Floats) -> None:
+    """Relax the inner nodes of planar `nodes` in place."""
+    from solvers.elliptic._multigrid import Level, scratch_size
+    from solvers.elliptic.coarsening import Direction
+
+    xi, eta = (Direction(np.arange(float(n)), False) for n in nodes.shape[:2])
+    scratch = np.empty(scratch_size(xi.cells, eta.cells))
+    level = Level(nodes[..., 0], nodes[..., 1], xi.differences(), eta.differences(), False, scratch, False)
+    level.smooth(False, SWEEPS)
+
+
+def _between(values: Floats, n: int) -> Floats:
+    """Return (n, k), linear between the rows of `values` (m, k), at equal steps; the ends are kept."""
+    m = len(values)
+    at = np.arange(n) * ((m - 1) / (n - 1))
+    k = np.minimum(at.astype(np.intp), m - 2)
+    t = (at - k)[:, None]
+    result = values[k] + t * (values[k + 1] - values[k])
+    result[-1] = values[-1]
+    return np.asarray(result)

@@ -1,0 +1,114 @@
+"""Grids evaluated from a coarse solve: their edges, their distance to the full solve, what is refused."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from scipy.interpolate import RectBivariateSpline
+from solver_shapes import arch, bump, folded, hexagon, hole, naca, seamount, wrench
+
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.quality import measure
+from solvers.coarse import evaluate, solve_coarse, thinned
+from solvers.elliptic.solve import solve
+from solvers.solution import Solution
+from solvers.tfi import tfi
+
+
+def error(nodes: np.ndarray, reference: np.ndarray) -> float:
+    """Relative L2 distance, free of the origin."""
+    spread = reference - reference.mean(axis=(0, 1))
+    return float(np.linalg.norm(nodes - reference) / np.linalg.norm(spread))
+
+
+@pytest.mark.parametrize("make", [arch, hexagon, bump, wrench, hole, naca])
+@pytest.mark.parametrize(("ni", "nj", "n"), [(200, 100, 33), (101, 150, 40), (65, 20, 33)])
+def test_edges_are_those_given(make, ni: int, nj: int, n: int) -> None:  # type: ignore[no-untyped-def]
+    boundary: Boundary = make(ni, nj)
+    nodes = solve_coarse(boundary, solve, n, smooth=True).grid.nodes
+    assert np.array_equal(nodes[:, 0], boundary.south)
+    assert np.array_equal(nodes[:, -1], boundary.north)
+    if boundary.topology == "o":
+        assert np.array_equal(nodes[0], nodes[-1])
+    else:
+        assert np.array_equal(nodes[0], boundary.west)
+        assert np.array_equal(nodes[-1], boundary.east)
+
+
+# about twice what they are; transfinite interpolation has 0.05 to 0.8
+LIMITS = [(arch, 2e-3, 5e-4), (seamount, 2e-3, 5e-4), (hexagon, 6e-3, 3e-3), (bump, 4e-3, 1.5e-3)]
+
+
+@pytest.mark.parametrize(("make", "from_33", "from_65"), [*LIMITS, (hole, 1.5e-2, 5e-3), (naca, 2e-2, 6e-3)])
+def test_it_is_near_the_full_solve_and_nearer_from_more_nodes(make, from_33, from_65) -> None:  # type: ignore[no-untyped-def]
+    boundary = make(257, 257)
+    reference = solve(boundary, tol=1e-8).grid.nodes
+    errors = []
+    for n in (33, 65):
+        nodes = solve_coarse(boundary, solve, n, smooth=True).grid.nodes
+        assert folded(nodes) == 0
+        errors.append(error(nodes, reference))
+    assert errors[0] < from_33
+    assert errors[1] < from_65
+    assert errors[1] < 0.6 * errors[0]
+
+
+def test_without_kinks_it_is_the_spline_of_the_difference() -> None:
+    """The formula by scipy, on counts that thin exactly."""
+    boundary = arch(97, 65)
+    coarse = thinned(boundary, 33, 17)
+    solved = solve(coarse).grid.nodes
+    exact = tfi(boundary).nodes
+    difference = solved - exact[::3, ::4]
+    ends = [np.linspace(0, 1, n) for n in (33, 17, 97, 65)]
+    expected = exact + np.stack(
+        [RectBivariateSpline(*ends[:2], difference[..., c], s=0)(*ends[2:]) for c in (0, 1)], axis=-1
+    )
+    np.testing.assert_allclose(evaluate(solved, boundary), expected, atol=1e-12)
+
+
+def test_sweeps_bring_back_the_angle_at_kinks() -> None:
+    boundary = bump(401, 401)
+    angle = {
+        name: measure(make().grid)["max_angle"].max
+        for name, make in {
+            "full": partial(solve, boundary, tol=1e-6),
+            "plain": partial(solve_coarse, boundary, solve, 101, smooth=False),
+            "swept": partial(solve_coarse, boundary, solve, 101, smooth=True),
+        }.items()
+    }
+    assert angle["plain"] > angle["full"] + 3
+    assert angle["swept"] < angle["full"] + 0.5
+
+
+def test_no_fewer_nodes_than_asked_for_is_the_method_itself() -> None:
+    boundary = arch(33, 20)
+    assert np.array_equal(
+        solve_coarse(boundary, solve, 33, smooth=True).grid.nodes, solve(boundary).grid.nodes
+    )
+
+
+def test_a_direction_with_few_nodes_keeps_them() -> None:
+    seen = []
+
+    def spy(boundary: Boundary) -> Solution:
+        seen.append((boundary.ni, boundary.nj))
+        return solve(boundary)
+
+    solve_coarse(arch(200, 20), spy, 33, smooth=True)
+    assert seen == [(33, 20)]
+
+
+def test_provenance_name_and_parts_are_kept() -> None:
+    grid = solve_coarse(arch(100, 100), solve, 33, smooth=True).grid
+    assert grid.provenance["coarse"] == (33, 33)
+    assert grid.provenance["method"] == "winslow"
+    assert grid.name == "arch"
+    assert grid.parts == Grid(grid.nodes).parts
+
+
+def test_too_few_coarse_nodes_are_refused() -> None:
+    with pytest.raises(InputError, match="8 coarse nodes along a direction are too few; use at least 9"):
+        solve_coarse(arch(100, 100), solve, 8, smooth=True)
