@@ -9,32 +9,38 @@ from meshonet_cli import options as o
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
+    "meshonet solve-pde duct.csv --res 400 --coarse 65 -o fine.vts",
 )
-MethodName = Literal["winslow"]
-
 
 # fmt: off
+Method = Annotated[
+    Literal["winslow"], typer.Option("--method", metavar="winslow", help="Equations to solve.")
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(
+        "--tol", metavar="T", show_default=False,
+        help="Stop at this residual, relative to that of the interpolated start. [default: where more "
+        "cycles change the grid by less than a finer one would]",
+    ),
+]
+MaxCycles = Annotated[
+    int, typer.Option("--max-cycles", metavar="N", min=1, help="Multigrid cycles at the most.")
+]
+Initial = Annotated[
+    str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
+]
+# fmt: on
+
+
 def solve_pde(
     boundary: o.Boundaries,
     output: o.Output,
     res: o.Resolution = None,
-    method: Annotated[
-        MethodName, typer.Option("--method", metavar="winslow", help="Equations to solve.")
-    ] = "winslow",
-    tol: Annotated[
-        float | None,
-        typer.Option(
-            "--tol", metavar="T", show_default=False,
-            help="Stop at this residual, relative to that of the interpolated start. [default: where more "
-            "cycles change the grid by less than a finer one would]",
-        ),
-    ] = None,
-    max_cycles: Annotated[
-        int, typer.Option("--max-cycles", metavar="N", min=1, help="Multigrid cycles at the most.")
-    ] = 30,
-    initial: Annotated[
-        str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
-    ] = None,
+    method: Method = "winslow",
+    tol: Tolerance = None,
+    max_cycles: MaxCycles = 30,
+    initial: Initial = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -59,6 +65,7 @@ def solve_pde(
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.session import Session
+    from meshonet_cli.solving import at_any_resolution
     from solvers.elliptic.solve import solve
 
     solvers = {"winslow": solve}
@@ -67,7 +74,7 @@ def solve_pde(
     settings["initial"] = initial_grid(initial)
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        partial(solvers[method], **settings),
+        at_any_resolution(partial(solvers[method], **settings), coarse),
         allow_invalid,
         parse_gates(fail_on),
     )
@@ -76,4 +83,3 @@ def solve_pde(
     return make_grids(
         boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
     )
-# fmt: on

@@ -60,12 +60,24 @@ def test_initial_starts_from_a_grid(meshonet: Meshonet, duct_h5: Path) -> None:
     assert told["cycles"] == 0
 
 
+def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_h5: Path) -> None:
+    meshonet("solve-pde", duct_h5, "--res", "80x60", "-o", "full.vts")
+    told = meshonet("solve-pde", duct_h5, "--res", "80x60", "--coarse", "33", "-o", "g.vts", "--json").only
+    assert (told["ni"], told["nj"], told["folded"], told["method"]) == (80, 60, 0, "winslow")
+    (full,), (grid,) = read_grids("full.vts"), read_grids("g.vts")
+    assert np.array_equal(grid.nodes[:, 0], full.nodes[:, 0])
+    distance = np.abs(grid.nodes - full.nodes).max() / np.ptp(full.nodes[..., 0])
+    assert 0 < distance < 2e-3
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
         (("--tol", "2"), "--tol: 2 is not between 0 and 1; use e.g. 1e-8"),
         (("--tol", "x"), "tol"),
         (("--max-cycles", "0"), "max-cycles"),
+        (("--coarse", "8"), "coarse"),
+        (("--coarse", "9", "--initial", "start.vts"), "drop --initial or --coarse"),
         (("--initial", "missing.vts"), "missing.vts: no such file"),
         (("--initial", "duct.h5"), "duct.h5: holds boundaries, not grids"),
         (("--res", "33", "--initial", "start.vts"), "the initial grid has 21x11 nodes, not 33x33"),

@@ -1,0 +1,31 @@
+"""What the options of `solve-pde` make of a solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from solvers.solution import Solution
+
+Method = Callable[[Boundary], Solution]
+
+
+def at_any_resolution(method: partial[Solution], coarse: int | None) -> Method:
+    """Return `method`, solving on `coarse` nodes a direction and evaluating at the boundary's when given.
+
+    Raises
+    ------
+    InputError
+        a grid to start from as well: it has the counts of the result.
+    """
+    if coarse is None:
+        return method
+    settings: dict[str, Any] = method.keywords
+    if settings.get("initial") is not None:
+        raise InputError("a coarse solve has no use for a grid to start from", "drop --initial or --coarse")
+    from solvers.coarse import solve_coarse
+
+    return partial(solve_coarse, method=method, n=coarse, smooth=True)
