@@ -27,6 +27,13 @@ Tolerance = Annotated[
 MaxCycles = Annotated[
     int, typer.Option("--max-cycles", metavar="N", min=1, help="Multigrid cycles at the most.")
 ]
+Coarse = Annotated[
+    int | None,
+    typer.Option(
+        "--coarse", metavar="N", min=9, show_default=False,
+        help="Solve on N x N nodes and evaluate at --res by splines. [default: solve at --res]",
+    ),
+]
 Initial = Annotated[
     str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
 ]
@@ -40,6 +47,7 @@ def solve_pde(
     method: Method = "winslow",
     tol: Tolerance = None,
     max_cycles: MaxCycles = 30,
+    coarse: Coarse = None,
     initial: Initial = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
