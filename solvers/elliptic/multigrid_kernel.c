@@ -48,7 +48,7 @@ MESHONET_INLINE Rows rows_at(const Level *g, ptrdiff_t i)
     return r;
 }
 
-enum { LANES = 8, BLOCK = 32 };
+enum { LANES = 8, BLOCK = 128 };
 
 static ptrdiff_t padded(ptrdiff_t n)
 {
@@ -71,8 +71,7 @@ typedef struct {
     ptrdiff_t stride;
 } EtaSystem;
 
-/* Assemble the tridiagonal system of eta line i in lane k. */
-MESHONET_INLINE void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
 {
     const Rows r = rows_at(g, i);
     const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
@@ -81,7 +80,7 @@ MESHONET_INLINE void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *
     double *restrict lower = s->lower + k * s->stride, *restrict upper = s->upper + k * s->stride;
     double *restrict diagonal = s->diagonal + k * s->stride;
     double *restrict bx = s->bx + k * s->stride, *restrict by = s->by + k * s->stride;
-    const double *restrict fx = forced ? g->fx + i * (mj + 1) : g->x, *restrict fy = forced ? g->fy + i * (mj + 1) : g->y;
+    const double *restrict fx = forced ? g->fx + i * (mj + 1) : 0, *restrict fy = forced ? g->fy + i * (mj + 1) : 0;
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 1; j < mj; j++) {
         const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
@@ -94,8 +93,18 @@ MESHONET_INLINE void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *
     upper[0] = 0.0, bx[0] = r.xc[0], by[0] = r.yc[0];
 }
 
+/* Assemble the tridiagonal system of eta line i in lane k. */
+MESHONET_CLONES
+static void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+{
+    if (forced)
+        eta_assemble_with(g, i, s, k, 1);
+    else
+        eta_assemble_with(g, i, s, k, 0);
+}
+
 /* Solve `lanes` systems side by side (their recurrences overlap) and write lines i, i + 2, ... */
-MESHONET_INLINE void eta_solve(const Level *g, ptrdiff_t i, const EtaSystem *s, int lanes)
+MESHONET_INLINE void eta_solve_with(const Level *g, ptrdiff_t i, const EtaSystem *s, int lanes)
 {
     const ptrdiff_t ld = g->mj + 1, mj = g->mj, st = s->stride;
     double up[LANES], px[LANES], py[LANES];
@@ -120,24 +129,52 @@ MESHONET_INLINE void eta_solve(const Level *g, ptrdiff_t i, const EtaSystem *s, 
         }
 }
 
-MESHONET_INLINE void eta_colour(const Level *g, int forced, int colour)
+MESHONET_CLONES
+static void eta_solve(const Level *g, ptrdiff_t i, const EtaSystem *s, int lanes)
+{
+    if (lanes == LANES)
+        eta_solve_with(g, i, s, LANES);
+    else
+        eta_solve_with(g, i, s, lanes);
+}
+
+/* Relax the `lines` (LANES at the most) eta lines i, i + 2, ... */
+static void eta_group(const Level *g, ptrdiff_t i, ptrdiff_t lines, int forced)
 {
     const ptrdiff_t stride = padded(g->mj);
     double *b = g->scratch;
     const EtaSystem s = {b, b + LANES * stride, b + 2 * LANES * stride, b + 3 * LANES * stride, b + 4 * LANES * stride, stride};
-    ptrdiff_t i = (g->periodic ? 0 : 1) + colour;
-    for (; i + 2 * (LANES - 1) < g->mi; i += 2 * LANES) {
-        for (int k = 0; k < LANES; k++)
-            eta_assemble(g, i + 2 * k, &s, k, forced);
-        eta_solve(g, i, &s, LANES);
-    }
-    for (; i < g->mi; i += 2) {
-        eta_assemble(g, i, &s, 0, forced);
-        eta_solve(g, i, &s, 1);
-    }
-    if (g->periodic && colour == 0) {
-        memcpy(g->x + g->mi * (g->mj + 1), g->x, (size_t)(g->mj + 1) * sizeof(double));
-        memcpy(g->y + g->mi * (g->mj + 1), g->y, (size_t)(g->mj + 1) * sizeof(double));
+    for (int k = 0; k < lines; k++)
+        eta_assemble(g, i + 2 * k, &s, k, forced);
+    eta_solve(g, i, &s, (int)lines);
+}
+
+static void close_ring(const Level *g)
+{
+    const ptrdiff_t last = g->mi * (g->mj + 1);
+    memcpy(g->x + last, g->x, (size_t)(g->mj + 1) * sizeof(double));
+    memcpy(g->y + last, g->y, (size_t)(g->mj + 1) * sizeof(double));
+}
+
+/* How many of k, k + 2, ... lie below `end`, `most` at the most. */
+static ptrdiff_t every_second(ptrdiff_t k, ptrdiff_t end, ptrdiff_t most)
+{
+    const ptrdiff_t n = k < end ? (end - k + 1) / 2 : 0;
+    return n < most ? n : most;
+}
+
+/* Both colours in one pass over memory: a group of lines of the second follows as soon as its neighbours of the
+   first are done. */
+static void eta_lines(const Level *g, int forced)
+{
+    const ptrdiff_t first = g->periodic ? 0 : 1, mi = g->mi;
+    for (ptrdiff_t i = first; i <= mi; i += 2 * LANES) {
+        eta_group(g, i, every_second(i, mi, LANES), forced);
+        if (g->periodic && i == 0)
+            close_ring(g);
+        const ptrdiff_t behind = i > first ? i - 1 : first + 1;
+        const ptrdiff_t ready = i + 2 * LANES - 2; /* later lines wait for the next group, unless there is none */
+        eta_group(g, behind, every_second(behind, ready < mi ? ready : mi, LANES), forced);
     }
 }
 
@@ -165,7 +202,7 @@ MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff
 }
 
 /* Fixed ends: lines j0, j0 + 2, ... (n of them) between rows 0 and mi. */
-MESHONET_INLINE void xi_block(const Level *g, ptrdiff_t j0, int n, int forced)
+MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int forced)
 {
     const ptrdiff_t mi = g->mi, ld = g->mj + 1;
     double *up = g->scratch, *px = up + BLOCK * (mi + 1), *py = px + BLOCK * (mi + 1);
@@ -255,51 +292,45 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
     }
 }
 
-MESHONET_INLINE void xi_colour(const Level *g, int forced, int colour)
+MESHONET_CLONES
+static void xi_group(const Level *g, ptrdiff_t j0, ptrdiff_t lines, int forced)
 {
-    const ptrdiff_t lines = (g->mj - 1 - colour + 1) / 2;
-    for (ptrdiff_t first = 0; first < lines; first += BLOCK) {
-        const int n = lines - first < BLOCK ? (int)(lines - first) : BLOCK;
-        const ptrdiff_t j0 = 1 + colour + 2 * first;
-        if (g->periodic)
-            xi_block_periodic(g, j0, n, forced);
-        else
-            xi_block(g, j0, n, forced);
+    if (g->periodic && forced)
+        xi_block_periodic(g, j0, (int)lines, 1);
+    else if (g->periodic)
+        xi_block_periodic(g, j0, (int)lines, 0);
+    else if (forced)
+        xi_block_fixed(g, j0, (int)lines, 1);
+    else
+        xi_block_fixed(g, j0, (int)lines, 0);
+}
+
+/* Both colours in one pass, as eta_lines. */
+static void xi_lines(const Level *g, int forced)
+{
+    const ptrdiff_t mj = g->mj;
+    for (ptrdiff_t j = 1; j <= mj; j += 2 * BLOCK) {
+        xi_group(g, j, every_second(j, mj, BLOCK), forced);
+        const ptrdiff_t behind = j > 1 ? j - 1 : 2, ready = j + 2 * BLOCK - 2;
+        xi_group(g, behind, every_second(behind, ready < mj ? ready : mj, BLOCK), forced);
     }
-}
-
-MESHONET_CLONES
-static void smooth_free(const Level *g)
-{
-    eta_colour(g, 0, 0), eta_colour(g, 0, 1);
-    xi_colour(g, 0, 0), xi_colour(g, 0, 1);
-}
-
-MESHONET_CLONES
-static void smooth_forced(const Level *g)
-{
-    eta_colour(g, 1, 0), eta_colour(g, 1, 1);
-    xi_colour(g, 1, 0), xi_colour(g, 1, 1);
 }
 
 void multigrid_smooth(const Level *level, int forced)
 {
-    if (forced)
-        smooth_forced(level);
-    else
-        smooth_free(level);
+    eta_lines(level, forced);
+    xi_lines(level, forced);
 }
 
 /* ---- residual, restriction, correction ---- */
 
-/* rx, ry [1 .. mj-1] = f - L(x) along row i. */
-MESHONET_INLINE void residual_row(const Level *g, ptrdiff_t i, int forced, double *restrict rx, double *restrict ry)
+MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, int forced, double *restrict rx, double *restrict ry)
 {
     const Rows r = rows_at(g, i);
     const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
     const Differences eta = g->eta;
-    const double *restrict fx = forced ? g->fx + i * (g->mj + 1) : g->x;
-    const double *restrict fy = forced ? g->fy + i * (g->mj + 1) : g->y;
+    const double *restrict fx = forced ? g->fx + i * (g->mj + 1) : 0;
+    const double *restrict fy = forced ? g->fy + i * (g->mj + 1) : 0;
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 1; j < g->mj; j++) {
         const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
@@ -311,6 +342,16 @@ MESHONET_INLINE void residual_row(const Level *g, ptrdiff_t i, int forced, doubl
     }
 }
 
+/* rx, ry [1 .. mj-1] = f - L(x) along row i. */
+MESHONET_CLONES
+static void residual_row(const Level *g, ptrdiff_t i, int forced, double *rx, double *ry)
+{
+    if (forced)
+        residual_row_with(g, i, 1, rx, ry);
+    else
+        residual_row_with(g, i, 0, rx, ry);
+}
+
 MESHONET_INLINE double squares(const double *restrict a, const double *restrict b, ptrdiff_t first, ptrdiff_t last)
 {
     double sum = 0.0;
@@ -320,30 +361,14 @@ MESHONET_INLINE double squares(const double *restrict a, const double *restrict 
 }
 
 MESHONET_CLONES
-static double residual_free(const Level *g)
+double multigrid_residual(const Level *g, int forced)
 {
     double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
     for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
-        residual_row(g, i, 0, rx, ry);
+        residual_row(g, i, forced, rx, ry);
         sum += squares(rx, ry, 1, g->mj);
     }
     return sum;
-}
-
-MESHONET_CLONES
-static double residual_forced(const Level *g)
-{
-    double sum = 0.0, *rx = g->scratch, *ry = rx + padded(g->mj);
-    for (ptrdiff_t i = g->periodic ? 0 : 1; i < g->mi; i++) {
-        residual_row(g, i, 1, rx, ry);
-        sum += squares(rx, ry, 1, g->mj);
-    }
-    return sum;
-}
-
-double multigrid_residual(const Level *level, int forced)
-{
-    return forced ? residual_forced(level) : residual_free(level);
 }
 
 static ptrdiff_t finer(ptrdiff_t coarse, ptrdiff_t last)
@@ -419,10 +444,7 @@ double multigrid_restrict(const Level *fine, const Level *coarse, int forced)
 {
     for (ptrdiff_t I = 0; I <= coarse->mi; I++)
         inject_row(fine, coarse, I);
-    if (forced)
-        restrict_residual(fine, coarse, 1);
-    else
-        restrict_residual(fine, coarse, 0);
+    restrict_residual(fine, coarse, forced);
     return add_operator(coarse);
 }
 
