@@ -81,8 +81,8 @@ class Outline:
         """Return the four edges of the domain, or the O boundary around the body.
 
         Spacing is by arc length on each edge (around all of the body): ``uniform`` and ``auto`` in equal
-        steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``. Corners of the curve
-        are nodes.
+        steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``; around a smooth body
+        ``auto`` is ``conformal`` (`geometry.conformal`). Corners of the curve are nodes.
 
         Raises
         ------
@@ -100,6 +100,8 @@ class Outline:
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None:
             topology = "quad"
+        if topology == "quad" and sampling.spacing == "conformal":
+            raise InputError("conformal spacing needs a body in a far field", "use another", source=self.name)
         return self._quad(sampling) if topology == "quad" else self._body(sampling)
 
     def _sharp(self) -> Indices:
@@ -177,17 +179,37 @@ class Outline:
 
     def _body(self, sampling: Sampling) -> Boundary:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
-        curve, p = self.curve, self.curve.points
-        right = np.flatnonzero(p[:, 0] >= p[:, 0].max() - 1e-9 * np.ptp(p[:, 0]))
-        begin = float(curve.knots[right[0]])
-        if len(right) > 1:  # a straight right side: its middle
-            a, b = (right[0], right[-1]) if right[-1] - right[0] == len(right) - 1 else (right[-1], right[0])
-            begin += (
-                0.5 * float((curve.knots[b] - curve.knots[a]) % curve.length) * (1 if a == right[0] else -1)
-            )
-        arcs = stretch_arcs(curve, begin, begin, ni - 1, sampling.spacing, forward=not self._left)
-        wall = curve.at(arcs)
+        curve = self._clockwise()
+        wall = curve.at(self._around(curve, ni, sampling))
         wall[-1] = wall[0]
-        box = np.stack([p.min(axis=0), p.max(axis=0)])
+        box = np.stack([curve.points.min(axis=0), curve.points.max(axis=0)])
         radius = sampling.far_field * float(np.ptp(box, axis=0).max())
         return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name)
+
+    def _clockwise(self) -> Curve:
+        """Return the curve clockwise from the rightmost place, the middle of a straight right side."""
+        order = np.arange(len(self.curve.points))[:: -1 if self._left else 1]
+        p, corner = self.curve.points[order], np.isin(order, self.curve.corner_index)
+        right = p[:, 0] >= p[:, 0].max() - 1e-9 * np.ptp(p[:, 0])
+        start = int(np.flatnonzero(right & ~np.roll(right, 1))[0]) if not right.all() else 0
+        p, corner, right = np.roll(p, -start, axis=0), np.roll(corner, -start), np.roll(right, -start)
+        if right[1]:  # from the topmost point of the right side down to its last
+            last = int(np.argmin(right)) - 1
+            middle = 0.5 * (p[0] + p[last])
+            inside = int(np.searchsorted(-p[: last + 1, 1], -middle[1]))
+            if p[inside, 1] != middle[1]:
+                p, corner = np.insert(p, inside, middle, axis=0), np.insert(corner, inside, False)
+            p, corner = np.roll(p, -inside, axis=0), np.roll(corner, -inside)
+        return Curve(p, closed=True, corners=np.flatnonzero(corner))
+
+    def _around(self, curve: Curve, ni: int, sampling: Sampling) -> Floats:
+        """Return the arc lengths (ni,) of the nodes around a body."""
+        if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
+            from geometry.conformal import conformal_knots
+
+            try:
+                return conformal_knots(curve, curve.corners[curve.corners > 0], ni)
+            except InputError:
+                if sampling.spacing == "conformal":
+                    raise
+        return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing)

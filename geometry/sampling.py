@@ -28,8 +28,8 @@ class Sampling:
     ni, nj : nodes along xi (around the body) and eta (away from it); None means what the shape has,
         and for a curve `DEFAULT_NI` and `DEFAULT_NJ`.
     topology : ``auto`` lets the shape choose.
-    spacing : law of the nodes along a wall; ``auto`` is for airfoils ``tanh`` with cells chosen by the
-        program, for other bodies ``uniform``.
+    spacing : law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
+        (``tanh`` where a cell is asked for), and ``uniform`` elsewhere.
     le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
     far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent.
     corners : the points, counted from 0, that become the corners of a quad domain.

@@ -55,7 +55,8 @@ def test_a_body_without_corners_is_surrounded(way, start):
     np.testing.assert_allclose(b.south[0], [4, 0], atol=1e-12)
     assert polygon_area(b.south[:-1]) < 0
     np.testing.assert_allclose(np.hypot(*(b.north - [3, 0]).T), 20, rtol=1e-9)
-    assert b.wall is outline.curve
+    np.testing.assert_array_equal(b.wall.at(np.zeros(1))[0], b.south[0])
+    assert polygon_area(b.wall.points) < 0
     assert b.name == "disc"
 
 
@@ -66,6 +67,13 @@ def test_a_square_body_starts_in_the_middle_of_its_right_side(start):
         np.testing.assert_allclose(b.south[0], [2, 0.5], atol=1e-12)
         for corner in SQUARE:
             assert np.hypot(*(b.south - corner).T).min() < 1e-12
+
+
+def test_a_smooth_body_gets_finer_cells_where_it_turns():
+    b = Outline(np.stack([2 * np.cos(T), 0.5 * np.sin(T)], axis=1)).boundary(Sampling(ni=61, nj=9))
+    steps = np.hypot(*np.diff(b.south, axis=0).T)
+    assert steps[0] < 0.5 * steps[15]
+    np.testing.assert_allclose(steps, steps[::-1], rtol=1e-9)
 
 
 def test_a_round_outline_can_be_a_quad_all_the_same():
@@ -98,6 +106,7 @@ def test_refuses_what_is_no_outline(points, message):
         (Sampling(topology="c"), "needs the trailing edge of an airfoil"),
         (Sampling(te_spacing=0.01), "le_spacing and te_spacing need an airfoil"),
         (Sampling(normalise=True), "only an airfoil can be normalised"),
+        (Sampling(spacing="conformal"), "conformal spacing needs a body"),
         (Sampling(corners=(0, 1, 2, 9)), "corner 9 of 4 points does not exist; use 0 to 3"),
         (Sampling(corners=(0, 2, 1, 3)), "are not in order along the outline"),
     ],
