@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
 import stat
 import sys
 from collections.abc import Iterator
@@ -17,6 +18,9 @@ from geometry.errors import InputError
 PART_SUFFIX = ".meshonet-part"
 """Ending of unfinished files, so that one left by a killed process can be recognised and removed."""
 
+_HOST = os.uname().nodename.split(".")[0]
+_PART = re.compile(rf"\..*\.{re.escape(_HOST)}-(\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}")
+_swept: set[Path] = set()
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 
 
@@ -90,10 +94,33 @@ def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
             f"make it: mkdir -p {printable(str(destination.parent))}",
             source=name,
         )
-    part = target.with_name(f".{target.name[:150]}.{os.getpid()}-{os.urandom(4).hex()}{PART_SUFFIX}")
+    _sweep(target.parent)
+    part = target.with_name(f".{target.name[:150]}.{_HOST}-{os.getpid()}-{os.urandom(4).hex()}{PART_SUFFIX}")
     # made here, not by tempfile, so that the permissions are those of the umask as for any new file
     os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     return part
+
+
+def _sweep(folder: Path) -> None:
+    """Remove what killed processes of this machine left unfinished in `folder`, once a process and folder."""
+    if folder in _swept:
+        return
+    _swept.add(folder)
+    with contextlib.suppress(OSError):  # a folder that may be written but not listed stays as it is
+        for entry in folder.iterdir():
+            match = _PART.fullmatch(entry.name)
+            if match and not _alive(int(match[1])):
+                entry.unlink(missing_ok=True)
+
+
+def _alive(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        return True
+    return True
 
 
 def _part_in_tmp() -> Path:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import stat
 import subprocess
@@ -40,6 +41,22 @@ def test_any_exception_leaves_the_old_file_and_no_part(error: type[BaseException
         stopped()
     assert target.read_text() == "old"
     assert file_names(tmp_path) == ["grid.vts"]
+
+
+def test_what_a_killed_process_left_is_swept_and_nothing_else(tmp_path: Path) -> None:
+    code = (
+        "import os, signal; from formats.output import whole_file\n"
+        f"with whole_file({str(tmp_path / 'a')!r}) as part:\n    os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    assert subprocess.run([PYTHON, "-c", code], timeout=60, check=False).returncode == -signal.SIGKILL
+    (left,) = file_names(tmp_path)
+    other = left.replace(os.uname().nodename.split(".")[0] + "-", "elsewhere-")
+    mine = re.sub(r"-\d+-", f"-{os.getpid()}-", left)
+    for name in (other, mine, "b", ".hidden" + PART_SUFFIX):
+        (tmp_path / name).touch()
+    with whole_file(str(tmp_path / "c")) as part:
+        part.touch()
+    assert file_names(tmp_path) == sorted([other, mine, "b", "c", ".hidden" + PART_SUFFIX])
 
 
 def test_permissions_are_those_of_any_new_file(tmp_path: Path) -> None:
