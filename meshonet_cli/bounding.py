@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 from formats.registry import read_shapes
 from geometry.boundary import Boundary
@@ -16,8 +16,6 @@ from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
-
-T = TypeVar("T", bound=Shape)
 
 
 @dataclass
@@ -47,7 +45,7 @@ class Sampler:
 
     sampling: Sampling
 
-    def boundary(self, item: Item[T]) -> tuple[Boundary, Sampled]:
+    def boundary(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
         """Return the boundary of one shape and what there is to tell of it."""
         begun = time.perf_counter()
         boundary = item.what.boundary(self.sampling)
@@ -56,33 +54,19 @@ class Sampler:
         return boundary, report
 
 
-def sample_shapes(
-    sources: Sequence[str],
-    sampling: Sampling,
-    destination: Destination,
-    session: Session,
-    *,
-    fmt: str | None = None,
-    skip_existing: bool = False,
-    jobs: int = 1,
-) -> int:
-    """Sample every shape of `sources` into `destination` and return the exit code."""
+def from_files(
+    sources: Sequence[str], output: str, to_format: str | None, session: Session, fmt: str | None
+) -> tuple[Iterator[Item[Any]], Destination]:
+    """Return the shapes of `sources` (in format `fmt`, or None to find out) and where they go."""
+    destination = Destination(output, to_format, "boundaries")
     prepare(sources, destination, session)
-    found = items(sources, lambda source: read_shapes(source, fmt), session)
-    return _sampled(found, sampling, destination, session, skip_existing, jobs)
+    return items(sources, lambda source: read_shapes(source, fmt), session), destination
 
 
-def sample_family(
-    drawn: tuple[str, int, str | None, int],
-    sampling: Sampling,
-    output: str,
-    to_format: str | None,
-    session: Session,
-    *,
-    skip_existing: bool = False,
-    jobs: int = 1,
-) -> int:
-    """Sample members of a family to `output` and return the exit code.
+def from_family(
+    drawn: tuple[str, int, str | None, int], output: str, to_format: str | None, session: Session
+) -> tuple[Iterator[Item[Any]], Destination]:
+    """Return members of a family and where they go.
 
     Parameters
     ----------
@@ -93,17 +77,20 @@ def sample_family(
     found = draws(*drawn, session)
     destination = family_file(output, to_format, drawn[0])
     prepare([drawn[0]], destination, session)
-    return _sampled(found, sampling, destination, session, skip_existing, jobs)
+    return found, destination
 
 
-def _sampled(
-    found: Iterator[Item[T]],
+def sample(
+    found: Iterator[Item[Any]],
     sampling: Sampling,
     destination: Destination,
     session: Session,
-    skip_existing: bool,
-    jobs: int,
+    *,
+    skip_existing: bool = False,
+    jobs: int = 1,
 ) -> int:
+    """Sample every shape of `found` into `destination` and return the exit code."""
+
     def tell(report: Sampled, path: str) -> None:
         report.finished(path)
         session.tell(report)

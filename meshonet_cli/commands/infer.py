@@ -12,24 +12,27 @@ EXAMPLES = (
     "meshonet infer airfoils/*.dat --res 200 -o 'grids/{stem}.vts'",
 )
 
-
 # fmt: off
+ModelName = Annotated[
+    str | None,
+    typer.Option(
+        "--model", metavar="NAME|PATH", show_default=False,
+        help="Operator: a shipped one, a .safetensors file, or base for none. "
+        "[default: the one shipped for the topology; see meshonet models]",
+    ),
+]
+Polish = Annotated[
+    str, typer.Option("--polish", metavar="auto|off|N", help="Elliptic steps after the operator.")
+]
+# fmt: on
+
+
 def infer(
     boundary: o.Boundaries,
     output: o.Output,
     res: o.Resolution = None,
-    model: Annotated[
-        str | None,
-        typer.Option(
-            "--model", metavar="NAME|PATH", show_default=False,
-            help="Operator: a shipped one, a .safetensors file, or base for none. "
-            "[default: the one shipped for the topology; see meshonet models]",
-        ),
-    ] = None,
-    polish: Annotated[
-        str,
-        typer.Option("--polish", metavar="auto|off|N", help="Elliptic steps after the operator."),
-    ] = "auto",
+    model: ModelName = None,
+    polish: Polish = "auto",
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -68,4 +71,3 @@ def infer(
     return make_grids(
         boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
     )
-# fmt: on

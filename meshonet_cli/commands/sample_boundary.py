@@ -12,36 +12,43 @@ EXAMPLES = (
     "meshonet sample-boundary naca:2412 -o - | meshonet tfi - -o - | meshonet quality -",
 )
 
-
 # fmt: off
+Source = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="SOURCE", show_default=False,
+        help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. "
+        "None with --family.",
+    ),
+]
+FamilyName = Annotated[
+    str | None,
+    typer.Option(
+        "--family", metavar="NAME", show_default=False,
+        help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of "
+        "the paper) or procedural (random airfoils). 101x101 nodes unless --res says otherwise.",
+    ),
+]
+Count = Annotated[int, typer.Option("--count", metavar="N", min=1, help="Members of the family.")]
+Range = Annotated[
+    str | None,
+    typer.Option(
+        "--range", metavar="A:B", show_default=False,
+        help="Range that the family's parameter is drawn from. [default: the paper's]",
+    ),
+]
+Seed = Annotated[int, typer.Option("--seed", metavar="S", min=0, help="Seed of the draw.")]
+# fmt: on
+
+
 def sample_boundary(
     output: o.Output,
-    source: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="SOURCE", show_default=False,
-            help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. "
-            "None with --family.",
-        ),
-    ] = None,
+    source: Source = None,
     res: o.Resolution = None,
-    family: Annotated[
-        str | None,
-        typer.Option(
-            "--family", metavar="NAME", show_default=False,
-            help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of "
-            "the paper) or procedural (random airfoils). 101x101 nodes unless --res says otherwise.",
-        ),
-    ] = None,
-    count: Annotated[int, typer.Option("--count", metavar="N", min=1, help="Members of the family.")] = 1,
-    spread: Annotated[
-        str | None,
-        typer.Option(
-            "--range", metavar="A:B", show_default=False,
-            help="Range that the family's parameter is drawn from. [default: the paper's]",
-        ),
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", metavar="S", min=0, help="Seed of the draw.")] = 0,
+    family: FamilyName = None,
+    count: Count = 1,
+    spread: Range = None,
+    seed: Seed = 0,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -58,21 +65,15 @@ def sample_boundary(
     debug: o.Debug = False,
 ) -> int:
     """Turn geometry into boundaries of four edges."""
-    from meshonet_cli.batch import Destination
-    from meshonet_cli.bounding import sample_family, sample_shapes
+    from meshonet_cli.bounding import from_family, from_files, sample
     from meshonet_cli.session import Session
 
+    o.either(source, family)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     sampling = o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths)
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
-    o.either(source, family)
     if family is not None:
-        drawn = (family, count, spread, seed)
-        return sample_family(
-            drawn, sampling, output, to_format, session, skip_existing=skip_existing, jobs=jobs
-        )
-    destination = Destination(output, to_format, "boundaries")
-    return sample_shapes(
-        source or [], sampling, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
-    )
-# fmt: on
+        found, destination = from_family((family, count, spread, seed), output, to_format, session)
+    else:
+        found, destination = from_files(source or [], output, to_format, session, from_format)
+    return sample(found, sampling, destination, session, skip_existing=skip_existing, jobs=jobs)
