@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import pytest
 from format_shapes import channel, memory
 
 from formats.plot3d.read import read_grids, sniff
+from formats.registry import format_named
 from geometry.errors import InputError
 
 GRID = channel(9, 6)
@@ -102,3 +104,15 @@ def test_two_readings_of_the_same_length_are_told_apart_by_their_cells() -> None
     data = text("1 9 6", values=" ".join(map(repr, [*span, *X.tolist(), *Y.tolist()])))
     (grid,) = read_grids(memory(data))
     assert np.array_equal(grid.nodes, GRID.nodes)
+
+
+def test_a_block_too_large_for_a_fortran_record_is_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("formats.plot3d.write.Block.bytes", 1 << 31)
+    writer = format_named("plot3d-fortran").write_grids
+    assert writer is not None
+    with pytest.raises(
+        InputError, match="2 GiB or more does not fit in a Fortran record; write plot3d-binary"
+    ):
+        writer(tmp_path / "g", [GRID])
