@@ -10,7 +10,7 @@ from pathlib import Path
 
 from formats.format import Format
 from formats.plot3d.read import read_grids, sniff
-from formats.plot3d.write import Put, put_binary, put_fortran, put_text, write
+from formats.plot3d.write import Put, put_binary, put_fortran, put_text, write_blocks
 from geometry.grid import Grid
 
 
@@ -18,10 +18,10 @@ def _format(
     name: str, suffixes: tuple[str, ...], description: str, put: Put, heights: tuple[float, ...] = ()
 ) -> Format:
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-        write(path, grids, put, heights)
+        write_blocks(path, grids, put, heights)
 
     def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-        write(path, grids, put, (0.0, thickness))
+        write_blocks(path, grids, put, (0.0, thickness))
 
     return Format(
         name=name,

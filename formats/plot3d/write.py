@@ -50,7 +50,7 @@ class Block:
         return 8 * numbers * self.grid.ni * self.grid.nj
 
 
-def write(path: Path, grids: Iterable[Grid], put: Put, heights: tuple[float, ...] = ()) -> None:
+def write_blocks(path: Path, grids: Iterable[Grid], put: Put, heights: tuple[float, ...] = ()) -> None:
     """Write the blocks of `grids` with one of the ways below.
 
     Raises
