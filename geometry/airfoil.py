@@ -145,7 +145,8 @@ class Airfoil:
             wall = body.wall(ni, sampling)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         radius = sampling.far_field * body.chord
-        return o_boundary(wall, sampling.nj or DEFAULT_NJ, centre, radius, body.curve, self.name)
+        nj = sampling.nj or DEFAULT_NJ
+        return o_boundary(wall, nj, centre, radius, body.curve, self.name, body.chord)
 
 
 def _fitted(section: Section, places: Sequence[str]) -> Curve:

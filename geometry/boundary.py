@@ -38,6 +38,8 @@ class Boundary:
     name : what the input called this shape.
     wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
         body between the nodes.
+    chord : the length that spacings are given in: the chord of an airfoil, the largest extent of another
+        body. 0 stands for the distance of the first node of `south` from the one farthest from it.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Boundary:
     parts: tuple[Part, ...] = ()
     name: str = ""
     wall: Curve | None = None
+    chord: float = 0.0
 
     def __post_init__(self) -> None:
         if self.topology not in TOPOLOGIES:
@@ -66,6 +69,9 @@ class Boundary:
                 raise InputError(
                     f"{one} has {n} nodes and {other} has {m}", "opposite edges need equal counts"
                 )
+        if not self.chord:
+            farthest = np.hypot(*(self.south - self.south[0]).T).max()
+            object.__setattr__(self, "chord", float(farthest))
         self._check_corners()
         object.__setattr__(self, "parts", tuple(self.parts) or default_parts(self.topology, self.ni, self.nj))
         check_parts(self.parts, self.ni, self.nj)

@@ -183,8 +183,8 @@ class Outline:
         wall = curve.at(self._around(curve, ni, sampling))
         wall[-1] = wall[0]
         box = np.stack([curve.points.min(axis=0), curve.points.max(axis=0)])
-        radius = sampling.far_field * float(np.ptp(box, axis=0).max())
-        return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name)
+        extent = float(np.ptp(box, axis=0).max())
+        return o_boundary(wall, nj, box.mean(axis=0), sampling.far_field * extent, curve, self.name, extent)
 
     def _clockwise(self) -> Curve:
         """Return the curve clockwise from the rightmost place, the middle of a straight right side."""

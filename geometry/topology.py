@@ -38,7 +38,13 @@ def _start(wall: Floats, centre: Floats) -> float:
 
 
 def o_boundary(
-    wall: Floats, nj: int, centre: Floats, radius: float, curve: Curve | None = None, name: str = ""
+    wall: Floats,
+    nj: int,
+    centre: Floats,
+    radius: float,
+    curve: Curve | None = None,
+    name: str = "",
+    chord: float = 0.0,
 ) -> Boundary:
     """Return the O boundary of a closed wall within a circle.
 
@@ -49,6 +55,7 @@ def o_boundary(
     centre, radius : of the far field.
     curve : the curve the wall was sampled from.
     name : of the shape.
+    chord : its unit for spacings, see `Boundary`.
 
     The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal
     map, which for a symmetric body is straight behind it: a grid in between is then not sheared. West and
@@ -57,4 +64,4 @@ def o_boundary(
     middle = np.asarray(centre, dtype=np.float64)
     north = far_circle(middle, radius, len(wall), _start(wall, middle))
     cut = straight(wall[0], north[0], nj)
-    return Boundary(wall, north, cut, cut, topology="o", name=name, wall=curve)
+    return Boundary(wall, north, cut, cut, topology="o", name=name, wall=curve, chord=chord)

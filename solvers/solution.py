@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from geometry.boundary import Boundary
 from geometry.grid import Grid
 
 
@@ -22,6 +23,7 @@ class Solution:
     path : the stages after the method itself, e.g. the guard's ``("repair",)``.
     seconds : wall-clock seconds by stage.
     notes : sentences a user should read, e.g. that a restart was needed.
+    boundary : of the grid, when it is not the one that was given: a march ends at a far field of its own.
     """
 
     grid: Grid
@@ -32,3 +34,4 @@ class Solution:
     path: tuple[str, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    boundary: Boundary | None = None

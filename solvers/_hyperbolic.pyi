@@ -1,0 +1,14 @@
+from geometry.arrays import Floats
+
+def scratch_size(n: int) -> int: ...
+def march(
+    x: Floats,
+    y: Floats,
+    steps: Floats,
+    dissipation: float,
+    implicit: float,
+    volume: float,
+    sweeps: int,
+    rise: int,
+    scratch: Floats,
+) -> None: ...

@@ -1,0 +1,33 @@
+"""Compiled hyperbolic marching; the equations stand in ``hyperbolic_kernel.c``."""
+
+cdef extern from "hyperbolic_kernel.h":
+    ctypedef struct MarchSettings:
+        double dissipation
+        double implicit
+        double volume
+        Py_ssize_t sweeps
+        Py_ssize_t rise
+    size_t hyperbolic_scratch(Py_ssize_t n) nogil
+    void hyperbolic_march(double *x, double *y, Py_ssize_t n, Py_ssize_t levels, const double *steps,
+                          const MarchSettings *settings, double *scratch) nogil
+
+
+def scratch_size(Py_ssize_t n):
+    """Return the doubles of scratch that a march over n nodes a level needs."""
+    return hyperbolic_scratch(n)
+
+
+def march(double[:, ::1] x, double[:, ::1] y, const double[::1] steps, double dissipation, double implicit,
+          double volume, Py_ssize_t sweeps, Py_ssize_t rise, double[::1] scratch):
+    """Fill levels 1 on of `x` and `y` (levels + 1, n) from level 0, a closed clockwise wall of n >= 3 nodes.
+
+    `steps` (levels) are the distances between levels; the others are those of ``hyperbolic_kernel.h``.
+    """
+    cdef Py_ssize_t n = x.shape[1], levels = x.shape[0] - 1
+    cdef MarchSettings settings = MarchSettings(dissipation, implicit, volume, sweeps, rise)
+    if y.shape[0] != x.shape[0] or y.shape[1] != n or steps.shape[0] != levels or n < 3 or levels < 1:
+        raise ValueError("x, y and steps do not fit together")
+    if <size_t>scratch.shape[0] < hyperbolic_scratch(n):
+        raise ValueError("too little scratch")
+    with nogil:
+        hyperbolic_march(&x[0, 0], &y[0, 0], n, levels, &steps[0], &settings, &scratch[0])

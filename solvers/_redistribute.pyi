@@ -1,0 +1,3 @@
+from geometry.arrays import Floats
+
+def redistribute(x: Floats, y: Floats, first: float, fade: Floats, scratch: Floats) -> None: ...

@@ -1,0 +1,222 @@
+"""Grids for boundary layers: marched from the wall, the first cell exactly as high as asked.
+
+::
+
+    wall --march--> levels, as far out as the far field --snap--> first cell exact --count folds--> grid
+              ^                    |                                                     |
+              +-- other distance --+<--------------- more dissipation ------------------+
+
+The equations stand in ``hyperbolic_kernel.c``. The far field is where the march ends, a circle but for the
+shape of the body; its area is that of the far field asked for.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Floats, planar_nodes
+from geometry.boundary import Boundary, polygon_area
+from geometry.errors import InputError, SolverError
+from geometry.grid import Grid
+from geometry.growth import cells_for_growth, growing_steps, growth_ratio
+from geometry.quality import count_folded
+from solvers._hyperbolic import march, scratch_size
+from solvers._redistribute import redistribute
+from solvers.solution import Solution
+
+_FADE = 12.0
+"""Rows over which the correction of the first cell fades out."""
+_REACHED = 0.01
+"""How near, as a part, the far field must come to the distance asked for."""
+_MOST_GROWTH = 1.5
+"""Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
+
+
+@dataclass(frozen=True)
+class MarchSettings:
+    """Knobs of the march.
+
+    Parameters
+    ----------
+    dissipation : coefficient of the smoothing along a level.
+    theta : the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is robuster.
+    sweeps : smoothing steps of the cells' areas along a level.
+    """
+
+    dissipation: float = 0.5
+    theta: float = 0.5
+    sweeps: int = 10
+
+
+ATTEMPTS = (
+    MarchSettings(),
+    MarchSettings(1.0, 0.5, 20),
+    MarchSettings(1.0, 1.0, 40),
+    MarchSettings(2.0, 2.0, 40),
+)
+"""Settings tried in turn while cells are folded."""
+
+
+def hyperbolic(
+    boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False
+) -> Solution:
+    """Return an O grid marched from the wall of `boundary`.
+
+    Parameters
+    ----------
+    boundary : ``o``; its wall is met bitwise, its far field says how far to march, and its `nj` how many rows
+        to take.
+    wall_spacing : distance of the first node from the wall in chords (`Boundary.chord`), met to 1e-8 of it.
+    growth : the largest ratio of neighbouring cells from the wall outwards; None takes what the rows need.
+    free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
+
+    Returns
+    -------
+    Solution
+        `boundary` of the solution is the one that the march ended at. The grid may be folded when
+        every attempt was.
+
+    Raises
+    ------
+    InputError
+        a topology other than ``o``; a spacing or growth out of range; rows that do not suffice.
+    SolverError
+        no attempt gave finite nodes.
+    """
+    begun = time.perf_counter()
+    first = _first_cell(boundary, wall_spacing, growth)
+    inner, outer = _radius(boundary.south[:-1]), _radius(boundary.north[:-1])
+    cells = _rows(boundary.nj - 1, first, outer - inner, growth, free_rows)
+    best, least = None, 0
+    for settings in ATTEMPTS:
+        nodes = _marched(boundary.south, cells, first, outer, settings)
+        if nodes is None:
+            continue
+        folded = count_folded(nodes)
+        if best is None or folded < least:
+            best, least = nodes, folded
+        if folded == 0:
+            break
+    if best is None:
+        raise SolverError("the march diverged from every start; use more nodes around the body or fewer rows")
+    return _solution(boundary, best, first, begun)
+
+
+def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -> float:
+    """Return the height of the first cell in the unit of the boundary, once all is checked."""
+    if boundary.topology != "o":
+        raise InputError(
+            f"hyperbolic marching cannot make a {boundary.topology} grid",
+            "use it around a body (topology o), or another method without a wall spacing",
+        )
+    if not 1e-9 <= wall_spacing <= 0.1:
+        raise InputError(f"a wall spacing of {wall_spacing:g} chords", "use 1e-9 to 0.1")
+    if growth is not None and not 1.0 < growth <= _MOST_GROWTH:
+        raise InputError(f"a growth of {growth:g}", "give the ratio of neighbouring cells, such as 1.15")
+    return wall_spacing * boundary.chord
+
+
+def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool) -> int:
+    """Return the number of cells from the wall to the far field."""
+    allowed = growth or _MOST_GROWTH
+    needed = cells_for_growth(first, distance, allowed)
+    if free and growth:
+        return needed
+    if needed > cells:
+        raise InputError(
+            f"{cells + 1} rows of nodes cannot reach the far field growing by {allowed:g} each",
+            f"use {needed + 1} rows or more",
+        )
+    growth_ratio(first, distance, cells)  # raises when even equal cells reach too far
+    return cells
+
+
+def _marched(wall: Floats, cells: int, first: float, outer: float, settings: MarchSettings) -> Floats | None:
+    """Return nodes (ni, cells + 1, 2) whose far field is as large as a circle of radius `outer`, or None.
+
+    Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
+    circle of the wall's area, and is corrected by marching again.
+    """
+    n = len(wall) - 1
+    levels = np.empty((2, cells + 1, n))
+    levels[:, 0] = wall[:-1].T
+    scratch = np.empty(scratch_size(n))
+    knobs = settings.dissipation, 1.0 + settings.theta, 0.16, settings.sweeps, round(0.75 * cells)
+    inner = _radius(wall[:-1])
+    distance = _distance_to_march(inner, outer, first, cells, knobs[1])
+    for _ in range(4):
+        steps = growing_steps(first, distance, cells)
+        march(levels[0], levels[1], steps, *knobs, scratch)
+        reached = _radius(levels[:, -1].T)
+        if not math.isfinite(reached):
+            return None
+        if abs(reached / outer - 1.0) < _REACHED:
+            break
+        distance *= outer / reached
+    nodes = planar_nodes(n + 1, cells + 1)
+    nodes[:-1] = levels.T
+    _snap(nodes, first, steps)
+    nodes[-1] = nodes[0]
+    return nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None
+
+
+def _radius(ring: Floats) -> float:
+    """Return the radius of the circle with the area of a closed polygon (n, 2)."""
+    return math.sqrt(abs(polygon_area(ring)) / math.pi)
+
+
+def _distance_to_march(inner: float, outer: float, first: float, cells: int, implicit: float) -> float:
+    """Return the sum of the steps that lead from a circle of radius `inner` to one of radius `outer`.
+
+    Around a circle a step s leads from r to r + s/(1 + f s/r), f being the weight of the flux along a level.
+    """
+    distance = outer - inner
+    for _ in range(8):
+        r = inner
+        for step in growing_steps(first, distance, cells).tolist():
+            r += step / (1.0 + implicit * step / r)
+        if abs(r - outer) < 1e-3 * outer:
+            break
+        distance *= (outer - inner) / (r - inner)
+    return distance
+
+
+def _snap(nodes: Floats, first: float, steps: Floats) -> None:
+    """Make every first cell `first` high, moving nodes along their lines less and less away from the wall.
+
+    The correction of row j fades like exp(-(j - 1)/m), slower than cells grow, so that rows keep their order.
+    """
+    rows = nodes.shape[1]
+    rate = math.log(steps[1] / steps[0]) if rows > 2 else 1.0
+    fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(_FADE, 1.5 / max(rate, 1e-3)))
+    if rows > 2:
+        redistribute(nodes[..., 0], nodes[..., 1], first, fade, np.empty(5 * rows))
+
+
+def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:
+    edges = Boundary(
+        boundary.south,
+        nodes[:, -1],
+        nodes[0],
+        nodes[-1],
+        topology="o",
+        name=boundary.name,
+        wall=boundary.wall,
+        chord=boundary.chord,
+    )
+    growth = growth_ratio(
+        first, float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).mean()), len(nodes[0]) - 1
+    )
+    note = f"first cell {first:.6g} at every wall node, growing by {growth:.3f} a row on average"
+    grid = Grid(nodes, "o", boundary.parts, boundary.name, {"method": "hyperbolic", "wall_spacing": first})
+    return Solution(
+        grid,
+        "hyperbolic",
+        seconds={"grid": time.perf_counter() - begun},
+        notes=(note,),
+        boundary=edges,
+    )

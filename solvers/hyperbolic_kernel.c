@@ -1,0 +1,190 @@
+/* Implicit hyperbolic marching from a closed wall, one level after another.
+
+   A new level r + dr solves, with the edges e- and e+ at a node, t the unit vector along their directions' sum,
+   w their mean length, n = i t the normal (vectors as complex numbers), s the step and V = s w the cell's area,
+       (I + (1 + theta) C d_xi - 2 eps D2) dr = n V/w + eps D2 r,      C v = t^2 i V/w^2 conj(v),
+   which is area conservation x_xi y_eta - x_eta y_xi = V and orthogonality r_xi . r_eta = 0, linearised about
+   the level below: Steger and Chaussee, SIAM J. Sci. Stat. Comput. 1 (1980) 431; areas smoothed along the level
+   and dissipation that grows with the level, where lines converge and at concave nodes: Chan and Steger, Appl.
+   Math. Comput. 51 (1992) 181. d_xi is the central, D2 the second difference; C is a symmetric 2x2 matrix
+   without trace. The periodic block-tridiagonal system is solved by elimination without the last node, whose
+   equation then closes it. */
+#include "hyperbolic_kernel.h"
+#include "clones.h"
+#include <math.h>
+#include <string.h>
+
+typedef struct {
+    double a, b, c, d; /* a b / c d */
+} Matrix;
+
+MESHONET_INLINE Matrix product(Matrix p, Matrix q)
+{
+    return (Matrix){p.a * q.a + p.b * q.c, p.a * q.b + p.b * q.d, p.c * q.a + p.d * q.c, p.c * q.b + p.d * q.d};
+}
+
+MESHONET_INLINE Matrix difference(Matrix p, Matrix q)
+{
+    return (Matrix){p.a - q.a, p.b - q.b, p.c - q.c, p.d - q.d};
+}
+
+MESHONET_INLINE Matrix inverse(Matrix p)
+{
+    const double over = 1.0 / (p.a * p.d - p.b * p.c);
+    return (Matrix){p.d * over, -p.b * over, -p.c * over, p.a * over};
+}
+
+/* Where the parts of the scratch begin; arrays marked halo have one value more at both ends. */
+typedef struct {
+    double *ex, *ey, *length;    /* halo: edges from node i to i + 1, and their lengths */
+    double *volume, *smoothed;   /* halo */
+    double *before;              /* sum of both edges at the node, on the level below */
+    double *p, *s, *eps, *rx, *ry;
+    double *bx, *by;             /* eliminated right side */
+    Matrix *next, *last;         /* eliminated coefficients of the next and of the last node */
+} March;
+
+size_t hyperbolic_scratch(ptrdiff_t n)
+{
+    return (size_t)(5 * (n + 2) + 8 * n + 2 * 4 * n);
+}
+
+static March parts(double *scratch, ptrdiff_t n)
+{
+    March m;
+    double **halo[] = {&m.ex, &m.ey, &m.length, &m.volume, &m.smoothed};
+    double **plain[] = {&m.before, &m.p, &m.s, &m.eps, &m.rx, &m.ry, &m.bx, &m.by};
+    m.next = (Matrix *)scratch, m.last = m.next + n;
+    scratch += 8 * n;
+    for (int k = 0; k < 5; k++, scratch += n + 2)
+        *halo[k] = scratch + 1;
+    for (int k = 0; k < 8; k++, scratch += n)
+        *plain[k] = scratch;
+    return m;
+}
+
+MESHONET_INLINE void wrap(double *values, ptrdiff_t n)
+{
+    values[-1] = values[n - 1], values[n] = values[0];
+}
+
+/* Unit edges, their lengths, and the smoothed areas of the cells between this level and the next. */
+MESHONET_INLINE void measure_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
+                                   double step, const MarchSettings *settings)
+{
+    double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length;
+    for (ptrdiff_t i = 0; i < n - 1; i++)
+        ex[i] = x[i + 1] - x[i], ey[i] = y[i + 1] - y[i];
+    ex[n - 1] = x[0] - x[n - 1], ey[n - 1] = y[0] - y[n - 1];
+    for (ptrdiff_t i = 0; i < n; i++) {
+        length[i] = sqrt(ex[i] * ex[i] + ey[i] * ey[i]);
+        ex[i] /= length[i], ey[i] /= length[i];
+    }
+    wrap(ex, n), wrap(ey, n), wrap(length, n);
+    double *from = m->volume, *to = m->smoothed;
+    for (ptrdiff_t i = 0; i < n; i++)
+        from[i] = 0.5 * step * (length[i] + length[i - 1]);
+    const double keep = 1.0 - settings->volume, give = 0.5 * settings->volume;
+    for (ptrdiff_t k = 0; k < settings->sweeps; k++) {
+        wrap(from, n);
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t i = 0; i < n; i++)
+            to[i] = keep * from[i] + give * (from[i - 1] + from[i + 1]);
+        double *swap = from;
+        from = to, to = swap;
+    }
+    if (from != m->volume)
+        memcpy(m->volume, from, (size_t)n * sizeof *from);
+}
+
+/* Coefficients p, s of (1 + theta) C/2 = [p s / s -p], dissipation eps and the right side of every node.
+   `growth` is sqrt(level / levels): the dissipation's, and in the exponent of the convergence of lines. */
+MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double growth, const MarchSettings *settings)
+{
+    for (ptrdiff_t i = 0; i < n; i++) {
+        const double ux = m->ex[i], uy = m->ey[i], both = m->length[i] + m->length[i - 1], w = 0.5 * both;
+        double tx = ux + m->ex[i - 1], ty = uy + m->ey[i - 1];
+        const double over = 1.0 / sqrt(tx * tx + ty * ty);
+        tx *= over, ty *= over;
+        const double rate = m->volume[i] / w, aspect = rate / w;
+        const double concave = tx * uy - ty * ux; /* n . e+: positive where the wall bends towards the grid */
+        double eps = settings->dissipation * growth * aspect;
+        if (!first)
+            eps *= fmin(fmax(pow(m->before[i] / both, 2.0 / growth), 0.1), 50.0);
+        if (concave > 0)
+            eps *= fmin(1.0 / (1.0 - concave * concave + 1e-6), 20.0);
+        m->before[i] = both;
+        const double weight = 0.5 * settings->implicit * aspect; /* half: d_xi is over two cells */
+        m->p[i] = -weight * 2.0 * tx * ty;
+        m->s[i] = weight * (tx * tx - ty * ty);
+        m->eps[i] = eps;
+        /* second difference of r by edges, which keeps its digits where the cells are small */
+        const double lp = m->length[i], lm = m->length[i - 1];
+        m->rx[i] = -ty * rate + eps * (lp * ux - lm * m->ex[i - 1]);
+        m->ry[i] = tx * rate + eps * (lp * uy - lm * m->ey[i - 1]);
+    }
+}
+
+/* Solve for dr and add it to the level (x, y), giving (to_x, to_y). */
+MESHONET_INLINE void solve_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
+                                 double *restrict to_x, double *restrict to_y)
+{
+    const ptrdiff_t k = n - 1; /* the bordering node */
+    double *restrict bx = m->bx, *restrict by = m->by;
+    Matrix next = {0, 0, 0, 0}, last = next;
+    double gx = 0, gy = 0;
+    for (ptrdiff_t i = 0; i < k; i++) {
+        const double p = m->p[i], s = m->s[i], e = 2.0 * m->eps[i];
+        const Matrix below = {-p - e, -s, -s, p - e}, above = {p - e, s, s, -p - e};
+        Matrix centre = {1.0 + 2.0 * e, 0, 0, 1.0 + 2.0 * e}, border;
+        double fx = m->rx[i], fy = m->ry[i];
+        if (i == 0) {
+            border = below;
+        } else {
+            const Matrix zero = {0, 0, 0, 0};
+            centre = difference(centre, product(below, next));
+            border = difference(zero, product(below, last));
+            fx -= below.a * gx + below.b * gy, fy -= below.c * gx + below.d * gy;
+        }
+        if (i == k - 1)
+            border.a += above.a, border.b += above.b, border.c += above.c, border.d += above.d;
+        const Matrix over = inverse(centre);
+        next = product(over, above), last = product(over, border);
+        gx = over.a * fx + over.b * fy, gy = over.c * fx + over.d * fy;
+        m->next[i] = next, m->last[i] = last, bx[i] = gx, by[i] = gy;
+    }
+    for (ptrdiff_t i = k - 2; i >= 0; i--) {
+        next = m->next[i];
+        bx[i] -= next.a * gx + next.b * gy, by[i] -= next.c * gx + next.d * gy;
+        gx = bx[i], gy = by[i];
+        last = difference(m->last[i], product(next, last));
+        m->last[i] = last;
+    }
+    const double p = m->p[k], s = m->s[k], e = 2.0 * m->eps[k];
+    const Matrix below = {-p - e, -s, -s, p - e}, above = {p - e, s, s, -p - e};
+    Matrix centre = {1.0 + 2.0 * e, 0, 0, 1.0 + 2.0 * e};
+    centre = difference(difference(centre, product(below, m->last[k - 1])), product(above, m->last[0]));
+    const double fx = m->rx[k] - (below.a * bx[k - 1] + below.b * by[k - 1]) - (above.a * bx[0] + above.b * by[0]);
+    const double fy = m->ry[k] - (below.c * bx[k - 1] + below.d * by[k - 1]) - (above.c * bx[0] + above.d * by[0]);
+    const Matrix over = inverse(centre);
+    const double dx = over.a * fx + over.b * fy, dy = over.c * fx + over.d * fy;
+    for (ptrdiff_t i = 0; i < k; i++) {
+        to_x[i] = x[i] + bx[i] - (m->last[i].a * dx + m->last[i].b * dy);
+        to_y[i] = y[i] + by[i] - (m->last[i].c * dx + m->last[i].d * dy);
+    }
+    to_x[k] = x[k] + dx, to_y[k] = y[k] + dy;
+}
+
+MESHONET_CLONES
+void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps,
+                      const MarchSettings *settings, double *scratch)
+{
+    const March m = parts(scratch, n);
+    for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
+        const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
+        const double growth = sqrt((double)risen / (double)levels);
+        measure_level(&m, x, y, n, steps[level], settings);
+        assemble(&m, n, level == 0, growth, settings);
+        solve_level(&m, x, y, n, x + n, y + n);
+    }
+}

@@ -1,0 +1,213 @@
+"""Hyperbolic marching: against circles, whose levels follow a scalar recursion; on airfoils."""
+
+import numpy as np
+import pytest
+
+from geometry.airfoil import Airfoil
+from geometry.arrays import Floats
+from geometry.boundary import Boundary, polygon_area
+from geometry.errors import InputError, SolverError
+from geometry.families import procedural
+from geometry.growth import growing_steps
+from geometry.naca import naca
+from geometry.outline import Outline
+from geometry.quality import count_folded
+from geometry.sampling import Sampling
+from geometry.topology import o_boundary
+from solvers import hyperbolic as module
+from solvers._hyperbolic import march, scratch_size
+from solvers.hyperbolic import hyperbolic
+
+DISSIPATION, THETA = 0.5, 0.5
+
+
+def circle(n: int, radius: float = 0.5) -> Floats:
+    angle = -2 * np.pi * np.arange(n + 1) / n
+    ring = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    ring[-1] = ring[0]
+    return ring
+
+
+def ellipse(n: int, nj: int, thickness: float = 0.4) -> Boundary:
+    return o_boundary(circle(n) * [1.0, thickness], nj, np.zeros(2), 10.0)
+
+
+def airfoil(name: str = "2412", ni: int = 200, nj: int = 80) -> Boundary:
+    return naca(name).boundary(Sampling(ni, nj, spacing="curvature"))
+
+
+def first_cells(nodes: Floats) -> Floats:
+    return np.asarray(np.hypot(*(nodes[:, 1] - nodes[:, 0]).T))
+
+
+def deviation(nodes: Floats) -> Floats:
+    """Degrees off 90 of all four corners of every cell."""
+    corners = [nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]]
+    found = []
+    for k, at in enumerate(corners):
+        u, v = corners[(k + 1) % 4] - at, corners[k - 1] - at
+        cosine = (u * v).sum(axis=-1) / np.hypot(*np.moveaxis(u, -1, 0)) / np.hypot(*np.moveaxis(v, -1, 0))
+        found.append(np.abs(np.degrees(np.arccos(cosine)) - 90.0))
+    return np.stack(found)
+
+
+def radii_of_levels(n: int, radius: float, steps: Floats) -> list[float]:
+    """The equations of the march, written down for concentric levels: one unknown a level."""
+    turn = 2 * np.pi / n
+    radii, before = [radius], 0.0
+    for level, step in enumerate(steps):
+        r, growth = radii[-1], np.sqrt(min(level + 1, round(0.75 * len(steps))) / len(steps))
+        width = 2 * r * np.sin(turn / 2)
+        eps = DISSIPATION * growth * step / width
+        if level:
+            eps *= np.clip((before / width) ** (2 / growth), 0.1, 50.0)
+        bend = 2 - 2 * np.cos(turn)
+        advance = (step - eps * bend * r) / (1 + (1 + THETA) * step / width * np.sin(turn) + 2 * eps * bend)
+        radii.append(r + advance)
+        before = width
+    return radii
+
+
+@pytest.mark.parametrize("n", [3, 4, 7, 64, 250])
+def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int) -> None:
+    steps = growing_steps(1e-4, 3.0, 40)
+    levels = np.empty((2, 41, n))
+    levels[:, 0] = circle(n)[:-1].T
+    march(levels[0], levels[1], steps, DISSIPATION, 1 + THETA, 0.16, 10, 30, np.empty(scratch_size(n)))
+    expected = np.multiply.outer(radii_of_levels(n, 0.5, steps), circle(n, 1.0)[:-1])
+    np.testing.assert_allclose(np.moveaxis(levels, 0, -1), expected, rtol=0, atol=1e-11)
+
+
+def test_around_a_circle_lines_are_radial_and_cells_grow_evenly() -> None:
+    boundary = o_boundary(circle(100), 60, np.zeros(2), 15.0)
+    nodes = hyperbolic(boundary, wall_spacing=1e-4).grid.nodes
+    radius = np.hypot(nodes[..., 0], nodes[..., 1])
+    np.testing.assert_allclose(
+        nodes / radius[..., None], np.repeat(nodes[:, :1] / 0.5, 60, axis=1), atol=1e-12
+    )
+    np.testing.assert_allclose(radius, np.tile(radius[0], (100 + 1, 1)), rtol=1e-11)
+    heights = np.diff(radius[0])
+    assert heights[0] == pytest.approx(1e-4, rel=1e-10)
+    assert np.ptp(heights[1:] / heights[:-1]) < 0.05
+    assert radius[0, -1] == pytest.approx(15.0, rel=0.01)
+
+
+@pytest.mark.parametrize("spacing", [1e-3, 1e-5, 1e-6])
+def test_the_first_cell_is_what_was_asked_for_at_every_wall_node(spacing: float) -> None:
+    for name in ("0012", "4415"):
+        boundary = airfoil(name, nj=120)
+        nodes = hyperbolic(boundary, wall_spacing=spacing).grid.nodes
+        np.testing.assert_allclose(first_cells(nodes), spacing * boundary.chord, rtol=1e-8)
+        assert count_folded(nodes) == 0
+
+
+def test_wall_and_seam_are_met_bitwise_and_the_far_field_in_area() -> None:
+    boundary = airfoil()
+    solution = hyperbolic(boundary, wall_spacing=1e-5)
+    nodes = solution.grid.nodes
+    np.testing.assert_array_equal(nodes[:, 0], boundary.south)
+    np.testing.assert_array_equal(nodes[0], nodes[-1])
+    assert polygon_area(nodes[:-1, -1]) == pytest.approx(polygon_area(boundary.north[:-1]), rel=0.025)
+    assert solution.method == "hyperbolic"
+    assert solution.boundary is not None
+    np.testing.assert_array_equal(solution.boundary.north, nodes[:, -1])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_cell_is_folded_around_procedural_airfoils(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    for spacing in (1e-4, 1e-5, 1e-6):
+        for _ in range(6):
+            drawn = procedural.boundary(rng, 160, 90)
+            nodes = hyperbolic(drawn, wall_spacing=spacing).grid.nodes
+            assert count_folded(nodes) == 0
+            np.testing.assert_allclose(first_cells(nodes), spacing * drawn.chord, rtol=1e-8)
+
+
+def test_cells_come_closer_to_right_angles_as_the_grid_is_refined() -> None:
+    n = np.array([50, 100, 200])
+    mean = [deviation(hyperbolic(ellipse(k, k // 2), wall_spacing=0.05 / k).grid.nodes).mean() for k in n]
+    slope = -np.polyfit(np.log(n), np.log(mean), 1)[0]
+    assert slope > 0.8
+    assert mean[-1] < 1.0
+
+
+def test_the_grid_moves_turns_and_grows_with_the_body() -> None:
+    boundary = ellipse(80, 40)
+    nodes = hyperbolic(boundary, wall_spacing=1e-4).grid.nodes
+    turn = np.array([[0.6, 0.8], [-0.8, 0.6]])
+    moved = [30.0 * edge @ turn + [5.0, -7.0] for edge in (boundary.south, boundary.north, boundary.west)]
+    for edge in moved[:2]:
+        edge[-1] = edge[0]
+    moved[2][0], moved[2][-1] = moved[0][0], moved[1][0]
+    other = Boundary(moved[0], moved[1], moved[2], moved[2], topology="o")
+    found = hyperbolic(other, wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(found, 30.0 * nodes @ turn + [5.0, -7.0], atol=1e-6)
+
+
+def test_free_rows_are_as_many_as_the_growth_needs() -> None:
+    boundary = airfoil()
+    free = hyperbolic(boundary, wall_spacing=1e-5, growth=1.1, free_rows=True).grid
+    assert free.nj > boundary.nj
+    needed = hyperbolic(airfoil(nj=free.nj), wall_spacing=1e-5, growth=1.1).grid
+    np.testing.assert_array_equal(needed.nodes, free.nodes)
+    heights = np.hypot(*np.moveaxis(np.diff(free.nodes, axis=1), -1, 0))
+    assert np.median(heights[:, 1:] / heights[:, :-1]) == pytest.approx(1.1, abs=0.01)
+    with pytest.raises(InputError, match=f"use {free.nj} rows or more"):
+        hyperbolic(airfoil(nj=free.nj - 1), wall_spacing=1e-5, growth=1.1)
+
+
+def test_three_nodes_are_enough_two_rows_are_not() -> None:
+    boundary = o_boundary(circle(3), 2, np.zeros(2), 2.0)
+    with pytest.raises(
+        InputError, match=r"2 rows of nodes cannot reach the far field growing by 1[.]5 each; use 11 rows"
+    ):
+        hyperbolic(boundary, wall_spacing=0.01)
+    assert hyperbolic(o_boundary(circle(3), 9, np.zeros(2), 2.0), wall_spacing=0.05).grid.nj == 9
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ({"wall_spacing": 0.0}, "a wall spacing of 0 chords; use 1e-9 to 0.1"),
+        ({"wall_spacing": float("nan")}, "a wall spacing of nan chords; use 1e-9 to 0.1"),
+        (
+            {"wall_spacing": 1e-5, "growth": 0.2},
+            "a growth of 0.2; give the ratio of neighbouring cells, such as",
+        ),
+        (
+            {"wall_spacing": 1e-5, "growth": 1.01},
+            "40 rows of nodes cannot reach the far field growing by 1.01 each; use ",
+        ),
+        ({"wall_spacing": 0.1}, "cells, of which the first is"),
+    ],
+)
+def test_values_out_of_range_are_named(settings: dict[str, float], told: str) -> None:
+    with pytest.raises(InputError) as error:
+        hyperbolic(ellipse(80, 120 if settings["wall_spacing"] == 0.1 else 40), **settings)
+    assert told in str(error.value)
+
+
+def test_a_four_sided_domain_is_refused() -> None:
+    t = np.linspace(0.0, 1.0, 9)
+    south, west = np.stack([t, 0 * t], axis=1), np.stack([0 * t, t], axis=1)
+    quad = Boundary(south, south + np.array([0, 1]), west, west + np.array([1, 0]))
+    with pytest.raises(InputError, match="hyperbolic marching cannot make a quad grid; use it around a body"):
+        hyperbolic(quad, wall_spacing=1e-3)
+
+
+def test_a_march_that_is_not_finite_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    def spoilt(x: Floats, *rest: object) -> None:
+        x[1:] = np.nan
+
+    monkeypatch.setattr(module, "march", spoilt)
+    with pytest.raises(SolverError, match="the march diverged from every start; use more nodes"):
+        hyperbolic(ellipse(20, 20), wall_spacing=1e-2)
+
+
+def test_spacings_are_in_chords_of_the_body() -> None:
+    points = naca("2412").curve.points * 40.0 + 3.0
+    assert Airfoil(points).boundary(Sampling(80, 60)).chord == pytest.approx(40.0, rel=1e-4)
+    box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
+    assert Outline(box).boundary(Sampling(80, 60, topology="o")).chord == 4.0
+    assert ellipse(80, 40).chord == pytest.approx(1.0)
