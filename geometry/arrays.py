@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,15 @@ Side: TypeAlias = Literal["south", "east", "north", "west"]
 
 TOPOLOGIES: tuple[Topology, ...] = ("quad", "o", "c")
 SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
+
+
+AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
+
+
+def distinct(values: AnyArray) -> AnyArray:
+    """Return the sorted distinct values of a one-dimensional array. np.unique loads numpy.ma: 25 ms."""
+    ordered = np.sort(values)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
 
 def planar_nodes(ni: int, nj: int) -> Floats:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, distinct
 from geometry.corners import Indices, find_corners
 from geometry.errors import InputError
 from geometry.sampling import monotone_cubic
@@ -70,7 +70,7 @@ class Curve:
         if corners is None:
             self.corner_index = find_corners(self.points, closed=closed)
         else:
-            self.corner_index = np.unique(np.asarray(corners, dtype=np.intp))
+            self.corner_index = distinct(np.asarray(corners, dtype=np.intp))
             if self.corner_index.size and (self.corner_index[0] < 0 or self.corner_index[-1] >= n):
                 raise InputError(
                     f"a curve of {n} points has no corner {self.corner_index[-1]}", "count points from 0"
@@ -170,7 +170,7 @@ def resample_like(nodes: Floats, m: int, *, closed: bool) -> Floats:
     n = len(nodes)
     curve = Curve(nodes, closed=closed)
     knots = np.append(curve.knots, curve.length) if closed else curve.knots
-    stops = np.unique(np.concatenate([[0], curve.corner_index, [n - 1]]))
+    stops = distinct(np.concatenate([[0], curve.corner_index, [n - 1]]))
     place = np.rint(stops * ((m - 1) / (n - 1))).astype(np.intp)
     kept = np.concatenate([[True], (np.diff(place[:-1]) > 0) & (place[1:-1] < m - 1), [True]])
     s = np.empty(m)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, distinct
 from geometry.boundary import polygon_area
 from geometry.corners import Indices, find_corners, turning
 from geometry.errors import InputError
@@ -102,7 +102,7 @@ def _distinct(points: Floats, tolerance: float) -> Indices:
     half = n // 2
     first = _thinned(points[: half + 1], tolerance)
     second = n - 1 - _thinned(points[half:][::-1], tolerance)[::-1]
-    keep = np.union1d(first, second)
+    keep = distinct(np.concatenate([first, second]))
     # the two halves meet in the middle, where both kept their last point
     close = np.flatnonzero(np.hypot(*np.diff(points[keep], axis=0).T) <= tolerance)
     inner = close[(close > 0) & (close < len(keep) - 2)] + 1

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from geometry._spline import solve_tridiagonal
-from geometry.arrays import Floats
+from geometry.arrays import Floats, distinct
 from geometry.corners import Indices
 from geometry.limits import limited
 
@@ -35,7 +35,7 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
         start, stop = _pieces(np.concatenate([ring, ring[:1]]), np.append(corners - shift, len(points)))
         start, stop = np.roll(start, shift, axis=0), np.roll(stop, shift, axis=0)
     else:
-        start, stop = _pieces(points, np.unique(np.concatenate([[0], corners, [len(points) - 1]])))
+        start, stop = _pieces(points, distinct(np.concatenate([[0], corners, [len(points) - 1]])))
     return limited(points, start, stop, closed=closed, corners=corners)
 
 

@@ -6,7 +6,6 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from solvers.neural.network import Reals, forward
 from solvers.neural.strip import LEVELS
 
 DEFAULT = "airfoil-o"
+FOLDER = Path(__file__).parent / "pretrained"
 KIND = "meshonet strip operator"
 HEADER = "meshonet"  # the metadata entry that holds the header as JSON
 LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
@@ -47,19 +47,14 @@ class Model:
 
 def shipped() -> tuple[str, ...]:
     """Return the names of the models in the package."""
-    folder = resources.files("solvers.neural") / "pretrained"
-    return tuple(
-        sorted(
-            f.name.removesuffix(".safetensors") for f in folder.iterdir() if f.name.endswith(".safetensors")
-        )
-    )
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.safetensors")))
 
 
 def model_path(name: str | None) -> Path:
     """Return the file of a shipped model's name, of a path, or of the default."""
     name = name or DEFAULT
     if name in shipped():
-        return Path(str(resources.files("solvers.neural") / "pretrained" / f"{name}.safetensors"))
+        return FOLDER / f"{name}.safetensors"
     path = Path(name)
     if path.is_file():
         return path

@@ -77,8 +77,7 @@ def test_translation_rotation_and_scale_leave_the_strip_alone(body: str) -> None
 def test_a_sharp_edge_is_one_corner_and_a_blunt_edge_two() -> None:
     blunt = naca("0012")
     assert lift_body(blunt)[2] == (1, len(blunt) - 1)
-    sharp = np.concatenate([[1.0], blunt[2:-1]])
-    assert lift_body(sharp)[2] == (0,)
+    assert lift_body(naca("0012-sharp"))[2] == (0,)
 
 
 def test_too_few_nodes_are_refused_with_a_remedy() -> None:
