@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 from conftest import Meshonet, Process
 
+from meshonet_cli.drawing import Picture, picture_file
+
 
 @pytest.fixture
 def grid_vts(meshonet: Meshonet, body_h5: Path) -> Path:
@@ -37,8 +39,12 @@ def test_json_says_what_was_drawn(meshonet: Meshonet, grid_vts: Path) -> None:
 
 
 def test_a_picture_goes_to_standard_output(meshonet: Meshonet, process: Process, grid_vts: Path) -> None:
-    assert process("plot", grid_vts, "-o", "-").stdout.startswith(b"\x89PNG")
     assert process("plot", grid_vts, "-o", "-", "--to", "pdf").stdout.startswith(b"%PDF")
+
+
+def test_standard_output_is_a_png_unless_told() -> None:
+    assert picture_file("-", None, Picture()).format.name == "png"
+    assert picture_file("-", "svg", Picture()).format.name == "svg"
 
 
 def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) -> None:
