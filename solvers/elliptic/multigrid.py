@@ -97,17 +97,25 @@ class Multigrid:
                 self.cycle(k)
         return start
 
-    def cycle(self, k: int = 0, forced: bool = False) -> None:
-        """Run one V-cycle from level `k` down and back."""
+    def cycle(self, k: int = 0, forced: bool = False) -> float:
+        """Run one V-cycle from level `k` down and back.
+
+        Returns
+        -------
+        float
+            root mean square of the correction that came from the coarser level, in units of length: close
+            to the error of level `k` before the cycle. 0 on the coarsest level.
+        """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)
-            return
+            return 0.0
         fine, coarse = self.levels[k], self.levels[k + 1]
         fine.smooth(forced, self.settings.sweeps)
         fine.restrict(coarse, forced)
         self.cycle(k + 1, True)
-        fine.correct(coarse)
+        correction = float(np.sqrt(fine.correct(coarse) / coarse.x.size))
         fine.smooth(forced, self.settings.sweeps)
+        return correction
 
     def _relax_coarsest(self, forced: bool, reduction: float, rounds: int) -> None:
         level = self.levels[-1]

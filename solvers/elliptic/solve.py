@@ -13,8 +13,15 @@ from geometry.grid import Grid
 from solvers.elliptic.multigrid import Multigrid, Settings
 from solvers.solution import Solution
 
-ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=2), Settings(coarsest=64, sweeps=4))
-"""Settings tried in turn when the residual grows or is not finite."""
+ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
+"""Settings tried in turn when the residual grows, stalls or is not finite.
+
+Around slits and spikes, one sweep leaves coarse levels with corrections that the fine one cannot follow.
+"""
+
+
+SOLVED = 1e-4
+"""Relative residual that counts as discretisation level when there is no better estimate."""
 
 
 class _DivergedError(Exception):
@@ -58,6 +65,8 @@ def solve(
             notes += (f"attempt {k + 1} diverged ({error})",)
             initial = None
             continue
+        if tol is not None and residual > tol:
+            notes += (f"stopped after {cycles} cycles at residual {residual:.1e}, short of {tol:g}",)
         facts = {"method": "winslow", "residual": residual, "cycles": cycles}
         grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
         spent = {"grid": time.perf_counter() - begun}
@@ -84,16 +93,41 @@ def _attempt(
         nodes[inside, 1:-1] = initial.nodes[inside, 1:-1]
     if start == 0.0:
         return nodes, 0.0, 0
-    goal = (tol if tol is not None else 1e-3) * start
-    residual = last = levels.residual()
-    cycles = 0
-    while not residual <= goal and cycles < max_cycles:
-        levels.cycle()
-        cycles += 1
-        last, residual = residual, levels.residual()
-        if not np.isfinite(residual) or residual > 10 * max(last, goal):
-            raise _DivergedError(f"residual {residual / start:.1e} after {cycles} cycles")
-    return nodes, residual / start, cycles
+    goal = (SOLVED if tol is None else tol) * start
+    estimate = tol is None and initial is None
+    residuals = [levels.residual()]
+    corrections: list[float] = []
+    while not residuals[-1] <= goal and len(corrections) < max_cycles:
+        corrections.append(levels.cycle())
+        residuals.append(levels.residual())
+        if _diverges(residuals, start, 1.5 if settings == ATTEMPTS[0] else 10.0):
+            raise _DivergedError(f"residual {residuals[-1] / start:.1e} after {len(corrections)} cycles")
+        if estimate and residuals[-1] < 0.5 * start and _at_discretisation_level(corrections):
+            break
+    return nodes, residuals[-1] / start, len(corrections)
+
+
+def _diverges(residuals: list[float], start: float, growth: float) -> bool:
+    """Return whether the residual is not finite, grows by `growth`, or stands still well above round-off."""
+    if not np.isfinite(residuals[-1]):
+        return True
+    if len(residuals) < 3 or residuals[-1] < 1e-6 * start:
+        return False
+    stalled = len(residuals) > 8 and residuals[-1] > 0.9 * residuals[-4]
+    return stalled or residuals[-1] > growth * residuals[-2]
+
+
+def _at_discretisation_level(corrections: list[float]) -> bool:
+    """Return whether the error left by the cycles is below that of the discretisation.
+
+    After nested iteration the first correction is about what refining has changed, three times the
+    discretisation error of a second-order scheme. Corrections shrink as the error does, so the one after
+    the last would be c ρ, and all to come c ρ / (1 - ρ), with ρ the ratio of the last two.
+    """
+    if len(corrections) < 2 or corrections[-1] == 0.0:
+        return False
+    rate = corrections[-1] / corrections[-2]
+    return rate < 0.9 and corrections[-1] * rate / (1.0 - rate) <= corrections[0] / 6.0
 
 
 def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:

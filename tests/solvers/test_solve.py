@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from solver_shapes import arch, corner_jacobians, folded, hexagon, hole, naca, quad, wrench
+from solver_shapes import arch, corner_jacobians, folded, hexagon, hole, naca, quad, spike, wrench
 
 from geometry.boundary import Boundary
 from geometry.errors import InputError, SolverError
@@ -148,11 +148,12 @@ def test_divergence_is_tried_again_and_told(monkeypatch: pytest.MonkeyPatch) -> 
     honest = module.Multigrid.cycle
     calls = []
 
-    def spoiled(self: module.Multigrid, k: int = 0, forced: bool = False) -> None:
-        honest(self, k, forced)
+    def spoiled(self: module.Multigrid, k: int = 0, forced: bool = False) -> float:
+        correction = honest(self, k, forced)
         if k == 0 and self.settings == module.ATTEMPTS[0]:
             calls.append(k)
             self.levels[0].x[1, 1] = np.nan
+        return correction
 
     monkeypatch.setattr(module.Multigrid, "cycle", spoiled)
     solution = solve(arch(100, 100))
@@ -162,12 +163,27 @@ def test_divergence_is_tried_again_and_told(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_divergence_from_every_start_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
-    def spoiled(self: module.Multigrid, k: int = 0, forced: bool = False) -> None:
+    def spoiled(self: module.Multigrid, k: int = 0, forced: bool = False) -> float:
         self.levels[0].x[1, 1] = np.inf
+        return 1.0
 
     monkeypatch.setattr(module.Multigrid, "cycle", spoiled)
     with pytest.raises(SolverError, match=r"diverged from every start .* use more nodes or tfi"):
         solve(arch(100, 100))
+
+
+@pytest.mark.parametrize("n", [101, 200])
+def test_a_spike_that_one_sweep_diverges_on_is_solved_by_more(n: int) -> None:
+    solution = solve(spike(n, n), tol=1e-8, max_cycles=60)
+    assert "diverged" in solution.notes[0]
+    assert solution.residual is not None
+    assert solution.residual <= 1e-8
+
+
+def test_cycles_that_do_not_reach_the_tolerance_are_told() -> None:
+    solution = solve(wrench(100, 100), tol=1e-10, max_cycles=4)
+    assert solution.cycles == 4
+    assert solution.notes == (f"stopped after 4 cycles at residual {solution.residual:.1e}, short of 1e-10",)
 
 
 def test_a_far_from_valid_start_still_ends_at_the_solution() -> None:
