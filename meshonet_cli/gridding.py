@@ -63,6 +63,8 @@ class Recipe:
         solution = self.method(boundary)
         clock.lap("grid", inside={"guard": solution.seconds.get("guard", 0.0)})
         grid, path = self._guarded(solution, boundary)
+        told = ["the guard changed cells: the first ones are no longer all as high as asked"]
+        told = told if path and solution.method == "hyperbolic" else []
         clock.lap("guard")
         quality = measure(grid, percentiles=need_percentiles(self.gates))
         clock.lap("quality")
@@ -77,7 +79,7 @@ class Recipe:
             path=(*solution.path, *path),
             residual=solution.residual,
             cycles=solution.cycles,
-            notes=solution.notes,
+            notes=(*solution.notes, *told),
         )
         report.seconds |= clock.seconds
         return grid.with_provenance(**provenance(), **self.facts), report
@@ -85,7 +87,7 @@ class Recipe:
     def _guarded(self, solution: Solution, boundary: Boundary) -> tuple[Grid, tuple[str, ...]]:
         grid = solution.grid
         if self.repair:
-            return guard(grid, boundary, allow_invalid=self.allow_invalid)
+            return guard(grid, solution.boundary or boundary, allow_invalid=self.allow_invalid)
         folded = count_folded(grid.nodes)
         if folded and not self.allow_invalid:
             cells = (grid.ni - 1) * (grid.nj - 1)

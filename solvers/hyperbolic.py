@@ -108,16 +108,24 @@ def hyperbolic(
 
 def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -> float:
     """Return the height of the first cell in the unit of the boundary, once all is checked."""
+    check_layers(wall_spacing, growth)
     if boundary.topology != "o":
         raise InputError(
             f"hyperbolic marching cannot make a {boundary.topology} grid",
             "use it around a body (topology o), or another method without a wall spacing",
         )
+    return wall_spacing * boundary.chord
+
+
+def check_layers(wall_spacing: float, growth: float | None = None) -> None:
+    """Raise InputError unless `wall_spacing` (chords) and `growth` are values that `hyperbolic` takes."""
     if not 1e-9 <= wall_spacing <= 0.1:
         raise InputError(f"a wall spacing of {wall_spacing:g} chords", "use 1e-9 to 0.1")
     if growth is not None and not 1.0 < growth <= _MOST_GROWTH:
-        raise InputError(f"a growth of {growth:g}", "give the ratio of neighbouring cells, such as 1.15")
-    return wall_spacing * boundary.chord
+        raise InputError(
+            f"a growth of {growth:g}",
+            f"give the ratio of neighbouring cells, such as 1.15, at most {_MOST_GROWTH:g}",
+        )
 
 
 def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool) -> int:

@@ -4,11 +4,13 @@ from typing import Annotated
 
 import typer
 
+from meshonet_cli import layers as layer
 from meshonet_cli import options as o
 
 EXAMPLES = (
     "meshonet infer airfoil.dat --res 800 -o grid.vts",
     "meshonet infer naca:2412 --fail-on 'max_angle>178' --json -o naca2412.h5",
+    "meshonet infer airfoil.dat --wall-spacing 1e-5 --growth 1.15 -o viscous.vts",
     "meshonet infer airfoils/*.dat --res 200 -o 'grids/{stem}.vts'",
 )
 
@@ -37,6 +39,11 @@ def infer(
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
     te_spacing: o.TeSpacing = None,
+    wall_spacing: layer.WallSpacing = None,
+    y_plus: layer.YPlus = None,
+    reynolds: layer.Reynolds = None,
+    chord_fraction: layer.ChordFraction = 0.5,
+    growth: layer.Growth = None,
     far_field: o.FarField = 15.0,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
@@ -50,7 +57,7 @@ def infer(
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:
-    """Make grids with a neural operator."""
+    """Make grids with a neural operator; with a first cell given, by marching from the wall."""
     from functools import partial
 
     from meshonet_cli.batch import Destination
@@ -59,10 +66,15 @@ def infer(
     from meshonet_cli.session import Session
     from solvers.neural.operator import infer as operate
 
+    layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
+    unused = {"--model": model, "--polish": None if polish == "auto" else polish}
+    marched = layer.marching("auto", layers, unused)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     recipe = Recipe(
-        o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        partial(operate, model=model, polish=o.polish_steps(polish)),
+        o.sampling(
+            res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
+        ),
+        marched or partial(operate, model=model, polish=o.polish_steps(polish)),
         allow_invalid,
         parse_gates(fail_on),
     )

@@ -4,17 +4,24 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from meshonet_cli import layers as layer
 from meshonet_cli import options as o
 
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
     "meshonet solve-pde duct.csv --res 400 --coarse 65 -o fine.vts",
+    "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
 
 # fmt: off
 Method = Annotated[
-    Literal["winslow"], typer.Option("--method", metavar="winslow", help="Equations to solve.")
+    Literal["auto", "winslow", "hyperbolic"],
+    typer.Option(
+        "--method", metavar="auto|winslow|hyperbolic",
+        help="Equations to solve: winslow is elliptic; hyperbolic marches from the wall, and is what auto "
+        "takes when a first cell is given.",
+    ),
 ]
 Tolerance = Annotated[
     float | None,
@@ -44,7 +51,7 @@ def solve_pde(
     boundary: o.Boundaries,
     output: o.Output,
     res: o.Resolution = None,
-    method: Method = "winslow",
+    method: Method = "auto",
     tol: Tolerance = None,
     max_cycles: MaxCycles = 30,
     coarse: Coarse = None,
@@ -53,6 +60,11 @@ def solve_pde(
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
     te_spacing: o.TeSpacing = None,
+    wall_spacing: layer.WallSpacing = None,
+    y_plus: layer.YPlus = None,
+    reynolds: layer.Reynolds = None,
+    chord_fraction: layer.ChordFraction = 0.5,
+    growth: layer.Growth = None,
     far_field: o.FarField = 15.0,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
@@ -66,7 +78,7 @@ def solve_pde(
     quiet: o.Quiet = False,
     debug: o.Debug = False,
 ) -> int:
-    """Make smooth grids by solving an elliptic equation."""
+    """Make smooth grids by solving an elliptic equation, or grids for boundary layers by marching."""
     from functools import partial
 
     from meshonet_cli.batch import Destination
@@ -76,13 +88,17 @@ def solve_pde(
     from meshonet_cli.solving import at_any_resolution
     from solvers.elliptic.solve import solve
 
-    solvers = {"winslow": solve}
+    layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
+    marched = layer.marching(method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse})
+    solvers = {"auto": solve, "winslow": solve}
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
     settings: dict[str, Any] = {"tol": o.tolerance(tol), "max_cycles": max_cycles}
     settings["initial"] = initial_grid(initial)
     recipe = Recipe(
-        o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        at_any_resolution(partial(solvers[method], **settings), coarse),
+        o.sampling(
+            res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
+        ),
+        marched or at_any_resolution(partial(solvers[method], **settings), coarse),
         allow_invalid,
         parse_gates(fail_on),
     )

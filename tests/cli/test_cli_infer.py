@@ -45,6 +45,14 @@ def test_a_designation_needs_no_file(meshonet: Meshonet) -> None:
     ("words", "told"),
     [
         (("--model", "nothing"), "no model 'nothing'"),
+        (
+            ("--wall-spacing", "1e-3", "--model", "base"),
+            "--model is of no use to a grid marched from the wall",
+        ),
+        (
+            ("--wall-spacing", "1e-3", "--polish", "2"),
+            "--polish is of no use to a grid marched from the wall",
+        ),
         (("--polish", "much"), "--polish: 'much' is not a number of steps; use auto, off or e.g. 2"),
     ],
 )

@@ -39,6 +39,29 @@ def test_the_method_can_be_named(meshonet: Meshonet, duct_h5: Path) -> None:
     assert "magic" in done.err
 
 
+def test_a_march_needs_a_first_cell_and_takes_no_elliptic_options(meshonet: Meshonet, body_h5: Path) -> None:
+    given = ("--wall-spacing", "1e-3", "--res", "41x60")
+    assert meshonet("solve-pde", body_h5, "--method", "hyperbolic", *given, "-o", "g.vts").code == 0
+    cases = {
+        (
+            "--method",
+            "hyperbolic",
+        ): "--method hyperbolic without a first cell; give --wall-spacing or --y-plus",
+        (
+            "--method",
+            "winslow",
+            *given,
+        ): "--method winslow cannot set the first cell; use --method hyperbolic",
+        ("--tol", "1e-6", *given): "--tol is of no use to a grid marched from the wall; drop --tol",
+        ("--coarse", "33", *given): "--coarse is of no use to a grid marched from the wall",
+    }
+    for words, told in cases.items():
+        done = meshonet("solve-pde", body_h5, *words, "-o", "none.vts")
+        assert done.code == 2
+        assert told in done.err
+        assert not Path("none.vts").exists()
+
+
 def test_where_interpolation_folds_it_does_not(meshonet: Meshonet, folding_h5: Path) -> None:
     done = meshonet("solve-pde", folding_h5, "-o", "grid.vts")
     assert done.code == 0

@@ -153,6 +153,94 @@ def test_debug_shows_the_traceback(meshonet: Meshonet, command: str) -> None:
     assert "Traceback" in meshonet(command, "missing.vts", *output, "--debug").err
 
 
+LAYER_COMMANDS = ("solve-pde", "infer")
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_wall_spacing_is_the_height_of_every_first_cell(meshonet: Meshonet, command: str) -> None:
+    words = (command, SECTION, "--res", "120x70", "--wall-spacing", "1e-5", "-o", "g.h5", "--json")
+    told = meshonet(*words).only
+    assert (told["method"], told["folded"], told["path"]) == ("hyperbolic", 0, [])
+    (grid,) = read_grids("g.h5")
+    heights = np.linalg.norm(grid.nodes[:, 1] - grid.nodes[:, 0], axis=1)
+    np.testing.assert_allclose(heights, 1e-5, rtol=1e-8)
+    assert "first cell 1e-05 at every wall node" in told["notes"][-1]
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_y_plus_is_a_height_by_the_flat_plate(meshonet: Meshonet, command: str) -> None:
+    words = ("--y-plus", "2", "--reynolds", "6e6", "--chord-fraction", "0.25")
+    done = meshonet(command, SECTION, "--res", "120x80", *words, "-o", "g.h5")
+    assert done.code == 0
+    assert "Cf = (2 log10(Re x/c) - 0.65)^-2.3 (Schlichting" in done.err
+    (grid,) = read_grids("g.h5")
+    friction = (2 * np.log10(1.5e6) - 0.65) ** -2.3
+    expected = 2 / (6e6 * np.sqrt(friction / 2))
+    np.testing.assert_allclose(
+        np.linalg.norm(grid.nodes[:, 1] - grid.nodes[:, 0], axis=1), expected, rtol=1e-8
+    )
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_growth_takes_the_rows_it_needs(meshonet: Meshonet, command: str) -> None:
+    words = (SECTION, "--wall-spacing", "1e-4", "--growth", "1.2", "-o", "g.vts")
+    told = meshonet(command, *words, "--json").only
+    assert 50 < told["nj"] < 60
+    done = meshonet(command, *words, "--res", "100x40")
+    assert done.code == 2
+    assert (
+        f"40 rows of nodes cannot reach the far field growing by 1.2 each; use {told['nj']} rows" in done.err
+    )
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (
+            ("--wall-spacing", "1e-5", "--y-plus", "1", "--reynolds", "1e6"),
+            "both say how high the first cell is",
+        ),
+        (("--y-plus", "1"), "--y-plus without --reynolds; give --reynolds as well"),
+        (("--reynolds", "1e6"), "--reynolds without --y-plus; give --y-plus as well"),
+        (("--y-plus", "0", "--reynolds", "1e6"), "--y-plus: a y+ of 0; use more than 0 and at most 1e4"),
+        (("--y-plus", "1", "--reynolds", "-3"), "--reynolds: a Reynolds number of -3; use 1e3 to 1e12"),
+        (("--y-plus", "1", "--reynolds", "nan"), "--reynolds: a Reynolds number of nan; use 1e3 to 1e12"),
+        (
+            ("--y-plus", "1", "--reynolds", "1e6", "--chord-fraction", "2"),
+            "--chord-fraction: 2 of the chord; use more than 0 and at most 1",
+        ),
+        (
+            ("--y-plus", "1", "--reynolds", "2e3", "--chord-fraction", "0.1"),
+            "--chord-fraction: a Reynolds number of 200 at 0.1 of the chord; use a larger part",
+        ),
+        (("--growth", "1.2"), "--growth without a first cell; give --wall-spacing or --y-plus as well"),
+        (
+            ("--wall-spacing", "1e-5", "--growth", "0.2"),
+            "--growth: a growth of 0.2; give the ratio of neighb",
+        ),
+        (("--wall-spacing", "-1"), "--wall-spacing: a wall spacing of -1 chords; use 1e-9 to 0.1"),
+        (("--wall-spacing", "x"), "wall-spacing"),
+        (("--wall-spacing", "1e-5", "--res", "90x10"), "10 rows of nodes cannot reach the far field growing"),
+    ],
+)
+def test_first_cells_that_make_no_sense_get_a_line(
+    meshonet: Meshonet, command: str, words: tuple[str, ...], told: str
+) -> None:
+    done = meshonet(command, SECTION, *words, "-o", "g.vts")
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_a_channel_has_no_march(meshonet: Meshonet, duct_h5: Path, command: str) -> None:
+    done = meshonet(command, duct_h5, "--wall-spacing", "1e-3", "-o", "g.vts")
+    assert done.code == 2
+    assert "hyperbolic marching cannot make a quad grid; use it around a body (topology o)" in done.err
+
+
 def options() -> list[tuple[str, str]]:
     group = application()
     return [

@@ -208,6 +208,7 @@ def test_a_march_that_is_not_finite_is_an_error(monkeypatch: pytest.MonkeyPatch)
 def test_spacings_are_in_chords_of_the_body() -> None:
     points = naca("2412").curve.points * 40.0 + 3.0
     assert Airfoil(points).boundary(Sampling(80, 60)).chord == pytest.approx(40.0, rel=1e-4)
+    assert naca("2412").boundary(Sampling(80, 60)).chord == 1.0
     box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
     assert Outline(box).boundary(Sampling(80, 60, topology="o")).chord == 4.0
     assert ellipse(80, 40).chord == pytest.approx(1.0)
