@@ -127,7 +127,7 @@ def _at_discretisation_level(corrections: list[float]) -> bool:
     if len(corrections) < 2 or corrections[-1] == 0.0:
         return False
     rate = corrections[-1] / corrections[-2]
-    return rate < 0.9 and corrections[-1] * rate / (1.0 - rate) <= corrections[0] / 6.0
+    return rate < 0.9 and corrections[-1] * rate / (1.0 - rate) <= corrections[0] / 3.0
 
 
 def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
