@@ -62,8 +62,9 @@ def write_model(
     """Write a model file: float16 weights, the basis in float32, the header that `weights` checks."""
     from safetensors.numpy import save
 
-    arrays = {key: np.asarray(value, dtype=np.float16) for key, value in state.items()}
-    arrays["basis"] = basis.astype(np.float32)
+    # safetensors takes an array's memory as it lies: C order, or it comes back scrambled
+    arrays = {key: np.ascontiguousarray(value, dtype=np.float16) for key, value in state.items()}
+    arrays["basis"] = np.ascontiguousarray(basis, dtype=np.float32)
     header = {
         "kind": KIND,
         "encoding": VERSION,

@@ -15,6 +15,7 @@ from geometry.families import procedural
 from geometry.naca import naca
 from geometry.sampling import Sampling
 from solvers.neural.dataset import Strips, solve_strips
+from solvers.neural.export import distance
 from solvers.neural.strip import across, harmonic, picard
 from solvers.neural.training import Report, Settings, train
 from solvers.neural.weights import load_model, read_tensors
@@ -48,6 +49,14 @@ def test_the_loss_falls_and_the_file_loads(strips: Strips, tmp_path: Path) -> No
     assert reports[-1].loss < 0.5 * reports[0].loss
     assert load_model(str(tmp_path / "m.safetensors")).name == "small"
     assert not (tmp_path / "m.safetensors.checkpoint").exists()
+
+
+def test_the_file_answers_as_the_network_did(strips: Strips, tmp_path: Path) -> None:
+    output = tmp_path / "m.safetensors"
+    figures = train(strips, output, replace(SMALL, epochs=12), name="small", recipe={})
+    model, test = load_model(str(output)), strips[-SMALL.held_out :]
+    found = [distance(model.residual(test.wall[m], test.far[m]), test.residual[m]) for m in range(len(test))]
+    assert np.median(found) == pytest.approx(figures["network"]["median"], rel=0.02)
 
 
 def test_the_same_seed_gives_the_same_weights_and_another_does_not(strips: Strips, tmp_path: Path) -> None:
