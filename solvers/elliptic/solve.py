@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
+from geometry.arrays import SIDES, Floats, planar_nodes
 from geometry.boundary import Boundary
 from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
@@ -91,9 +91,10 @@ def _attempt(
         start = levels.residual()
         inside = slice(0 if periodic else 1, None if periodic else -1)
         nodes[inside, 1:-1] = initial.nodes[inside, 1:-1]
-    if start == 0.0:
+    noise = _round_off(boundary)
+    if start <= noise:  # transfinite interpolation solves the equations: a rectangle, say
         return nodes, 0.0, 0
-    goal = (SOLVED if tol is None else tol) * start
+    goal = max((SOLVED if tol is None else tol) * start, noise)
     estimate = tol is None and initial is None
     residuals = [levels.residual()]
     corrections: list[float] = []
@@ -105,6 +106,16 @@ def _attempt(
         if estimate and residuals[-1] < 0.5 * start and _at_discretisation_level(corrections):
             break
     return nodes, residuals[-1] / start, len(corrections)
+
+
+def _round_off(boundary: Boundary) -> float:
+    """Return the residual that rounding alone makes: alpha x_xi_xi, with steps h and coordinates of size x."""
+    steps = [
+        np.hypot(*np.diff(getattr(boundary, side), axis=0).T) for side in ("south", "north", "west", "east")
+    ]
+    size = max(float(np.abs(getattr(boundary, side)).max()) for side in ("south", "north", "west", "east"))
+    step = float(np.sqrt(np.mean(np.concatenate(steps) ** 2)))
+    return 4.0 * float(np.finfo(float).eps) * size * step**2
 
 
 def _diverges(residuals: list[float], start: float, growth: float) -> bool:

@@ -192,3 +192,21 @@ def test_a_far_from_valid_start_still_ends_at_the_solution() -> None:
     start = tfi(boundary).nodes + rng.normal(0, 0.05, (65, 65, 2))
     found = solve(boundary, tol=1e-8, max_cycles=60, initial=Grid(start)).grid.nodes
     np.testing.assert_allclose(found, solve(boundary, tol=1e-8).grid.nodes, atol=1e-6)
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e4])
+@pytest.mark.parametrize("tol", [None, 1e-10])
+def test_a_rectangle_is_solved_by_its_interpolation_wherever_it_lies(
+    tol: float | None, offset: float
+) -> None:
+    side = np.linspace(0, 1, 12) + offset
+    low, high = np.full(12, offset), np.full(12, offset + 1)
+    rectangle = Boundary(
+        np.stack([side, low], 1),
+        np.stack([side, high], 1),
+        np.stack([low, side], 1),
+        np.stack([high, side], 1),
+    )
+    solution = solve(rectangle, tol=tol)
+    assert solution.cycles == 0
+    np.testing.assert_allclose(solution.grid.x, np.broadcast_to(side[:, None], (12, 12)), rtol=1e-13)
