@@ -110,11 +110,9 @@ def _attempt(
 
 def _round_off(boundary: Boundary) -> float:
     """Return the residual that rounding alone makes: alpha x_xi_xi, with steps h and coordinates of size x."""
-    steps = [
-        np.hypot(*np.diff(getattr(boundary, side), axis=0).T) for side in ("south", "north", "west", "east")
-    ]
-    size = max(float(np.abs(getattr(boundary, side)).max()) for side in ("south", "north", "west", "east"))
-    step = float(np.sqrt(np.mean(np.concatenate(steps) ** 2)))
+    edges = [getattr(boundary, side) for side in SIDES]
+    size = max(float(np.abs(edge).max()) for edge in edges)
+    step = float(np.sqrt(np.mean(np.concatenate([np.diff(edge, axis=0) for edge in edges]) ** 2)))
     return 4.0 * float(np.finfo(float).eps) * size * step**2
 
 
