@@ -14,7 +14,7 @@ import numpy as np
 
 from formats.format import Format, only_one
 from formats.source import printable
-from formats.unstructured import Indices, Unstructured, unstructured
+from formats.unstructured import Indices, extruded, unstructured
 from geometry.arrays import Floats
 from geometry.grid import Grid
 
@@ -33,18 +33,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> Non
 def write_extruded(path: Path, grids: Iterable[Grid], thickness: float, *, text: bool = False) -> None:
     """Write the one grid of `grids` one cell thick: hexahedra, and faces in groups."""
     mesh = unstructured(only_one(grids, "a .msh file"))
-    points, faces, hexahedra = _extruded(mesh, thickness)
+    points, faces, hexahedra = extruded(mesh, thickness)
     groups = [("quad", name, quads) for name, quads in faces.items()]
     _write(path, points, 2, groups, ("hexahedron", hexahedra), text=text)
-
-
-def _extruded(mesh: Unstructured, thickness: float) -> tuple[Floats, dict[str, Indices], Indices]:
-    """Return points (2n, 3), outward faces by name, hexahedra (m, 8) of a layer from z = 0 to `thickness`."""
-    count = len(mesh.points)
-    planes = [np.column_stack([mesh.points, np.full(count, height)]) for height in (0.0, thickness)]
-    faces = {name: np.column_stack([edges, edges[:, ::-1] + count]) for name, edges in mesh.edges.items()}
-    faces["back"], faces["front"] = mesh.quads[:, ::-1], mesh.quads + count
-    return np.concatenate(planes), faces, np.concatenate([mesh.quads, mesh.quads + count], axis=1)
 
 
 def _write(

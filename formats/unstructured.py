@@ -46,6 +46,23 @@ def unstructured(grid: Grid) -> Unstructured:
     return Unstructured(points, quads, _edges(grid, number))
 
 
+def extruded(mesh: Unstructured, thickness: float) -> tuple[Floats, dict[str, Indices], Indices]:
+    """Return points (2n, 3), outward faces by name, hexahedra (m, 8) of a layer from z = 0 to `thickness`.
+
+    The two planes are the faces ``back`` (z = 0) and ``front``.
+    """
+    count = len(mesh.points)
+    faces = {name: np.column_stack([edges, edges[:, ::-1] + count]) for name, edges in mesh.edges.items()}
+    faces["back"], faces["front"] = mesh.quads[:, ::-1], mesh.quads + count
+    return layer_points(mesh, thickness), faces, np.concatenate([mesh.quads, mesh.quads + count], axis=1)
+
+
+def layer_points(mesh: Unstructured, thickness: float) -> Floats:
+    """Return the points (2n, 3) of a layer: those at z = 0, then those at `thickness`."""
+    planes = [np.column_stack([mesh.points, np.full(len(mesh.points), z)]) for z in (0.0, thickness)]
+    return np.concatenate(planes)
+
+
 def _numbers(grid: Grid) -> Indices:
     """Return a number (ni, nj) for every node, i fastest, the same for nodes that are one."""
     ni, nj = grid.ni, grid.nj

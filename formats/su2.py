@@ -1,0 +1,61 @@
+"""SU2's own mesh, ``.su2``: merged seams, counter-clockwise cells, a marker for every part.
+
+Text with 17 significant digits, nodes counted from 0. Markers are words (`formats.words`), since
+configuration files list them by name. https://su2code.github.io/docs_v7/Mesh-File/
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from formats.format import Format, only_one
+from formats.unstructured import Indices, extruded, unstructured
+from formats.words import words, write_rows
+from geometry.arrays import Floats
+from geometry.grid import Grid
+
+_LINE, _QUADRILATERAL, _HEXAHEDRON = 3, 9, 12  # VTK's numbers
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`: quadrilaterals, and lines under the names of its parts."""
+    mesh = unstructured(only_one(grids, "a .su2 file"))
+    _write(path, mesh.points, (_QUADRILATERAL, mesh.quads), (_LINE, mesh.edges))
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
+    """Write the one grid of `grids` one cell thick, its planes as markers ``back`` and ``front``."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .su2 file")), thickness)
+    _write(path, points, (_HEXAHEDRON, hexahedra), (_QUADRILATERAL, faces))
+
+
+def _write(
+    path: Path, points: Floats, cells: tuple[int, Indices], markers: tuple[int, Mapping[str, Indices]]
+) -> None:
+    """Write points (n, 2 or 3), the cells (kind, nodes) and the markers (kind, nodes by name)."""
+    kind, nodes = cells
+    marker_kind, parts = markers
+    with path.open("w", encoding="ascii") as stream:
+        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(nodes)}\n")
+        write_rows(stream, _row(kind, nodes), nodes)
+        stream.write(f"NPOIN= {len(points)}\n")
+        write_rows(stream, " ".join(["%.16e"] * points.shape[1]), points)
+        stream.write(f"NMARK= {len(parts)}\n")
+        for name, word in words(parts).items():
+            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(parts[name])}\n")
+            write_rows(stream, _row(marker_kind, parts[name]), parts[name])
+
+
+def _row(kind: int, nodes: Indices) -> str:
+    return " ".join([str(kind), *["%d"] * nodes.shape[1]])
+
+
+FORMAT = Format(
+    name="su2",
+    suffixes=(".su2",),
+    description="SU2 mesh, text, parts as markers",
+    write_grids=write_grids,
+    write_extruded=write_extruded,
+    names_parts=True,
+)

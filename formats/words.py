@@ -1,0 +1,49 @@
+"""Names and rows of numbers as solvers' text files take them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import IO, Any
+
+from numpy.typing import NDArray
+
+_ROWS = 1 << 14
+"""Rows turned into text at a time."""
+
+
+def words(names: Iterable[str], limit: int = 64, taken: Iterable[str] = ()) -> dict[str, str]:
+    """Return a word of ASCII letters, digits and ``_.+-`` for each of `names`, all different.
+
+    Solvers' case files name boundaries, and a blank, a comma or a bracket ends a name there.
+
+    Parameters
+    ----------
+    limit : most characters of a word.
+    taken : words that must not come out.
+
+    Examples
+    --------
+    >>> words(["wall", "no-slip wall", "no-slip,wall", "Ω"])
+    {'wall': 'wall', 'no-slip wall': 'no-slip_wall', 'no-slip,wall': 'no-slip_wall-2', 'Ω': 'part'}
+    """
+    found: dict[str, str] = {}
+    used = set(taken)
+    for name in names:
+        if name in found:
+            continue
+        stem = re.sub(r"[^A-Za-z0-9_.+-]+", "_", name).strip("_")[:limit] or "part"
+        word, count = stem, 1
+        while word in used:
+            count += 1
+            word = f"{stem[: limit - len(str(count)) - 1]}-{count}"
+        found[name] = word
+        used.add(word)
+    return found
+
+
+def write_rows(stream: IO[str], form: str, rows: NDArray[Any]) -> None:
+    r"""Write every row of `rows` (n, m) in the ``%`` form `form`, which has m fields and no line end."""
+    for start in range(0, len(rows), _ROWS):
+        part = rows[start : start + _ROWS]
+        stream.write(((form + "\n") * len(part)) % tuple(part.ravel().tolist()))
