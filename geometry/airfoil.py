@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.curves import Curve
 from geometry.errors import InputError
+from geometry.rounding import rounded_base
 from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 from geometry.section import SHARP_GAP, Section, clean_section
 from geometry.simple import Crossing, find_crossing, find_crossings
@@ -65,7 +67,7 @@ class Airfoil:
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
 
     def __init__(self, points: Floats, name: str = "", places: Sequence[str] = ()) -> None:
-        self.name = name
+        self.name, self._round = name, False
         self._section = section = clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
         self.curve = _fitted(section, places)
@@ -113,6 +115,17 @@ class Airfoil:
         off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
         return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
 
+    def rounded(self) -> Airfoil:
+        """Return the same airfoil with the corners of its blunt base rounded off (`geometry.rounding`)."""
+        if not self.blunt:
+            return self
+        body = copy(self)
+        body.__dict__.pop("wedge", None)
+        body.curve, end = rounded_base(self.curve, self.chord)
+        arc = _farthest(body.curve, body.trailing_edge)
+        body.blunt, body._round, body._arcs = False, True, (end, arc, body.curve.length - end)
+        return body
+
     def moved_apart(self) -> Airfoil:
         """Return the same airfoil with surfaces at least 9e-5 chords apart where they all but touch."""
         section = self._section.moved_apart()
@@ -126,7 +139,7 @@ class Airfoil:
         InputError
             fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
         """
-        stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius)
+        stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
         nodes = self.curve.at(wall_arcs(stations, ni, sampling))
         nodes[-1] = nodes[0]
         crossing = find_crossing(nodes[:-1])
@@ -146,11 +159,13 @@ class Airfoil:
         if sampling.corners is not None:
             raise InputError("an airfoil has no corners to choose", "leave --corners out")
         body = self.normalised() if sampling.normalise else self
+        body = body.rounded() if sampling.te == "round" else body
         ni = sampling.ni or DEFAULT_NI
         try:
             wall = body.wall(ni, sampling)
         except CrossingError:
             body = body.moved_apart()
+            body = body.rounded() if sampling.te == "round" else body
             wall = body.wall(ni, sampling)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         radius = sampling.far_field * body.chord

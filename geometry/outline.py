@@ -95,6 +95,8 @@ class Outline:
             )
         if sampling.le_spacing or sampling.te_spacing:
             raise InputError("le_spacing and te_spacing need an airfoil", "leave them out", source=self.name)
+        if sampling.te != "exact":
+            raise InputError("only an airfoil has a trailing edge", "leave --te out", source=self.name)
         if sampling.normalise:
             raise InputError("only an airfoil can be normalised", "leave --normalise out", source=self.name)
         topology = self.topology if sampling.topology == "auto" else sampling.topology

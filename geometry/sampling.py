@@ -14,6 +14,9 @@ from geometry.errors import InputError
 Spacing: TypeAlias = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 SPACINGS: tuple[Spacing, ...] = get_args(Spacing)
 
+TrailingEdge: TypeAlias = Literal["exact", "round"]
+TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
+
 DEFAULT_NI = 200
 DEFAULT_NJ = 100
 MOST_NODES = 100_000
@@ -33,6 +36,7 @@ class Sampling:
     le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
     far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent.
     corners : the points, counted from 0, that become the corners of a quad domain.
+    te : blunt trailing edges of airfoils as they are (``exact``) or with their corners rounded (``round``).
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
     Raises
@@ -50,6 +54,7 @@ class Sampling:
     far_field: float = 15.0
     corners: tuple[int, int, int, int] | None = None
     normalise: bool = False
+    te: TrailingEdge = "exact"
 
     def __post_init__(self) -> None:
         for name, count in (("ni", self.ni), ("nj", self.nj)):
@@ -66,6 +71,8 @@ class Sampling:
             raise InputError(
                 f"the far field is at {self.far_field:g} chords", "use more than 1 and at most 1e6"
             )
+        if self.te not in TRAILING_EDGES:
+            raise InputError(f"trailing edge {self.te!r} is not known", "use " + "/".join(TRAILING_EDGES))
         if self.corners is not None and len(set(self.corners)) != 4:
             raise InputError(
                 f"corners {self.corners} are not four different points", "give four point indices"

@@ -29,6 +29,8 @@ _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
 grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
 _BASE_GROWTH = 1.15
+_ROUND_CELLS = 12
+"""Fewest cells on half a rounded base, when there are 16 times as many in all."""
 _BASE_SHARE = 0.35
 """Largest part of all cells that goes to the base."""
 
@@ -43,6 +45,8 @@ class Stations:
     upper: float
     chord: float
     nose_radius: float
+    rounded: bool = False
+    """The base between `upper` and `lower` has no corners."""
 
     @property
     def half_base(self) -> float:
@@ -91,7 +95,11 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
             "use tanh, cosine or curvature with it",
         )
     if sampling.spacing == "conformal" or (sampling.spacing == "auto" and not steps_given):
-        corners = np.array([stations.lower, stations.upper]) if stations.half_base else np.zeros(0)
+        corners = (
+            np.array([stations.lower, stations.upper])
+            if stations.half_base and not stations.rounded
+            else np.zeros(0)
+        )
         try:
             return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
         except InputError:
@@ -136,6 +144,9 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
     plan = _natural(stations, Plan(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
     if stations.half_base:
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, asked=bool(wanted_te))
+        if stations.rounded and half < min(_ROUND_CELLS, cells // 16):
+            half = min(_ROUND_CELLS, cells // 16)
+            step = stations.half_base / half
         plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
         plan = replace(plan, te=step)
     plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)

@@ -44,6 +44,7 @@ def infer(
     reynolds: layer.Reynolds = None,
     chord_fraction: layer.ChordFraction = 0.5,
     growth: layer.Growth = None,
+    te: layer.TrailingEdge = "exact",
     far_field: o.FarField = 15.0,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
@@ -69,7 +70,7 @@ def infer(
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     unused = {"--model": model, "--polish": None if polish == "auto" else polish}
     marched = layer.marching("auto", layers, unused)
-    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths

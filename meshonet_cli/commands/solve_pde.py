@@ -65,6 +65,7 @@ def solve_pde(
     reynolds: layer.Reynolds = None,
     chord_fraction: layer.ChordFraction = 0.5,
     growth: layer.Growth = None,
+    te: layer.TrailingEdge = "exact",
     far_field: o.FarField = 15.0,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
@@ -91,7 +92,7 @@ def solve_pde(
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     marched = layer.marching(method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse})
     solvers = {"auto": solve, "winslow": solve}
-    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     settings: dict[str, Any] = {"tol": o.tolerance(tol), "max_cycles": max_cycles}
     settings["initial"] = initial_grid(initial)
     recipe = Recipe(

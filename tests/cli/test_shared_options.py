@@ -182,6 +182,19 @@ def test_y_plus_is_a_height_by_the_flat_plate(meshonet: Meshonet, command: str) 
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_te_rounds_a_blunt_edge(meshonet: Meshonet, command: str) -> None:
+    words = (command, SECTION, "--res", "200x80", "--wall-spacing", "1e-5", "-o", "g.h5", "--json")
+    sharp, rounded = (
+        meshonet(*words, "--te", te).only["quality"]["max_angle"]["max"] for te in ("exact", "round")
+    )
+    assert sharp > 125
+    assert rounded < 102
+    Path("bump.csv").write_text("0,0\n2,0\n2.5,1\n0,1\n")
+    done = meshonet(command, "bump.csv", "--te", "round", "-o", "g.h5")
+    assert (done.code, "only an airfoil has a trailing edge; leave --te out" in done.err) == (2, True)
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
 def test_growth_takes_the_rows_it_needs(meshonet: Meshonet, command: str) -> None:
     words = (SECTION, "--wall-spacing", "1e-4", "--growth", "1.2", "-o", "g.vts")
     told = meshonet(command, *words, "--json").only

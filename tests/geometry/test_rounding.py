@@ -1,0 +1,74 @@
+"""Rounded trailing edges: the rest of the outline stays, nothing sticks out, no corner is left."""
+
+import numpy as np
+import pytest
+import shapely
+
+from geometry.airfoil import Airfoil
+from geometry.curves import Curve
+from geometry.errors import InputError
+from geometry.naca import naca
+from geometry.outline import Outline
+from geometry.quality import per_cell
+from geometry.sampling import Sampling
+from solvers.hyperbolic import hyperbolic
+
+
+def dense(curve: Curve) -> np.ndarray:
+    return curve.at(np.linspace(0.0, curve.length, 20001)[:-1])
+
+
+@pytest.fixture(params=["0012", "4415", "23018"])
+def airfoil(request: pytest.FixtureRequest) -> Airfoil:
+    return naca(request.param)
+
+
+def test_only_the_base_is_changed_and_from_inside(airfoil: Airfoil) -> None:
+    given, made = (dense(body.curve) for body in (airfoil, airfoil.rounded()))
+    outline = shapely.Polygon(given)
+    assert outline.buffer(1e-3 * airfoil.gap).covers(shapely.Polygon(made))
+    assert 0 < outline.area - shapely.Polygon(made).area < airfoil.gap**2
+    off = shapely.distance(outline.exterior, shapely.points(made))
+    distance = np.hypot(*(made - airfoil.trailing_edge).T)
+    assert off[distance > 2 * airfoil.gap].max() < 1e-6
+    assert off.max() > 0.05 * airfoil.gap
+
+
+def test_no_corner_is_left(airfoil: Airfoil) -> None:
+    curve = airfoil.rounded().curve
+    tangent = curve.tangent(np.linspace(0.0, curve.length, 200_001))
+    turn = np.abs(
+        np.cross(np.c_[tangent[:-1], 0 * tangent[1:, 0]], np.c_[tangent[1:], 0 * tangent[1:, 0]])[:, 2]
+    )
+    assert turn.max() < 0.1  # radians in 1e-5 of the way round; a corner turns by 1.4
+    assert airfoil.rounded().rounded().curve is curve or not airfoil.rounded().blunt
+
+
+def test_a_symmetric_section_stays_so() -> None:
+    wall = naca("0012").boundary(Sampling(151, 40, spacing="curvature", te="round")).south
+    np.testing.assert_allclose(wall, wall[::-1] * [1, -1], atol=1e-9)
+
+
+def test_a_sharp_edge_is_left_alone() -> None:
+    x = np.linspace(0, np.pi, 40)
+    lens = np.r_[np.c_[np.cos(x), 0.1 * np.sin(x) ** 2], np.c_[-np.cos(x), -0.1 * np.sin(x) ** 2][1:-1]]
+    body = Airfoil(0.5 + 0.5 * lens)
+    assert body.rounded() is body
+
+
+def test_marched_grids_are_nearly_orthogonal_round_the_edge(airfoil: Airfoil) -> None:
+    def worst(te: str) -> float:
+        boundary = airfoil.boundary(Sampling(250, 100, spacing="curvature", te=te))  # type: ignore[arg-type]
+        grid = hyperbolic(boundary, wall_spacing=1e-5).grid
+        np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
+        return max(per_cell(grid, "max_angle").max() - 90, 90 - per_cell(grid, "min_angle").min())
+
+    assert worst("exact") > 35
+    assert worst("round") < 11
+
+
+def test_what_has_no_trailing_edge_or_no_such_law_is_refused() -> None:
+    with pytest.raises(InputError, match="only an airfoil has a trailing edge; leave --te out"):
+        Outline(np.eye(3)[:, :2]).boundary(Sampling(20, 20, topology="o", te="round"))
+    with pytest.raises(InputError, match="trailing edge 'wedge' is not known; use exact/round"):
+        Sampling(te="wedge")  # type: ignore[arg-type]
