@@ -1,0 +1,1 @@
+"""Grids that minimise a functional of angles and edge lengths."""

@@ -1,0 +1,207 @@
+"""Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
+
+Each level starts from the minimum of the next coarser one, evaluated by splines (`solvers.coarse`). A start
+with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.quality import count_folded, measure
+from solvers.coarse import evaluate, sweep_kinks, thinned
+from solvers.repair import repair
+from solvers.solution import Solution
+from solvers.variational._variational import energy, workspace
+from solvers.variational.functional import Weights, aspect_of
+from solvers.variational.minimise import minimise
+from solvers.variational.preconditioner import Preconditioner
+
+COARSEST = 33
+"""A copy with this many nodes or fewer along a direction is the first one solved."""
+
+STILL = 2e-5
+"""Change of a coordinate, in the square root of the domain's area, at which the finest level stops."""
+
+LOOSER = 5.0
+"""How much earlier the coarser levels stop."""
+
+MOST = 400
+"""Iterations on a coarser level at the most."""
+
+WEAKER = 3
+"""How often the edge length term may be made weaker, to a fourth each time."""
+
+
+def solve(
+    boundary: Boundary,
+    *,
+    tol: float | None = None,
+    max_cycles: int = 200,
+    initial: Grid | None = None,
+    weights: Weights | None = None,
+) -> Solution:
+    """Minimise the functional of `solvers.variational.functional` over the nodes inside `boundary`.
+
+    Parameters
+    ----------
+    boundary : quad.
+    tol : stop when an iteration changes no coordinate by more than this part of the square root of the
+        domain's area; None is 2e-5.
+    max_cycles : iterations on the finest level at the most.
+    initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
+        nodes are replaced.
+    weights : of the functional.
+
+    Returns
+    -------
+    Solution
+        the grid and the iterations on the finest level. It is valid wherever a start could be unfolded;
+        a note says when none could, and the grid is then Winslow's or `initial`.
+
+    Raises
+    ------
+    InputError
+        an O or C boundary; `initial` of other node counts; `tol` or `max_cycles` not positive.
+    """
+    _check(boundary, tol, max_cycles, initial)
+    begun = time.perf_counter()
+    weights = weights or Weights()
+    still = tol if tol is not None else STILL
+    if initial is None:
+        nodes, weights, iterations, valid = _nested(boundary, weights, still, max_cycles)
+    else:
+        nodes = _inside(boundary, initial)
+        iterations, valid = descend(nodes, weights, still, max_cycles)
+    notes = () if valid else ("no valid start was found; the grid is not the minimum",)
+    facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
+    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, {**facts, "cycles": iterations})
+    spent = {"grid": time.perf_counter() - begun}
+    return Solution(grid, "variational", cycles=iterations, seconds=spent, notes=notes)
+
+
+def _nested(
+    boundary: Boundary, weights: Weights, still: float, most: int
+) -> tuple[Floats, Weights, int, bool]:
+    """Return nodes, the weights that made them, iterations on the finest level, whether it is valid."""
+    levels = [boundary]
+    while min(levels[-1].ni, levels[-1].nj) > COARSEST:
+        levels.append(thinned(levels[-1], levels[-1].ni // 2 + 1, levels[-1].nj // 2 + 1))
+    most_coarsest = most if len(levels) == 1 else MOST
+    nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most_coarsest)
+    for k in range(len(levels) - 2, -1, -1):
+        counts = nodes.shape[0], nodes.shape[1]
+        nodes = evaluate(nodes, levels[k])
+        sweep_kinks(nodes, levels[k], counts)
+        limits = (still, most) if k == 0 else (LOOSER * still, MOST)
+        iterations, valid = descend(nodes, weights, *limits)
+    return nodes, weights, iterations, valid
+
+
+def _coarsest(
+    boundary: Boundary, weights: Weights, still: float, most: int
+) -> tuple[Floats, Weights, int, bool]:
+    """Return what `_nested` does, for the coarsest level, from Winslow's solution.
+
+    On strongly curved domains the edge length term alone can make angles worse than Winslow's: it is then
+    made weaker until they are not.
+    """
+    from solvers.elliptic.solve import solve as winslow
+
+    start = winslow(boundary).grid.nodes
+    limits = [value + 1e-9 for value in _angles(start)]
+    nodes = start.copy(order="K")
+    iterations, valid = descend(nodes, weights, still, most)
+    best = nodes, weights, iterations, valid
+    for _ in range(WEAKER):
+        if not valid or all(value <= limit for value, limit in zip(_angles(nodes), limits, strict=True)):
+            return nodes, weights, iterations, valid
+        weights = replace(weights, smoothness=0.25 * weights.smoothness)
+        nodes = nodes.copy(order="K")
+        more, valid = descend(nodes, weights, still, most)
+        iterations += more
+    return best
+
+
+def _angles(nodes: Floats) -> tuple[float, float]:
+    """Return the largest and the mean of the cells' largest included angles, in degrees; 360 when folded."""
+    if count_folded(nodes):
+        return 360.0, 360.0
+    summary = measure(Grid(nodes))["max_angle"]
+    return summary.max, summary.mean
+
+
+def descend(nodes: Floats, weights: Weights, still: float, most: int) -> tuple[int, bool]:
+    """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
+
+    Parameters
+    ----------
+    still : as `tol` of `solve`.
+    most : iterations at the most.
+    """
+    ni, nj = nodes.shape[:2]
+    if min(ni, nj) < 3:
+        return 0, count_folded(nodes) == 0
+    z = np.moveaxis(nodes, -1, 0)
+    cells, aspect = (ni - 1) * (nj - 1), aspect_of(nodes)
+    area = _area(nodes)
+    precondition = Preconditioner(ni, nj, area / cells, aspect, weights)
+    work = np.empty(workspace(ni, nj))
+    reach = 0.25 * np.sqrt(area / cells)
+    epsilon = 0.0
+
+    def functional(at: Floats, gradient: Floats) -> tuple[float, float]:
+        return energy(at, aspect, weights.shape, weights.smoothness, epsilon, gradient, work)
+
+    if count_folded(nodes) and repair(nodes, periodic=False):
+        smallest = functional(z, np.empty_like(z))[1]
+        epsilon = max(0.05 * area / cells, -0.5 * smallest)
+        for _ in range(25):
+            loose = 1e-3 * np.sqrt(area / cells)
+            if minimise(functional, precondition, z, still=loose, most=40, reach=reach).smallest > 0:
+                break
+            epsilon *= 0.4
+        else:
+            return 0, False
+        epsilon = 0.0
+    done = minimise(functional, precondition, z, still=still * np.sqrt(area), most=most, reach=reach)
+    return done.iterations, True
+
+
+def _inside(boundary: Boundary, initial: Grid) -> Floats:
+    """Return a copy of the nodes of `initial` with the edges of `boundary`."""
+    nodes = initial.nodes.copy(order="K")
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    nodes[0], nodes[-1] = boundary.west, boundary.east
+    return nodes
+
+
+def _area(nodes: Floats) -> float:
+    """Return the area inside the rim of `nodes`."""
+    x, y = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]).T
+    x, y = x - x[0], y - y[0]
+    return float(abs(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+
+
+def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
+    if boundary.topology != "quad":
+        raise InputError(
+            f"the variational method has no {boundary.topology} boundaries yet",
+            "use topology quad or method winslow",
+        )
+    if tol is not None and not 0 < tol < 1:
+        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5")
+    if max_cycles < 1:
+        raise InputError(f"{max_cycles} iterations are too few", "allow at least 1")
+    if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
+        had = f"{initial.ni}x{initial.nj}"
+        raise InputError(
+            f"the initial grid has {had} nodes, not {boundary.ni}x{boundary.nj}", "give equal counts"
+        )

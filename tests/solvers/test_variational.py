@@ -1,0 +1,123 @@
+"""Variational grids: valid, never worse than Winslow's in angle, the same on finer meshes."""
+
+import numpy as np
+import pytest
+from random_quads import random_quad
+from solver_shapes import arch, bump, folded, hexagon, hole, naca, seamount, wrench
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.quality import Summary, measure
+from solvers.coarse import solve_coarse, thinned
+from solvers.elliptic.solve import solve as winslow
+from solvers.tfi import tfi
+from solvers.variational.functional import Weights, aspect_of, energy
+from solvers.variational.solve import solve
+
+
+def angle(nodes: Floats) -> Summary:
+    return measure(Grid(nodes))["max_angle"]
+
+
+def never_worse(found: Floats, reference: Floats) -> None:
+    assert folded(found) == 0
+    assert angle(found).max <= angle(reference).max + 1e-9
+    assert angle(found).mean <= angle(reference).mean
+
+
+# mean angle gained at least, in degrees: nine tenths of what the functional's minimum gains at 65x65
+GAINS = [(arch, 5.6), (hexagon, 7.1), (bump, 4.8), (wrench, 12.0), (seamount, 6.0)]
+
+
+@pytest.mark.parametrize(("make", "gain"), GAINS)
+@pytest.mark.parametrize("n", [65, 100])
+def test_angles_are_better_than_winslows(make, gain: float, n: int) -> None:  # type: ignore[no-untyped-def]
+    boundary: Boundary = make(n, n)
+    reference, found = winslow(boundary).grid.nodes, solve(boundary).grid.nodes
+    never_worse(found, reference)
+    assert angle(found).mean < angle(reference).mean - gain
+    for side, edge in (("south", found[:, 0]), ("north", found[:, -1]), ("west", found[0])):
+        assert np.array_equal(edge, getattr(boundary, side))
+
+
+def test_largest_angles_are_far_below_winslows() -> None:
+    assert angle(solve(bump(65, 65)).grid.nodes).max < 137
+    assert angle(solve(wrench(65, 65)).grid.nodes).max < 137.5
+
+
+@pytest.mark.parametrize("seed", range(21))
+def test_random_domains_are_never_worse(seed: int) -> None:
+    boundary = random_quad(seed, 65, 65)
+    if boundary is None:
+        pytest.skip("no valid grid exists in this outline")
+    never_worse(solve(boundary).grid.nodes, winslow(boundary).grid.nodes)
+
+
+@pytest.mark.parametrize("make", [arch, bump, seamount])
+def test_refining_hardly_changes_it(make) -> None:  # type: ignore[no-untyped-def]
+    boundary = make(129, 129)
+    coarse = solve(thinned(boundary, 33, 33), tol=3e-6).grid.nodes
+    fine = solve(boundary, tol=3e-6).grid.nodes
+    assert np.linalg.norm(coarse - fine[::4, ::4]) / np.linalg.norm(coarse - coarse.mean(axis=(0, 1))) < 5e-3
+
+
+@pytest.mark.parametrize(("ni", "nj"), [(65, 33), (40, 100), (5, 7), (3, 3), (2, 5), (200, 4)])
+def test_any_counts_do(ni: int, nj: int) -> None:
+    assert folded(solve(arch(ni, nj)).grid.nodes) == 0
+
+
+def test_descent_lowers_the_functional() -> None:
+    start = winslow(arch(65, 65)).grid.nodes
+    found = solve(arch(65, 65)).grid.nodes
+    aspect = aspect_of(start)
+    assert energy(found, aspect, Weights()) < energy(start, aspect, Weights()) - 0.1
+
+
+def test_the_minimum_does_not_depend_on_the_start() -> None:
+    boundary = bump(33, 33)
+    nested = solve(boundary, tol=1e-7, max_cycles=1000).grid.nodes
+    from_tfi = solve(boundary, tol=1e-7, max_cycles=1000, initial=tfi(boundary)).grid.nodes
+    np.testing.assert_allclose(from_tfi, nested, atol=1e-4)
+
+
+def test_a_folded_start_is_unfolded() -> None:
+    boundary = arch(33, 33)
+    nodes = tfi(boundary).nodes
+    nodes[8:16, 8:16] = nodes[24:16:-1, 24:16:-1]
+    assert folded(nodes) > 10
+    found = solve(boundary, initial=Grid(nodes), max_cycles=1000)
+    assert folded(found.grid.nodes) == 0
+    assert found.notes == ()
+
+
+def test_a_coarse_minimum_keeps_the_gain_at_any_resolution() -> None:
+    boundary = bump(129, 129)
+    own, reference = solve(boundary).grid.nodes, winslow(boundary).grid.nodes
+    found = solve_coarse(boundary, solve, 33, smooth=True).grid.nodes
+    assert folded(found) == 0
+    gain = angle(reference).mean - angle(own).mean
+    assert angle(reference).mean - angle(found).mean > 0.9 * gain
+
+
+def test_provenance_names_method_and_weights() -> None:
+    facts = solve(arch(17, 17)).grid.provenance
+    assert (facts["method"], facts["shape"], facts["smoothness"]) == ("variational", 0.9, 2e-3)
+
+
+@pytest.mark.parametrize("make", [hole, naca])
+def test_rings_are_refused(make) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match="no o boundaries yet; use topology quad or method winslow"):
+        solve(make(33, 33))
+
+
+@pytest.mark.parametrize("bad", [{"tol": 0.0}, {"tol": 2.0}, {"max_cycles": 0}])
+def test_senseless_limits_are_refused(bad: dict[str, float]) -> None:
+    with pytest.raises(InputError, match=r"tolerance|iterations"):
+        solve(arch(9, 9), **bad)  # type: ignore[arg-type]
+
+
+def test_an_initial_grid_of_other_counts_is_refused() -> None:
+    with pytest.raises(InputError, match="the initial grid has 9x9 nodes, not 9x8"):
+        solve(arch(9, 8), initial=tfi(arch(9, 9)))

@@ -1,0 +1,83 @@
+"""The variational functional: its compiled form against numpy, its gradient against differences."""
+
+import numpy as np
+import pytest
+from random_quads import random_quad
+from solver_shapes import bump, wrench
+
+from geometry.arrays import Floats
+from solvers.tfi import tfi
+from solvers.variational._variational import energy as compiled
+from solvers.variational._variational import workspace
+from solvers.variational.functional import Weights, aspect_of, energy
+
+
+def planes(nodes: Floats) -> Floats:
+    return np.ascontiguousarray(np.moveaxis(nodes, -1, 0))
+
+
+def call(nodes: Floats, weights: Weights, epsilon: float) -> tuple[float, float, Floats]:
+    z = planes(nodes)
+    gradient = np.empty_like(z)
+    work = np.empty(workspace(*nodes.shape[:2]))
+    value, low = compiled(z, aspect_of(nodes), weights.shape, weights.smoothness, epsilon, gradient, work)
+    return value, low, gradient
+
+
+CASES = [(bump, 17, 13, 0.0), (wrench, 20, 31, 0.01), (bump, 3, 9, 0.0), (bump, 9, 3, 0.002)]
+
+
+@pytest.mark.parametrize(("make", "ni", "nj", "epsilon"), CASES)
+@pytest.mark.parametrize("weights", [Weights(), Weights(0.0, 0.0), Weights(1.0, 0.1)])
+def test_the_compiled_value_is_that_of_numpy(make, ni, nj, epsilon, weights) -> None:  # type: ignore[no-untyped-def]
+    nodes = tfi(make(ni, nj)).nodes
+    value = call(nodes, weights, epsilon)[0]
+    assert value == pytest.approx(energy(nodes, aspect_of(nodes), weights, epsilon), rel=1e-13)
+
+
+@pytest.mark.parametrize(("make", "ni", "nj", "epsilon"), CASES)
+def test_the_gradient_is_the_limit_of_differences(make, ni, nj, epsilon) -> None:  # type: ignore[no-untyped-def]
+    nodes = tfi(make(ni, nj)).nodes
+    weights, aspect = Weights(), aspect_of(nodes)
+    gradient = call(nodes, weights, epsilon)[2]
+    rng = np.random.default_rng(ni)
+    for _ in range(3):
+        move = np.zeros_like(nodes)
+        move[1:-1, 1:-1] = rng.normal(size=(ni - 2, nj - 2, 2))
+        h = 1e-6
+        ahead, behind = (energy(nodes + k * h * move, aspect, weights, epsilon) for k in (1, -1))
+        assert (gradient * planes(move)).sum() == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)
+
+
+def test_the_gradient_is_zero_on_the_rim() -> None:
+    gradient = call(tfi(bump(17, 13)).nodes, Weights(), 0.0)[2]
+    for edge in (gradient[:, 0], gradient[:, -1], gradient[:, :, 0], gradient[:, :, -1]):
+        assert not edge.any()
+
+
+def test_a_square_of_squares_has_value_one_and_no_gradient() -> None:
+    nodes = np.stack(np.meshgrid(np.arange(6.0), np.arange(5.0), indexing="ij"), axis=-1)
+    value, low, gradient = call(nodes, Weights(), 0.0)
+    assert value == pytest.approx(1.0)
+    assert low == 1.0
+    assert np.abs(gradient).max() < 1e-15
+
+
+def test_a_folded_grid_is_infinite_unless_regularised() -> None:
+    nodes = tfi(bump(9, 9)).nodes
+    nodes[4, 4] = nodes[6, 6]
+    value, low, _ = call(nodes, Weights(), 0.0)
+    assert value == np.inf
+    assert energy(nodes, 1.0, Weights()) == np.inf
+    assert low < 0
+    assert np.isfinite(call(nodes, Weights(), 0.01)[0])
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1e5])
+def test_scale_turn_and_place_do_not_matter(scale: float) -> None:
+    boundary = random_quad(3, 12, 15)
+    assert boundary is not None
+    nodes = tfi(boundary).nodes
+    turn = scale * np.array([[0.6, 0.8], [-0.8, 0.6]])
+    moved = call(nodes @ turn + 3 * scale, Weights(), 0.0)[0]
+    assert moved == pytest.approx(call(nodes, Weights(), 0.0)[0], rel=1e-9)
