@@ -29,3 +29,8 @@ def at_any_resolution(method: partial[Solution], coarse: int | None) -> Method:
     from solvers.coarse import solve_coarse
 
     return partial(solve_coarse, method=method, n=coarse, smooth=True)
+
+
+def given(**settings: Any) -> dict[str, Any]:
+    """Return the settings that have a value, so that a solver's own defaults stand for the others."""
+    return {name: value for name, value in settings.items() if value is not None}

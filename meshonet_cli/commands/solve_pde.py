@@ -1,6 +1,6 @@
 """``meshonet solve-pde``."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import typer
 
@@ -11,28 +11,35 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
     "meshonet solve-pde duct.csv --res 400 --coarse 65 -o fine.vts",
+    "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
 
 # fmt: off
 Method = Annotated[
-    Literal["auto", "winslow", "hyperbolic"],
+    Literal["auto", "winslow", "variational", "hyperbolic"],
     typer.Option(
-        "--method", metavar="auto|winslow|hyperbolic",
-        help="Equations to solve: winslow is elliptic; hyperbolic marches from the wall, and is what auto "
-        "takes when a first cell is given.",
+        "--method", metavar="auto|winslow|variational|hyperbolic",
+        help="Equations to solve: winslow is elliptic; variational (quad) minimises a functional of angles "
+        "and edge lengths: better angles, no folds; hyperbolic marches from the wall, and is what auto takes "
+        "when a first cell is given.",
     ),
 ]
 Tolerance = Annotated[
     float | None,
     typer.Option(
         "--tol", metavar="T", show_default=False,
-        help="Stop at this residual, relative to that of the interpolated start. [default: where more "
-        "cycles change the grid by less than a finer one would]",
+        help="Stop at this residual, relative to that of the interpolated start (variational: when no node "
+        "moves further, in square roots of the area). [default: where more cycles change the grid by less "
+        "than a finer one would]",
     ),
 ]
 MaxCycles = Annotated[
-    int, typer.Option("--max-cycles", metavar="N", min=1, help="Multigrid cycles at the most.")
+    int | None,
+    typer.Option(
+        "--max-cycles", metavar="N", min=1, show_default=False,
+        help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
+    ),
 ]
 Coarse = Annotated[
     int | None,
@@ -53,7 +60,7 @@ def solve_pde(
     res: o.Resolution = None,
     method: Method = "auto",
     tol: Tolerance = None,
-    max_cycles: MaxCycles = 30,
+    max_cycles: MaxCycles = None,
     coarse: Coarse = None,
     initial: Initial = None,
     topology: o.TopologyOption = "auto",
@@ -86,15 +93,15 @@ def solve_pde(
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.session import Session
-    from meshonet_cli.solving import at_any_resolution
+    from meshonet_cli.solving import at_any_resolution, given
     from solvers.elliptic.solve import solve
+    from solvers.variational.solve import solve as minimise
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     marched = layer.marching(method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse})
-    solvers = {"auto": solve, "winslow": solve}
+    solvers = {"auto": solve, "winslow": solve, "variational": minimise}
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
-    settings: dict[str, Any] = {"tol": o.tolerance(tol), "max_cycles": max_cycles}
-    settings["initial"] = initial_grid(initial)
+    settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths

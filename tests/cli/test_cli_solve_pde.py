@@ -83,6 +83,22 @@ def test_initial_starts_from_a_grid(meshonet: Meshonet, duct_h5: Path) -> None:
     assert told["cycles"] == 0
 
 
+def test_variational_angles_are_better(meshonet: Meshonet, duct_h5: Path) -> None:
+    words = ("solve-pde", duct_h5, "--res", "65x33", "--json", "-o", "g.vts")
+    winslow = meshonet(*words, "--method", "winslow").only
+    for more in ((), ("--coarse", "33")):
+        told = meshonet(*words, "--method", "variational", *more).only
+        assert told["method"] == "variational"
+        assert told["folded"] == 0
+        assert told["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"]
+
+
+def test_variational_takes_no_rings_yet(meshonet: Meshonet, body_h5: Path) -> None:
+    done = meshonet("solve-pde", body_h5, "--method", "variational", "-o", "g.vts")
+    assert done.code == 2
+    assert "the variational method has no o boundaries yet; use topology quad or method winslow" in done.err
+
+
 def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_h5: Path) -> None:
     meshonet("solve-pde", duct_h5, "--res", "80x60", "-o", "full.vts")
     told = meshonet("solve-pde", duct_h5, "--res", "80x60", "--coarse", "33", "-o", "g.vts", "--json").only
