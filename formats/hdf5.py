@@ -7,6 +7,7 @@
     nodes        (n, ni, nj, 2), grids only
     names, split, parts, provenance   (n,) text, where there is any
     parameters   (n, p), its attribute names (p,)
+    sensors      (n, m, 2), sub-sampled boundary nodes, when asked for
 
 Everything is chunked by sample and resizable along n; samples are appended one by one. `parts` and
 `provenance` are JSON; the first grid's provenance is repeated as attributes of the file, for reading
@@ -107,6 +108,8 @@ class Writer:
             self._provenance(sample.provenance)
         if parameters is not None:
             arrays["parameters"] = parameters
+        if isinstance(sample, Boundary) and sample.sensors is not None:
+            arrays["sensors"] = sample.sensors
         for name, values in arrays.items():
             self._row(name, values)[self._count] = values
         self._text("names", sample.name)
@@ -213,8 +216,8 @@ def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str,
 
 
 def sniff(head: bytes) -> bool:
-    """Say whether `head` starts as HDF5 files do."""
-    return head.startswith(b"\x89HDF\r\n\x1a\n")
+    """Say whether `head` starts as HDF5 files do; those of CGNS have a reader of their own."""
+    return head.startswith(b"\x89HDF\r\n\x1a\n") and b"HDF5 MotherNode" not in head
 
 
 def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:

@@ -138,6 +138,13 @@ class Checked:
 @contextlib.contextmanager
 def checked(source: Source) -> Iterator[Checked]:
     """Open `source` as a dataset; what HDF5's library complains of becomes an InputError."""
+    with opened(source) as file:
+        yield Checked(file, source)
+
+
+@contextlib.contextmanager
+def opened(source: Source) -> Iterator[h5py.File]:
+    """Open `source` for reading; whatever goes wrong inside becomes an InputError."""
     import h5py
 
     check_heaps(source)
@@ -150,7 +157,7 @@ def checked(source: Source) -> Iterator[Checked]:
                 f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"
             ) from error
         try:
-            yield Checked(file, source)
+            yield file
         except InputError:
             raise
         except Exception as error:

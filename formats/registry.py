@@ -35,6 +35,7 @@ TABLE: dict[str, Row] = {
     "vtk-ascii": Row("formats.vtk_legacy", (".vtk",)),
     "gmsh": Row("formats.gmsh", (".msh",)),
     "gmsh-ascii": Row("formats.gmsh", (".msh",)),
+    "cgns": Row("formats.cgns", (".cgns",)),
     "su2": Row("formats.su2", (".su2",)),
     "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),

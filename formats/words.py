@@ -32,7 +32,7 @@ def words(names: Iterable[str], limit: int = 64, taken: Iterable[str] = ()) -> d
     for name in names:
         if name in found:
             continue
-        stem = re.sub(r"[^A-Za-z0-9_.+-]+", "_", name).strip("_")[:limit] or "part"
+        stem = re.sub(r"[^A-Za-z0-9_.+-]+", "_", name).strip("_.")[:limit] or "part"
         word, count = stem, 1
         while word in used:
             count += 1

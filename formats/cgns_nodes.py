@@ -1,0 +1,108 @@
+"""CGNS's tree of nodes in an HDF5 file: labels, types and data as its library wants them.
+
+A node is a group with the attributes name, label and type, texts of fixed length, and flags; its data is
+the dataset ``" data"``, whose axes run the other way round than in Fortran's terms of the standard.
+https://cgns.org/standard/FMM/hdf5_impl.html
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from formats.source import printable
+from geometry.errors import InputError
+
+if TYPE_CHECKING:
+    import h5py
+
+Node: TypeAlias = "h5py.Group"
+
+NAME_LENGTH = 32
+"""Most characters of a node's name."""
+
+_TYPES = {"int8": "C1", "int32": "I4", "int64": "I8", "float32": "R4", "float64": "R8"}
+_DATA = " data"
+_DENSEST = 1032
+"""Most that deflate can shrink; a claim beyond it is a lie."""
+
+
+def root(file: h5py.File) -> Node:
+    """Make the root node of a new file, opened with ``track_order=True``."""
+    _label(file, "HDF5 MotherNode", "Root Node of HDF5 File", "MT")
+    del file.attrs["flags"]
+    file.create_dataset(" format", data=_codes("IEEE_LITTLE_32", 15))
+    file.create_dataset(" hdf5version", data=_codes("HDF5 Version 1.8.0", 33))
+    child(file, "CGNSLibraryVersion", "CGNSLibraryVersion_t", np.array([3.3], np.float32))
+    return file
+
+
+def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None = None) -> Node:
+    """Add a node; an array is given as HDF5 stores it, a text becomes an array of characters."""
+    node = parent.create_group(name, track_order=True)
+    data = _codes(value, len(value.encode())) if isinstance(value, str) else value
+    _label(node, name, label, "MT" if data is None else _TYPES[data.dtype.name])
+    if data is not None:
+        node.create_dataset(_DATA, data=data)
+    return node
+
+
+def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
+    """Yield the names and nodes of `label` below `node`, links to elsewhere left out."""
+    import h5py
+
+    for name in node:
+        if isinstance(node.get(name, getlink=True), h5py.HardLink):
+            found = node.get(name)
+            if isinstance(found, h5py.Group) and _attribute(found, "label") == label:
+                yield str(name), found
+
+
+def array(node: Node, ndim: int) -> NDArray[Any]:
+    """Return a node's numbers once their type, rank and stored size are plausible.
+
+    Raises
+    ------
+    InputError
+        there are none, or they claim more than the file holds.
+    """
+    import h5py
+
+    place = printable(str(node.name))
+    data = node.get(_DATA) if isinstance(node.get(_DATA, getlink=True), h5py.HardLink) else None
+    if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:
+        raise InputError("node has no data of its own", "write the file again", place=place)
+    if data.dtype.kind not in "fiu" or data.ndim != ndim:
+        told = f"node holds {data.dtype} with {data.ndim} axes"
+        raise InputError(told, f"it must be numbers with {ndim}", place=place)
+    if data.size * data.dtype.itemsize > _DENSEST * max(data.id.get_storage_size(), 1):
+        told = f"node claims shape {data.shape} but holds next to nothing"
+        raise InputError(told, "write the file again", place=place)
+    return np.asarray(data[()])
+
+
+def text(node: Node) -> str:
+    """Return a node's characters; raises as `array`."""
+    codes = array(node, 1)
+    if codes.dtype.itemsize != 1:
+        raise InputError("node holds no text", "write the file again", place=printable(str(node.name)))
+    return codes.tobytes().rstrip(b"\0 ").decode("utf-8", "replace")
+
+
+def _label(node: Node, name: str, label: str, kind: str) -> None:
+    node.attrs.create("name", np.bytes_(name), dtype="S33")
+    node.attrs.create("label", np.bytes_(label), dtype="S33")
+    node.attrs.create("type", np.bytes_(kind), dtype="S3")
+    node.attrs.create("flags", np.array([1], np.int32))
+
+
+def _attribute(node: Node, name: str) -> str:
+    value = node.attrs.get(name, b"")
+    return value.decode("utf-8", "replace").rstrip("\0 ") if isinstance(value, bytes) else str(value)
+
+
+def _codes(value: str, length: int) -> NDArray[np.int8]:
+    return np.frombuffer(value.encode().ljust(length, b"\0")[:length], np.int8)

@@ -1,0 +1,23 @@
+"""The mark of tests that run programs of Debian's: ``make test-clients`` installs them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import pytest
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Skip a test whose program is not there, unless it was promised to be."""
+    for mark in item.iter_markers("client"):
+        program = str(mark.args[0])
+        if shutil.which(program) is None:
+            missing = f"{program} is not installed: make test-clients"
+            if os.environ.get("MESHONET_CLIENTS"):
+                pytest.fail(missing)
+            pytest.skip(missing)
