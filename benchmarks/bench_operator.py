@@ -116,7 +116,7 @@ def accuracy(title: str, boundaries: Iterator[Boundary]) -> str:
             )
     lines = [
         f"## {title}\n",
-        "| way | fold-free | relative L2, median / worst | max angle ratio, median / worst | mean angle ratio | ms |",
+        "| way | fold-free | relative L2, median, worst | max angle, median, worst | mean angle | ms |",
     ]
     lines.append("| --- | --- | --- | --- | --- | --- |")
     for way, found_rows in rows.items():
@@ -182,9 +182,9 @@ HEAD = """# Benchmarks
 
 O-grids around airfoils, before the guard, on this machine: {machine}.
 The reference of every accuracy column is our multigrid solver at residual 1e-8 on the same boundary and node
-counts, within 1.5 chords. It has a discretisation error of its own, which decides the last digits of the better
-rows: at 200x200 that is about 6e-4. Transfinite interpolation spaces its nodes otherwise across the field, so its
-distance says little.
+counts, within 1.5 chords. It has a discretisation error of its own, which decides the last digits of the
+better rows: at 200x200 that is about 6e-4. Transfinite interpolation spaces its nodes otherwise across the
+field, so its distance says little. Angles are ratios to the reference's.
 """
 
 if __name__ == "__main__":

@@ -40,6 +40,7 @@ class Boundary:
         body between the nodes.
     chord : the length that spacings are given in: the chord of an airfoil, the largest extent of another
         body. 0 stands for the distance of the first node of `south` from the one farthest from it.
+    sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
 
     Raises
     ------
@@ -57,6 +58,7 @@ class Boundary:
     name: str = ""
     wall: Curve | None = None
     chord: float = 0.0
+    sensors: Floats | None = None
 
     def __post_init__(self) -> None:
         if self.topology not in TOPOLOGIES:
@@ -91,6 +93,26 @@ class Boundary:
         """Return the closed outline (n, 2) south, east, north, west, first node not repeated."""
         return np.concatenate([self.south[:-1], self.east[:-1], self.north[:0:-1], self.west[:0:-1]])
 
+    def with_sensors(self, count: int) -> Boundary:
+        """Return the boundary with `count` sensors: nodes at equal steps of their number.
+
+        Around a quad they start at the south-west corner and run counter-clockwise; of an O, the first half
+        (the odd one included) is on the body and the rest on the far field. Fixed places of the computational
+        domain, as an operator needs them: Xiao et al., arXiv 2501.11937, section III.
+
+        Raises
+        ------
+        InputError
+            fewer than 2 sensors, or more than there are nodes.
+        """
+        rings = [self.outline()] if self.topology == "quad" else [self.south[:-1], self.north[:-1]]
+        most = len(rings) * len(rings[0])
+        if not 2 <= count <= most:
+            raise InputError(f"{count} sensors", f"use 2 to {most}, the number of boundary nodes")
+        shares = [count] if len(rings) == 1 else [count - count // 2, count // 2]
+        chosen = [ring[np.arange(n) * len(ring) // n] for ring, n in zip(rings, shares, strict=True)]
+        return replace(self, sensors=np.concatenate(chosen))
+
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return this boundary with the node counts of `sampling`.
 
@@ -106,7 +128,7 @@ class Boundary:
             for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
         }
         parts = tuple(_rescaled(part, self, ni, nj) for part in self.parts)
-        return replace(self, **edges, parts=parts)
+        return replace(self, **edges, parts=parts, sensors=None)
 
     def _check_corners(self) -> None:
         corners = (

@@ -9,6 +9,7 @@ from typing import Any
 
 from formats.registry import read_shapes
 from geometry.boundary import Boundary
+from geometry.errors import InputError
 from geometry.sampling import Sampling
 from geometry.shape import Shape
 from meshonet_cli.batch import Destination, items
@@ -44,11 +45,14 @@ class Sampler:
     """Samples shapes."""
 
     sampling: Sampling
+    sensors: int | None = None
 
     def boundary(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
         """Return the boundary of one shape and what there is to tell of it."""
         begun = time.perf_counter()
         boundary = item.what.boundary(self.sampling)
+        if self.sensors is not None:
+            boundary = boundary.with_sensors(self.sensors)
         report = Sampled(item, boundary)
         report.seconds["boundary"] = time.perf_counter() - begun
         return boundary, report
@@ -86,15 +90,24 @@ def sample(
     destination: Destination,
     session: Session,
     *,
+    sensors: int | None = None,
     skip_existing: bool = False,
     jobs: int = 1,
 ) -> int:
-    """Sample every shape of `found` into `destination` and return the exit code."""
+    """Sample every shape of `found` into `destination`, with `sensors` each, and return the exit code.
+
+    Raises
+    ------
+    InputError
+        sensors, and a format without room for them.
+    """
+    if sensors is not None and destination.format.name != "hdf5":
+        raise InputError("only HDF5 keeps sensors", "write an .h5 file", source="--sensors")
 
     def tell(report: Sampled, path: str) -> None:
         report.finished(path)
         session.tell(report)
 
-    make = Sampler(sampling).boundary
+    make = Sampler(sampling, sensors).boundary
     deliver(found, make, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
     return session.finish()

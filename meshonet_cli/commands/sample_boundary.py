@@ -37,6 +37,13 @@ Range = Annotated[
         help="Range that the family's parameter is drawn from. [default: the paper's]",
     ),
 ]
+Sensors = Annotated[
+    int | None,
+    typer.Option(
+        "--sensors", metavar="M", show_default=False,
+        help="Also keep M boundary nodes as sensors (dataset sensors of an .h5 file).",
+    ),
+]
 Seed = Annotated[int, typer.Option("--seed", metavar="S", min=0, help="Seed of the draw.")]
 # fmt: on
 
@@ -49,6 +56,7 @@ def sample_boundary(
     count: Count = 1,
     spread: Range = None,
     seed: Seed = 0,
+    sensors: Sensors = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -76,4 +84,6 @@ def sample_boundary(
         found, destination = from_family((family, count, spread, seed), output, to_format, session)
     else:
         found, destination = from_files(source or [], output, to_format, session, from_format)
-    return sample(found, sampling, destination, session, skip_existing=skip_existing, jobs=jobs)
+    return sample(
+        found, sampling, destination, session, sensors=sensors, skip_existing=skip_existing, jobs=jobs
+    )

@@ -143,3 +143,18 @@ def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], told: s
     assert told in done.err
     assert done.err.count("\n") == 1
     assert not Path("b.h5").exists()
+
+
+def test_sensors_are_kept_beside_the_edges_and_the_file_still_reads(meshonet: Meshonet) -> None:
+    words = ("sample-boundary", "--family", "hexagon", "--count", "2", "--sensors", "50")
+    assert meshonet(*words, "-o", "b.h5").code == 0
+    with h5py.File("b.h5") as file:
+        assert file["sensors"].shape == (2, 50, 2)
+        np.testing.assert_array_equal(file["sensors"][1, 0], file["south"][1, 0])
+    assert meshonet("tfi", "b.h5", "-o", "g.h5").code == 0
+
+
+def test_sensors_need_hdf5(meshonet: Meshonet) -> None:
+    done = meshonet("sample-boundary", "naca:0012", "--sensors", "20", "-o", "b.csv")
+    assert done.code == 2
+    assert not Path("b.csv").exists()
