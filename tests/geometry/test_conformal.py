@@ -20,9 +20,7 @@ def test_an_ellipse_gets_the_nodes_of_joukowskis_map() -> None:
     curve = Curve(clockwise(np.cos(t) + 0.25j * np.sin(t)), closed=True, corners=[])
     knots = conformal_knots(curve, np.zeros(0), 61)
     angle = 2 * np.pi * np.arange(61) / 60
-    np.testing.assert_allclose(
-        curve.at(knots), clockwise(np.cos(angle) + 0.25j * np.sin(angle)), atol=2e-3
-    )
+    np.testing.assert_allclose(curve.at(knots), clockwise(np.cos(angle) + 0.25j * np.sin(angle)), atol=2e-3)
 
 
 def karman_trefftz(t: np.ndarray, wedge: float) -> np.ndarray:
