@@ -101,6 +101,17 @@ def test_a_coarse_minimum_keeps_the_gain_at_any_resolution() -> None:
     assert angle(reference).mean - angle(found).mean > 0.9 * gain
 
 
+def test_large_grids_are_evaluated_from_smaller_ones_that_are_as_good() -> None:
+    boundary = bump(400, 300)
+    reference, found = winslow(boundary).grid.nodes, solve(boundary).grid.nodes
+    never_worse(found, reference)
+    small = solve(thinned(boundary, 101, 101)).grid.nodes
+    assert angle(found).mean < angle(small).mean
+    assert angle(found).max < angle(reference).max - 5
+    assert np.array_equal(found[:, 0], boundary.south)
+    assert np.array_equal(found[-1], boundary.east)
+
+
 def test_provenance_names_method_and_weights() -> None:
     facts = solve(arch(17, 17)).grid.provenance
     assert (facts["method"], facts["shape"], facts["smoothness"]) == ("variational", 0.9, 2e-3)
