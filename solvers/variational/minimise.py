@@ -26,7 +26,7 @@ PAIRS = 8
 TRIES = 25
 """Lengths of a step that are tried."""
 
-IDLE = 2
+IDLE = 3
 """Small changes in a row that count as standing still; one may come from a short step."""
 
 

@@ -31,7 +31,7 @@ DIRECT = 257
 """Nodes along a direction up to which every node is an unknown, unless a tolerance asks for it; larger grids
 are evaluated from a copy of this size, which measures as good and takes a tenth of the time."""
 
-STILL = 5e-5
+STILL = 3e-5
 """Change of a coordinate, in the square root of the domain's area, at which the finest level stops."""
 
 LOOSER = 5.0
@@ -58,8 +58,8 @@ def solve(
     ----------
     boundary : quad.
     tol : stop when an iteration changes no coordinate by more than this part of the square root of the
-        domain's area; None is 5e-5, and on large grids evaluates the minimum over fewer nodes, which
-        measures as good. With less than 5e-5 every node is an unknown whatever their number.
+        domain's area; None is 3e-5, and on large grids evaluates the minimum over fewer nodes, which
+        measures as good. With less than 3e-5 every node is an unknown whatever their number.
     max_cycles : iterations on the finest level at the most.
     initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
         nodes are replaced.

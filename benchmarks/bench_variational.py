@@ -1,0 +1,164 @@
+"""Quad grids by TFI, Winslow and the variational method, directly and through a coarse solve.
+
+    python benchmarks/bench_variational.py [--sizes 65,129,800] [--domains 60] [--page docs/quad-grids.md]
+
+Folded cells, included angles (largest of each cell), deviation from orthogonal at the walls, relative L2
+distance to the full solve, and processor time of one thread, beside that of a copy of the nodes.
+"""
+
+from __future__ import annotations
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+import argparse
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
+from random_quads import random_quad
+from solver_shapes import arch, bump, hexagon, wrench
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.grid import Grid
+from geometry.quality import count_folded, measure
+from solvers.coarse import solve_coarse
+from solvers.elliptic.solve import solve as winslow
+from solvers.solution import Solution
+from solvers.tfi import tfi
+from solvers.variational.solve import solve as variational
+
+Way = Callable[[Boundary], Solution]
+T = TypeVar("T")
+SHAPES = (arch, hexagon, bump, wrench)
+
+
+def main() -> None:
+    """Measure and print; write the page when asked."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sizes", default="65,129,800")
+    parser.add_argument("--large", type=int, default=3200, help="one more size, of the arch alone")
+    parser.add_argument("--domains", type=int, default=60, help="random domains to try")
+    parser.add_argument("--page", type=Path, help="markdown page to write")
+    options = parser.parse_args()
+    parts = [HEAD]
+    for n in (int(word) for word in options.sizes.split(",")):
+        parts.append(shapes(n))
+    parts.append(shapes(options.large, (arch,)))
+    parts.extend(domains(n, options.domains) for n in (65, 129))
+    text = "\n".join(parts)
+    print(text)
+    if options.page:
+        options.page.write_text(text)
+
+
+def ways(n: int) -> dict[str, Way]:
+    """Return the ways to compare at n x n nodes."""
+    found: dict[str, Way] = {"TFI": lambda b: Solution(tfi(b), "tfi"), "winslow": winslow}
+    counts = (33, 65) if n > 65 else (33,)
+    for m in counts:
+        found[f"winslow --coarse {m}"] = partial(solve_coarse, method=winslow, n=m, smooth=True)
+    found["**variational**"] = variational
+    for m in counts:
+        found[f"**variational --coarse {m}**"] = partial(solve_coarse, method=variational, n=m, smooth=True)
+    return found
+
+
+def shapes(n: int, makers: tuple[Callable[[int, int], Boundary], ...] = SHAPES) -> str:
+    """Return the tables of the shapes at n x n nodes."""
+    lines = [f"\n## {n} x {n}\n"]
+    for make in makers:
+        boundary = make(n, n)
+        lines += [f"\n{boundary.name}\n", TABLE, RULE]
+        reference: dict[str, Floats] = {}
+        for name, way in ways(n).items():
+            seconds, nodes = best(way, boundary, 5 if n < 500 else 2)
+            family = name.strip("*").split()[0]
+            full = reference.setdefault(family, nodes)
+            lines.append(row(name, nodes, full, seconds))
+        copied = min(clocked(lambda full=full: full.copy(order="K"))[0] for _ in range(5))
+        lines.append(f"| a copy of the nodes | | | | | | {1e3 * copied:.1f} |")
+    return "\n".join(lines)
+
+
+def row(name: str, nodes: Floats, full: Floats, seconds: float) -> str:
+    """Return one line of a table."""
+    angles = measure(Grid(nodes), percentiles=True)["max_angle"]
+    spread = np.linalg.norm(full - full.mean(axis=(0, 1)))
+    apart = "" if nodes is full else f"{np.linalg.norm(nodes - full) / spread:.1e}"
+    figures = f"{angles.max:.1f} / {angles.p99:.1f} / {angles.mean:.1f} | {wall(nodes):.1f}"
+    return f"| {name} | {count_folded(nodes)} | {figures} | {apart} | {1e3 * seconds:.1f} |"
+
+
+def wall(nodes: Floats) -> float:
+    """Return the mean deviation from 90 degrees of the lines that leave the four edges."""
+    found = []
+    for side in (nodes, nodes[:, ::-1], nodes.swapaxes(0, 1), nodes.swapaxes(0, 1)[:, ::-1]):
+        along, off = side[2:, 0] - side[:-2, 0], side[1:-1, 1] - side[1:-1, 0]
+        cosine = (along * off).sum(axis=-1)
+        cosine /= np.linalg.norm(along, axis=-1) * np.linalg.norm(off, axis=-1)
+        found.append(np.degrees(np.arcsin(np.clip(np.abs(cosine), 0, 1))))
+    return float(np.concatenate(found).mean())
+
+
+def domains(n: int, count: int) -> str:
+    """Return the table over random domains at n x n nodes."""
+    boundaries = [b for seed in range(count) if (b := random_quad(seed, n, n)) is not None]
+    lines = [f"\n## {len(boundaries)} random four-sided domains, {n} x {n}\n"]
+    lines += ["| way | with folds | max / mean angle, averaged | worse than Winslow | CPU ms, median |"]
+    lines += ["| --- | --- | --- | --- | --- |"]
+    reference: list[tuple[float, float]] = []
+    for name, way in ways(65).items():
+        angles, folded, spent = [], 0, []
+        for boundary in boundaries:
+            seconds, solution = clocked(partial(way, boundary))
+            summary = measure(solution.grid)["max_angle"]
+            angles.append((summary.max, summary.mean))
+            folded += count_folded(solution.grid.nodes) > 0
+            spent.append(seconds)
+        reference = angles if name == "winslow" else reference
+        pairs = list(zip(angles, reference, strict=False))
+        worse = sum(a[0] > r[0] + 1e-9 or a[1] > r[1] for a, r in pairs)
+        highest, mean = np.mean(angles, axis=0)
+        median = 1e3 * np.median(spent)
+        told = worse if reference and name != "winslow" else ""
+        lines.append(f"| {name} | {folded} | {highest:.1f} / {mean:.1f} | {told} | {median:.1f} |")
+    return "\n".join(lines)
+
+
+def best(way: Way, boundary: Boundary, repeats: int) -> tuple[float, Floats]:
+    """Return the least processor seconds of `repeats` runs, and the nodes."""
+    runs = [clocked(partial(way, boundary)) for _ in range(repeats)]
+    return min(seconds for seconds, _ in runs), runs[0][1].grid.nodes
+
+
+def clocked(call: Callable[[], T]) -> tuple[float, T]:
+    """Return the processor seconds of `call` and its result."""
+    begun = time.process_time()
+    result = call()
+    return time.process_time() - begun, result
+
+
+TABLE = "| way | folded | max / 99 % / mean angle | off 90 at walls | from the full solve | CPU ms |"
+RULE = "| --- | --- | --- | --- | --- | --- |"
+HEAD = """# Quad grids: TFI, Winslow, variational
+
+<!-- made by python benchmarks/bench_variational.py --page docs/quad-grids.md -->
+
+Angles are the largest included angle of each cell, in degrees; a corner of the boundary itself (arch 147.5,
+hexagon 135) bounds the maximum from below. Distances are relative, in L2, to the method without --coarse
+(which for variational grids beyond 257 nodes a side is itself evaluated from fewer). Processor time of one
+thread of a shared machine. Folds are counted as they leave the solver, before the guard repairs them.
+"""
+
+if __name__ == "__main__":
+    main()
