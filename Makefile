@@ -5,11 +5,12 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find geometry solvers include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
 
-.PHONY: help demo test lint train bench docs clean
+.PHONY: help demo test test-clients lint train bench docs clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
 	@echo 'make test    the test suite'
+	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped model again, from procedural airfoils (resumable; about an hour on one core)'
 	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
@@ -42,6 +43,12 @@ demo: $(VENV)/.installed
 # --- checks
 test: $(VENV)/.developing
 	$(BIN)/python -m pytest $(TESTS)
+
+# programs that read what is written here, from Debian: needs to be root, or them installed
+test-clients: $(VENV)/.developing
+	command -v cgnscheck checkMesh >/dev/null || \
+	  { apt-get update -qq && apt-get install -y -qq --no-install-recommends cgns-convert openfoam; }
+	MESHONET_CLIENTS=1 $(BIN)/python -m pytest -m client tests/formats
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

@@ -25,7 +25,7 @@ _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 
 
 @contextlib.contextmanager
-def whole_file(destination: str, *, make_folder: bool = False) -> Iterator[Path]:
+def whole_file(destination: str, *, make_folder: bool = False, beside: bool = False) -> Iterator[Path]:
     """Give a path to write to; what is there becomes `destination` when the block ends without an error.
 
     The path lies beside the destination, so that the last step is one atomic rename; for ``-``
@@ -37,6 +37,7 @@ def whole_file(destination: str, *, make_folder: bool = False) -> Iterator[Path]
     ----------
     destination : path, or ``-``.
     make_folder : make the destination's folder when it is missing.
+    beside : whether other files will be written beside the path, which a stream has no room for.
 
     Raises
     ------
@@ -55,6 +56,8 @@ def whole_file(destination: str, *, make_folder: bool = False) -> Iterator[Path]
     name = printable(destination)
     with _told(name):
         stream = destination == "-" or _is_stream(Path(destination))
+        if stream and beside:
+            raise InputError("is a stream, and a folder is to be written", "name a file", source=name)
         part = _part_in_tmp() if stream else _part_beside(Path(destination), name, make_folder)
     try:
         with _told(name, _FULL):
@@ -66,6 +69,48 @@ def whole_file(destination: str, *, make_folder: bool = False) -> Iterator[Path]
                 part.replace(os.path.realpath(destination))
     finally:
         part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def whole_folder(target: Path) -> Iterator[Path]:
+    """Give an empty folder beside `target` that takes its place, with all in it, when the block ends well.
+
+    A folder that is there already is swapped with the new one in one step where the system can do that,
+    and removed afterwards. On any exception the new one is removed and `target` is as it was.
+    """
+    _sweep(target.parent)
+    part = _part_name(target)
+    try:
+        part.mkdir()
+        yield part
+        if not target.is_dir():
+            part.rename(target)
+        elif not _swapped(part, target):
+            old = _part_name(target)
+            target.rename(old)
+            part.rename(target)
+            _remove(old)
+    finally:
+        _remove(part)
+
+
+def _swapped(one: Path, other: Path) -> bool:
+    """Exchange two paths in one step; say whether the system could."""
+    import ctypes
+
+    here, exchange = -100, 2  # AT_FDCWD, RENAME_EXCHANGE of linux/fs.h
+    rename = getattr(ctypes.CDLL(None), "renameat2", None)
+    return rename is not None and rename(here, os.fsencode(one), here, os.fsencode(other), exchange) == 0
+
+
+def _remove(path: Path) -> None:
+    """Remove a file or a folder, if there is one."""
+    if path.is_dir() and not path.is_symlink():
+        import shutil
+
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
 
 
 @contextlib.contextmanager
@@ -95,10 +140,14 @@ def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
             source=name,
         )
     _sweep(target.parent)
-    part = target.with_name(f".{target.name[:150]}.{_HOST}-{os.getpid()}-{os.urandom(4).hex()}{PART_SUFFIX}")
+    part = _part_name(target)
     # made here, not by tempfile, so that the permissions are those of the umask as for any new file
     os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
     return part
+
+
+def _part_name(target: Path) -> Path:
+    return target.with_name(f".{target.name[:150]}.{_HOST}-{os.getpid()}-{os.urandom(4).hex()}{PART_SUFFIX}")
 
 
 def _sweep(folder: Path) -> None:
@@ -110,7 +159,7 @@ def _sweep(folder: Path) -> None:
         for entry in folder.iterdir():
             match = _PART.fullmatch(entry.name)
             if match and not _alive(int(match[1])):
-                entry.unlink(missing_ok=True)
+                _remove(entry)
 
 
 def _alive(process: int) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formats.edges import wake_nodes
+from formats.patches import patches
 from geometry.arrays import Floats, Side
 from geometry.grid import Grid
 
@@ -76,24 +77,14 @@ def _numbers(grid: Grid) -> Indices:
 
 
 def _edges(grid: Grid, number: Indices) -> dict[str, Indices]:
-    """Return the outer edges by part; an edge met twice lies inside (a cut) and is left out."""
+    """Return the outer edges by part, without those of the cut."""
     sides: dict[Side, Indices] = {
         "south": np.stack([number[:-1, 0], number[1:, 0]], axis=-1),
         "east": np.stack([number[-1, :-1], number[-1, 1:]], axis=-1),
         "north": np.stack([number[1:, -1], number[:-1, -1]], axis=-1),
         "west": np.stack([number[0, 1:], number[0, :-1]], axis=-1),
     }
-    every = np.sort(np.concatenate(list(sides.values())), axis=1)
-    _, inverse, counts = np.unique(every, axis=0, return_inverse=True, return_counts=True)
-    outer = np.split(counts[inverse.ravel()] == 1, np.cumsum([len(edge) for edge in sides.values()])[:-1])
     found: dict[str, list[Indices]] = {}
-    for (side, edges), keep in zip(sides.items(), outer, strict=True):
-        unnamed = keep.copy()
-        for part in grid.parts:
-            if part.side == side:
-                within = slice(part.start, part.stop)
-                found.setdefault(part.name, []).append(edges[within][keep[within]])
-                unnamed[within] = False
-        found.setdefault(side, []).append(edges[unnamed])
-    joined = {name: np.concatenate(pieces) for name, pieces in found.items()}
-    return {name: edges for name, edges in joined.items() if len(edges)}
+    for part in patches(grid):
+        found.setdefault(part.name, []).append(sides[part.side][part.start : part.stop])
+    return {name: np.concatenate(pieces) for name, pieces in found.items()}

@@ -12,7 +12,9 @@ _ROWS = 1 << 14
 """Rows turned into text at a time."""
 
 
-def words(names: Iterable[str], limit: int = 64, taken: Iterable[str] = ()) -> dict[str, str]:
+def words(
+    names: Iterable[str], limit: int = 64, taken: Iterable[str] = (), *, letter: bool = False
+) -> dict[str, str]:
     """Return a word of ASCII letters, digits and ``_.+-`` for each of `names`, all different.
 
     Solvers' case files name boundaries, and a blank, a comma or a bracket ends a name there.
@@ -21,6 +23,7 @@ def words(names: Iterable[str], limit: int = 64, taken: Iterable[str] = ()) -> d
     ----------
     limit : most characters of a word.
     taken : words that must not come out.
+    letter : whether a word must start with a letter.
 
     Examples
     --------
@@ -33,6 +36,8 @@ def words(names: Iterable[str], limit: int = 64, taken: Iterable[str] = ()) -> d
         if name in found:
             continue
         stem = re.sub(r"[^A-Za-z0-9_.+-]+", "_", name).strip("_.")[:limit] or "part"
+        if letter and not stem[0].isalpha():
+            stem = f"part_{stem}"[:limit]
         word, count = stem, 1
         while word in used:
             count += 1

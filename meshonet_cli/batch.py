@@ -93,13 +93,14 @@ class Destination:
             return self.text
         name = re.sub(r"[^\w.+-]+", "_", item.what.name).strip("._") or item.stem
         path = self.text.format(stem=item.stem, index=item.index, name=name)
-        if path in self._taken:
+        place = str(Path(path).parent) if self.format.fills_folder else path
+        if place in self._taken:
             raise InputError(
-                f"would overwrite {path} of {self._taken[path]}",
+                f"would overwrite {place} of {self._taken[place]}",
                 f"put {{index}} into -o {self.text}",
                 source=item.label,
             )
-        self._taken[path] = item.label
+        self._taken[place] = item.label
         return path
 
     def check_room(self, sources: Sequence[str]) -> None:
@@ -127,7 +128,8 @@ class Destination:
 
     def write(self, path: str, what: Iterable[Any]) -> None:
         """Write `what` to `path`, whole or not at all."""
-        with whole_file(path, make_folder=self.each) as part:
+        folder = self.format.fills_folder
+        with whole_file(path, make_folder=self.each or folder, beside=folder) as part:
             self._put(part, what)
 
 

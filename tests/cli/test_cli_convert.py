@@ -98,3 +98,21 @@ def test_shapes_stay_shapes(meshonet: Meshonet) -> None:
     assert done.code == 0
     (shape,) = read_shapes("duct.h5")
     assert shape.name
+
+
+def test_an_openfoam_case_fills_the_folder_of_its_file(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("convert", grid_vts, "case/case.foam", "--extrude", "0.1").code == 0
+    assert Path("case/case.foam").exists()
+    assert Path("case/constant/polyMesh/owner").exists()
+    done = meshonet("convert", grid_vts, "-", "--to", "openfoam")
+    assert done.code == 2
+    assert "a folder is to be written; name a file" in done.err
+
+
+def test_two_cases_do_not_go_into_one_folder(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "{name}.vts")
+    done = meshonet("convert", "flat.vts", "low.vts", "-o", "cases/{stem}.foam")
+    assert done.code == 2
+    assert "would overwrite cases of flat.vts" in done.err
+    assert meshonet("convert", "flat.vts", "low.vts", "-o", "each/{stem}/case.foam").code == 0
+    assert Path("each/low/constant/polyMesh/points").exists()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from format_shapes import PYTHON, Pipe, file_names
 
-from formats.output import PART_SUFFIX, whole_file
+from formats.output import PART_SUFFIX, whole_file, whole_folder
 from geometry.errors import InputError
 
 
@@ -168,3 +168,36 @@ def test_sigterm_turned_into_an_exit_removes_the_part(tmp_path: Path) -> None:
         child.send_signal(signal.SIGTERM)
         assert child.wait(timeout=30) == 143
     assert file_names(tmp_path) == []
+
+
+def test_a_folder_takes_the_place_of_the_old_one_only_when_whole(tmp_path: Path) -> None:
+    target = tmp_path / "mesh"
+    for text in ("first", "second"):
+        with whole_folder(target) as folder:
+            (folder / text).write_text(text)
+        assert file_names(target) == [text]
+        assert file_names(tmp_path) == ["mesh"]
+    with pytest.raises(FileNotFoundError), whole_folder(target) as folder:
+        (folder / "third" / "missing").write_text("half")
+    assert file_names(target) == ["second"]
+    assert file_names(tmp_path) == ["mesh"]
+
+
+def test_a_folder_is_replaced_where_the_system_cannot_swap(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("formats.output._swapped", lambda one, other: False)
+    for text in ("first", "second"):
+        with whole_folder(tmp_path / "mesh") as folder:
+            (folder / text).write_text(text)
+        assert file_names(tmp_path / "mesh") == [text]
+        assert file_names(tmp_path) == ["mesh"]
+
+
+@pytest.mark.parametrize("stream", ["-", "/dev/null"])
+def test_a_stream_has_no_room_for_a_folder(stream: str) -> None:
+    with (
+        pytest.raises(InputError, match="is a stream, and a folder is to be written; name a file"),
+        whole_file(stream, beside=True),
+    ):
+        pass
