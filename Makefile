@@ -22,6 +22,7 @@ $(BIN)/python:
 
 $(VENV)/.installed: $(BIN)/python pyproject.toml setup.py constraints.txt $(KERNELS)
 	$(PIP) --editable .
+	@$(BIN)/python -m compileall -q geometry formats solvers meshonet_cli
 	@touch $@
 
 $(VENV)/.developing: $(VENV)/.installed

@@ -1,5 +1,6 @@
 """Build of the compiled kernels: every ``_name.pyx`` is one, with ``name_kernel.c`` where that exists."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -39,5 +40,6 @@ setup(
         MODULES,
         language_level=3,
         compiler_directives={"boundscheck": False, "wraparound": False, "cdivision": True},
-    )
+    ),
+    options={"build_ext": {"parallel": os.cpu_count() or 1}},
 )
