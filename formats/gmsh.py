@@ -52,7 +52,7 @@ def _write(
 
     inside = INTERIOR if all(name != INTERIOR for _, name, _ in groups) else f"{INTERIOR}-cells"
     cells = [(kind, block) for kind, _, block in groups] + [interior]
-    names = [(_quotable(name), dimension) for _, name, _ in groups] + [(inside, dimension + 1)]
+    names = [(quotable(name), dimension) for _, name, _ in groups] + [(inside, dimension + 1)]
     tags = [np.full(len(block), tag) for tag, (_, block) in enumerate(cells, start=1)]
     mesh = meshio.Mesh(
         points,
@@ -63,7 +63,7 @@ def _write(
     meshio.gmsh.write(str(path), mesh, fmt_version="2.2", binary=not text, float_fmt=".16e")
 
 
-def _quotable(name: str) -> str:
+def quotable(name: str) -> str:
     """Return a name that can stand between double quotes."""
     return printable(name).replace('"', "'")
 

@@ -37,6 +37,8 @@ TABLE: dict[str, Row] = {
     "gmsh-ascii": Row("formats.gmsh", (".msh",)),
     "cgns": Row("formats.cgns", (".cgns",)),
     "openfoam": Row("formats.openfoam", (".foam",)),
+    "geo": Row("formats.gmsh_geo", (".geo",)),
+    "nmf": Row("formats.nmf", (".nmf",)),
     "su2": Row("formats.su2", (".su2",)),
     "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),

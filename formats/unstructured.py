@@ -38,7 +38,7 @@ def unstructured(grid: Grid) -> Unstructured:
     Edges inside the domain (the cut, the wake) belong to no part; an outer edge that nobody named is
     called by its side.
     """
-    number = _numbers(grid)
+    number = node_numbers(grid)
     used, first = np.unique(number.ravel(order="F"), return_index=True)
     number = np.searchsorted(used, number)
     points = np.stack([grid.x.ravel(order="F")[first], grid.y.ravel(order="F")[first]], axis=-1)
@@ -64,7 +64,7 @@ def layer_points(mesh: Unstructured, thickness: float) -> Floats:
     return np.concatenate(planes)
 
 
-def _numbers(grid: Grid) -> Indices:
+def node_numbers(grid: Grid) -> Indices:
     """Return a number (ni, nj) for every node, i fastest, the same for nodes that are one."""
     ni, nj = grid.ni, grid.nj
     number = np.arange(ni * nj, dtype=np.int64).reshape((ni, nj), order="F")
