@@ -33,6 +33,7 @@ TABLE: dict[str, Row] = {
     "vts": Row("formats.vts", (".vts",)),
     "vtk": Row("formats.vtk_legacy", (".vtk",)),
     "vtk-ascii": Row("formats.vtk_legacy", (".vtk",)),
+    "vtu": Row("formats.vtu", (".vtu",)),
     "gmsh": Row("formats.gmsh", (".msh",)),
     "gmsh-ascii": Row("formats.gmsh", (".msh",)),
     "cgns": Row("formats.cgns", (".cgns",)),

@@ -26,7 +26,7 @@ from geometry.grid import Grid
 HEAVY = ("h5py", "meshio", "matplotlib", "shapely", "scipy", "torch", "numba")
 BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
 BOUNDARIES = [row.name for row in formats() if row.write_boundaries and row.read_shapes]
-CHECKED_ELSEWHERE = {"gmsh", "gmsh-ascii", "geo", "nmf", "openfoam", "su2", "png", "svg", "pdf"}
+CHECKED_ELSEWHERE = {"gmsh", "gmsh-ascii", "geo", "nmf", "openfoam", "su2", "vtu", "png", "svg", "pdf"}
 """Formats that are written only; each has a test file with a reader of somebody else's."""
 
 

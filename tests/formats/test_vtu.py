@@ -1,0 +1,36 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from format_shapes import c_grid, channel, ring
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+from formats.unstructured import unstructured
+from formats.vtu import write_extruded, write_grids
+from geometry.grid import Grid
+
+
+@pytest.mark.parametrize("thick", [False, True])
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+def test_vtk_reads_cells_points_and_the_numbers_of_parts(
+    make: type[Grid], thick: bool, tmp_path: Path
+) -> None:
+    mesh = unstructured(make())
+    if thick:
+        write_extruded(tmp_path / "g.vtu", [make()], 0.5)
+    else:
+        write_grids(tmp_path / "g.vtu", [make()])
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "g.vtu"))
+    reader.Update()
+    read = reader.GetOutput()
+    points = vtk_to_numpy(read.GetPoints().GetData())
+    assert np.array_equal(points[: len(mesh.points), :2], mesh.points)
+    counts = [len(mesh.quads), *(len(edges) for edges in mesh.edges.values())]
+    if thick:
+        counts += [len(mesh.quads)] * 2
+        assert points[len(mesh.points) :, 2].tolist() == [0.5] * len(mesh.points)
+    assert np.bincount(vtk_to_numpy(read.GetCellData().GetArray("part"))).tolist() == counts
