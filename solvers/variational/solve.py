@@ -40,6 +40,9 @@ LOOSER = 5.0
 MOST = 1000
 """Iterations on a coarser level at the most."""
 
+UNFOLDED = 129
+"""Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
+
 WEAKER = 3
 """How often the edge length term may be made weaker, to a fourth each time."""
 
@@ -69,7 +72,7 @@ def solve(
     -------
     Solution
         the grid and the iterations on the finest level. It is valid wherever a start could be unfolded;
-        a note says when none could, and the grid is then Winslow's or `initial`.
+        a note says when none could, and the grid is then folded.
 
     Raises
     ------
@@ -179,6 +182,8 @@ def descend(nodes: Floats, weights: Weights, still: float, most: int) -> tuple[i
         return energy(at, aspect, weights.shape, weights.smoothness, epsilon, gradient, work)
 
     if count_folded(nodes) and repair(nodes, periodic=False):
+        if max(ni, nj) > UNFOLDED:
+            return 0, False
         smallest = functional(z, np.empty_like(z))[1]
         epsilon = max(0.05 * area / cells, -0.5 * smallest)
         for _ in range(25):

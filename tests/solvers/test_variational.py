@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from random_quads import random_quad
-from solver_shapes import arch, bump, folded, hexagon, hole, naca, seamount, wrench
+from solver_shapes import arch, bump, folded, hexagon, hole, naca, quad, seamount, segment, wrench
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
@@ -13,6 +13,7 @@ from geometry.quality import Summary, measure
 from solvers.coarse import solve_coarse, thinned
 from solvers.elliptic.solve import solve as winslow
 from solvers.tfi import tfi
+from solvers.variational import solve as module
 from solvers.variational.functional import Weights, aspect_of, energy
 from solvers.variational.solve import solve
 
@@ -90,6 +91,23 @@ def test_a_folded_start_is_unfolded() -> None:
     found = solve(boundary, initial=Grid(nodes), max_cycles=1000)
     assert folded(found.grid.nodes) == 0
     assert found.notes == ()
+
+
+def test_the_regularised_barrier_unfolds_what_repair_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "repair", lambda nodes, periodic: folded(nodes))
+    boundary = wrench(33, 33)
+    assert folded(tfi(boundary).nodes) > 10
+    found = solve(boundary, initial=tfi(boundary), max_cycles=1000)
+    assert folded(found.grid.nodes) == 0
+    assert found.notes == ()
+
+
+def test_a_corner_of_180_degrees_is_told() -> None:
+    turned = segment((0, 0), (1, 0), 33), segment((-0.5, 0), (1, 1), 33)
+    boundary = quad(*turned, segment((0, 0), (-0.5, 0), 33), segment((1, 0), (1, 1), 33))
+    found = solve(boundary)
+    assert found.notes == ("no valid start was found; the grid is not the minimum",)
+    assert folded(found.grid.nodes) > 0
 
 
 def test_a_coarse_minimum_keeps_the_gain_at_any_resolution() -> None:
