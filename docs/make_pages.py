@@ -1,7 +1,7 @@
 """Make the generated pages and pictures of docs/: python docs/make_pages.py (make docs).
 
-cli.md from the application, models.md from the headers of the shipped models, families.md and the pictures
-from the commands a user would type.
+cli.md from the application, formats.md from the registry, models.md from the headers of the shipped models,
+families.md and the pictures from the commands a user would type.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from formats.catalogue import page as formats_page
 from geometry.families.family import FAMILIES, family
 from meshonet_cli.reference import reference
 from solvers.neural.weights import described, shipped
@@ -23,6 +24,7 @@ def main() -> None:
     """Write everything."""
     (DOCS / "models.md").write_text(models_page(), encoding="utf-8")
     (DOCS / "cli.md").write_text(reference(), encoding="utf-8")
+    (DOCS / "formats.md").write_text(formats_page(), encoding="utf-8")
     with tempfile.TemporaryDirectory() as folder:
         pictures(Path(folder))
     (DOCS / "families.md").write_text(families_page(), encoding="utf-8")

@@ -92,6 +92,18 @@ def convert_files(
     return session.finish()
 
 
+def print_formats(session: Session, *, as_json: bool) -> int:
+    """Print what every format can do, one JSON object each when asked, and return the exit code."""
+    from formats.catalogue import plain, rows
+
+    if as_json:
+        for row in rows():
+            session.result(row)
+    else:
+        session.print(plain())
+    return session.finish()
+
+
 def _writes_boundaries(source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
     """Say whether boundaries are written: the output holds nothing else, or the input does."""
     try:

@@ -10,18 +10,20 @@ EXAMPLES = (
     "meshonet convert grid.vts grid.p3d",
     "meshonet convert grid.vts grid3d.msh --extrude 0.1",
     "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
+    "meshonet convert grid.vts case/case.foam --extrude 0.1",
+    "meshonet convert --list-formats",
 )
 
 
 # fmt: off
 def convert(
     files: Annotated[
-        list[str],
+        list[str] | None,
         typer.Argument(
             metavar="IN... [OUT]", show_default=False,
             help="Files to read, or - for standard input; without -o the last name is the file to write.",
         ),
-    ],
+    ] = None,
     output: Annotated[
         str | None,
         typer.Option(
@@ -37,6 +39,9 @@ def convert(
             help="Make the grid 3D: one cell of this height in z, as 2D cases of 3D solvers need it.",
         ),
     ] = None,
+    list_formats: Annotated[
+        bool, typer.Option("--list-formats", help="Print what can be read and written, and stop.")
+    ] = False,
     from_format: o.From = None,
     to_format: o.To = None,
     skip_existing: o.SkipExisting = False,
@@ -46,14 +51,17 @@ def convert(
 ) -> int:
     """Turn files from one format into another."""
     from geometry.errors import InputError
-    from meshonet_cli.converting import convert_files
+    from meshonet_cli.converting import convert_files, print_formats
     from meshonet_cli.session import Session
 
-    *sources, target = [*files, output] if output else files
-    if not sources:
-        remedy = f"name it: meshonet convert {files[0]} OUT"
-        raise InputError("there is no file to write", remedy, source="convert")
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    if list_formats:
+        return print_formats(session, as_json=as_json)
+    given = [*(files or []), *([output] if output else [])]
+    if len(given) < 2:
+        remedy = f"name it: meshonet convert {given[0] if given else 'IN'} OUT"
+        raise InputError("there is no file to write", remedy, source="convert")
+    *sources, target = given
     return convert_files(
         sources, target, session,
         from_format=from_format, to_format=to_format, extrude=extrude, skip_existing=skip_existing,

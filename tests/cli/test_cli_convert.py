@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import Meshonet, Process
 
-from formats.registry import read_grids, read_shapes
+from formats.registry import TABLE, read_grids, read_shapes
 
 
 @pytest.fixture
@@ -116,3 +116,17 @@ def test_two_cases_do_not_go_into_one_folder(meshonet: Meshonet, three_h5: Path)
     assert "would overwrite cases of flat.vts" in done.err
     assert meshonet("convert", "flat.vts", "low.vts", "-o", "each/{stem}/case.foam").code == 0
     assert Path("each/low/constant/polyMesh/points").exists()
+
+
+def test_the_formats_are_listed(meshonet: Meshonet) -> None:
+    done = meshonet("convert", "--list-formats")
+    assert (done.code, done.err) == (0, "")
+    assert [line.split()[0] for line in done.out.splitlines()] == ["format", *TABLE]
+    told = meshonet("convert", "--list-formats", "--json").objects
+    assert [row["format"] for row in told] == list(TABLE)
+
+
+def test_nothing_to_write_is_refused(meshonet: Meshonet) -> None:
+    done = meshonet("convert")
+    assert done.code == 2
+    assert "there is no file to write; name it: meshonet convert IN OUT" in done.err

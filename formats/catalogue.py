@@ -1,0 +1,59 @@
+"""What every format can do, as a table: for `convert --list-formats` and for ``docs/formats.md``."""
+
+from __future__ import annotations
+
+from formats.format import Format
+from formats.registry import formats
+
+_PAGE = """# Formats
+
+<!-- made by python docs/make_pages.py; a test keeps it current -->
+
+`meshonet convert IN OUT` goes by the endings; `--from` and `--to` name a format where endings do not tell.
+*Names*: parts of the boundary keep their names. *3D*: `--extrude H` writes it one cell thick in z.
+*Many*: one file holds several.
+
+"""
+_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it is")
+
+
+def rows() -> list[dict[str, str]]:
+    """Return a row for each format, by the table's headings."""
+    return [dict(zip(_HEAD, _row(found), strict=True)) for found in formats()]
+
+
+def markdown() -> str:
+    """Return the table in Markdown."""
+    lines = [_HEAD, ("---",) * len(_HEAD), *(_row(found) for found in formats())]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def plain() -> str:
+    """Return the table in columns, for a terminal."""
+    lines = [_HEAD, *(_row(found) for found in formats())]
+    widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
+    return "\n".join(
+        "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines
+    )
+
+
+def page() -> str:
+    """Return ``docs/formats.md``."""
+    return f"{_PAGE}{markdown()}\n"
+
+
+def _row(found: Format) -> tuple[str, ...]:
+    return (
+        found.name,
+        " ".join(found.suffixes),
+        _what(found.read_grids is not None, found.read_shapes is not None),
+        _what(found.write_grids is not None, found.write_boundaries is not None),
+        "yes" if found.names_parts else "",
+        "yes" if found.write_extruded is not None else "",
+        "yes" if found.many else "",
+        found.description,
+    )
+
+
+def _what(grids: bool, boundaries: bool) -> str:
+    return ", ".join(word for word, can in (("grids", grids), ("boundaries", boundaries)) if can)
