@@ -121,9 +121,10 @@ def _nested(
 def _evaluated(nodes: Floats, boundary: Boundary) -> Floats:
     """Return the grid `nodes` at the counts of `boundary`, smooth at lines that leave kinks."""
     counts = nodes.shape[0], nodes.shape[1]
-    nodes = evaluate(nodes, boundary)
-    sweep_kinks(nodes, boundary, counts)
-    return nodes
+    plain = evaluate(nodes, boundary)
+    swept = plain.copy(order="K")
+    sweep_kinks(swept, boundary, counts)
+    return plain if count_folded(swept) else swept
 
 
 def _coarsest(
