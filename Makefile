@@ -67,7 +67,8 @@ train: $(VENV)/.developing
 	cp train/airfoil-o.safetensors $(MODEL)
 
 bench: $(VENV)/.developing
-	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
+	$(BIN)/python benchmarks/bench_operator.py --page docs/benchmarks.md
+	for name in tfi elliptic variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done
 
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py
