@@ -63,10 +63,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", default="100,400,800,1600")
     sizes = [int(n) for n in parser.parse_args().sizes.split(",")]
-    print(
     heads = ("shape", "nodes a side", "default, s", "cycles", "to 1e-8, s", "cycles", "rate")
     print("| " + " | ".join((*heads, "copies a cycle", "folded", "guard")) + " |")
-    )
     print("| --- |" + " --- |" * 9)
     for n in sizes:
         for name, edges in shapes(n):
