@@ -13,6 +13,7 @@ from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.sampling import Sampling
+from geometry.turn import turned
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item
@@ -53,6 +54,7 @@ def convert_files(
     from_format: str | None = None,
     to_format: str | None = None,
     extrude: float | None = None,
+    swap: bool = False,
     skip_existing: bool = False,
 ) -> int:
     """Write what `sources` hold to `output` and return the exit code.
@@ -62,6 +64,7 @@ def convert_files(
     Parameters
     ----------
     extrude : height of the one cell that a 3D grid gets in z; None leaves grids flat.
+    swap : have xi run along the sides that eta ran along.
     skip_existing : pass over members whose own file is there.
 
     Raises
@@ -69,7 +72,9 @@ def convert_files(
     InputError
         a format that cannot be written, or not in 3D; a height that is not positive.
     """
-    boundaries = extrude is None and _writes_boundaries(sources[0], output, from_format, to_format)
+    boundaries = (
+        extrude is None and not swap and _writes_boundaries(sources[0], output, from_format, to_format)
+    )
     if boundaries:
         destination = Destination(output, to_format, "boundaries")
     else:
@@ -82,7 +87,8 @@ def convert_files(
         return (shape.boundary(Sampling()) for shape in read_shapes(source, from_format))
 
     def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
-        return item.what, Converted(item, item.what)
+        what = turned(item.what) if swap and isinstance(item.what, Grid) else item.what
+        return what, Converted(item, what)
 
     def tell(report: Converted, path: str) -> None:
         report.finished(path)

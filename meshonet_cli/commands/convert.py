@@ -39,6 +39,10 @@ def convert(
             help="Make the grid 3D: one cell of this height in z, as 2D cases of 3D solvers need it.",
         ),
     ] = None,
+    swap: Annotated[
+        bool,
+        typer.Option("--swap", help="Have xi run where eta ran (four-sided grids), still right-handed."),
+    ] = False,
     list_formats: Annotated[
         bool, typer.Option("--list-formats", help="Print what can be read and written, and stop.")
     ] = False,
@@ -64,6 +68,7 @@ def convert(
     *sources, target = given
     return convert_files(
         sources, target, session,
-        from_format=from_format, to_format=to_format, extrude=extrude, skip_existing=skip_existing,
+        from_format=from_format, to_format=to_format, extrude=extrude, swap=swap,
+        skip_existing=skip_existing,
     )
 # fmt: on

@@ -130,3 +130,12 @@ def test_nothing_to_write_is_refused(meshonet: Meshonet) -> None:
     done = meshonet("convert")
     assert done.code == 2
     assert "there is no file to write; name it: meshonet convert IN OUT" in done.err
+
+
+def test_swap_has_xi_run_where_eta_ran(meshonet: Meshonet, duct_h5: Path, grid_vts: Path) -> None:
+    meshonet("tfi", duct_h5, "-o", "duct.vts")
+    (before,) = read_grids("duct.vts")
+    assert meshonet("convert", "duct.vts", "turned.vts", "--swap").code == 0
+    (after,) = read_grids("turned.vts")
+    assert (after.ni, after.nj) == (before.nj, before.ni)
+    assert meshonet("convert", grid_vts, "no.vts", "--swap").code == 2
