@@ -220,6 +220,9 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
         first, float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).mean()), len(nodes[0]) - 1
     )
     note = f"first cell {first:.6g} at every wall node, growing by {growth:.3f} a row on average"
+    heights = np.hypot(*(nodes[:, 1] - nodes[:, 0]).T)
+    if np.abs(heights / first - 1.0).max() > 1e-6:
+        note = f"first cells are {heights.min():.3g} to {heights.max():.3g} instead of {first:.6g}"
     grid = Grid(nodes, "o", boundary.parts, boundary.name, {"method": "hyperbolic", "wall_spacing": first})
     return Solution(
         grid,
