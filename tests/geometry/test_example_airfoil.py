@@ -12,7 +12,7 @@ FILE = Path(__file__).parents[2] / "examples" / "naca2412.dat"
 
 
 def written() -> str:
-    """Return what the file has to hold: a name, then x y in Selig's order, 61 points a surface, 7 decimals."""
+    """Return what the file has to hold: a name, then x y in Selig's order, 61 points a surface."""
     rows = (f"{x:10.7f} {y:10.7f}" for x, y in naca_points("2412", 61) + 0.0)
     return "\n".join(["NACA 2412", *rows]) + "\n"
 
