@@ -34,11 +34,9 @@ class StripGrid:
         n = len(wall)
         self.theta = 2.0 * np.pi * np.arange(n) / n
         self.eta = eta
-        waves = np.concatenate([c[: MODES + 1], c[1 : MODES + 1]])
-        waves[1 : MODES + 1] += c[: -MODES - 1 : -1]
-        waves[MODES + 1 :] = 1j * (waves[MODES + 1 :] - c[: -MODES - 1 : -1])
         self._levels = c.shape[1]
-        self._columns = _trigonometric(n) @ np.concatenate([waves.real, waves.imag], axis=1)
+        columns = _at_nodes(c, n)
+        self._columns = np.concatenate([columns.real, columns.imag], axis=1)
         self._across = interpolation(eta)
         self._near = _high_modes(wall, wall, far, eta)
         self._away = _high_modes(far, wall, far, 1.0 - eta[::-1])[:, ::-1]
@@ -88,11 +86,14 @@ class StripGrid:
                 phi[a - start : b - start] += np.outer(along[a - rows.start : b - rows.start], across)
 
 
-def _trigonometric(n: int) -> Floats:
-    """Return (n, 2 MODES + 1): 1, cos k theta, sin k theta, gathered from n roots of unity."""
-    roots = np.exp(2j * np.pi * np.arange(n) / n)
-    waves = roots[np.outer(np.arange(n), np.arange(MODES + 1)) % n]
-    return np.concatenate([waves.real, waves.imag[:, 1:]], axis=1)
+def _at_nodes(c: Complexes, n: int) -> Complexes:
+    """Return samples (n, ...) at equal steps of theta of the function with modes c (2 MODES + 1, ...)."""
+    full = np.zeros((n, *c.shape[1:]), complex)
+    for row, k in enumerate((*range(MODES + 1), *range(-MODES, 0))):
+        full[k % n] += c[row]  # few nodes cannot tell high modes from low ones
+    samples: Complexes = np.fft.ifft(full, axis=0)
+    samples *= n
+    return samples
 
 
 def _high_modes(F: Complexes, wall: Complexes, far: Complexes, depth: Floats) -> Complexes:

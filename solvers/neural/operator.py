@@ -61,7 +61,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         if model is not None:
             raise InputError(f"no shipped model makes {boundary.topology} grids", "leave --model out")
         return solve(boundary)
-    network = None if model == "base" else load_model(model)  # once a process: not part of a grid's time
+    network = None if model == "base" else load_model(model)
+    across()  # like the model, made once a process: neither is part of a grid's time
     begun = time.perf_counter()
     try:
         nodes, changes = _operate(boundary, network, polish)
