@@ -25,9 +25,10 @@ $(VENV)/.installed: $(BIN)/python pyproject.toml setup.py constraints.txt $(KERN
 	@$(BIN)/python -m compileall -q geometry formats solvers meshonet_cli
 	@touch $@
 
-$(VENV)/.developing: $(VENV)/.installed
+$(VENV)/.developing: $(BIN)/python pyproject.toml setup.py constraints.txt $(KERNELS)
 	$(PIP) --editable '.[train,test,lint]'
-	@touch $@
+	@$(BIN)/python -m compileall -q geometry formats solvers meshonet_cli
+	@touch $(VENV)/.installed $@
 
 # --- the main job
 demo: $(VENV)/.installed
