@@ -109,7 +109,7 @@ def _attempt(
 
 
 def _round_off(boundary: Boundary) -> float:
-    """Return the residual that rounding alone makes: alpha x_xi_xi, with steps h and coordinates of size x."""
+    """Return the residual that rounding makes: alpha x_xi_xi, with steps h and coordinates of size x."""
     edges = [getattr(boundary, side) for side in SIDES]
     size = max(float(np.abs(edge).max()) for edge in edges)
     step = float(np.sqrt(np.mean(np.concatenate([np.diff(edge, axis=0) for edge in edges]) ** 2)))
