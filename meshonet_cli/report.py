@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from geometry.quality import Quality
 
 
-STAGES = ("read", "boundary", "grid", "guard", "quality", "compare", "write")
+STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
 
 
 @dataclass
@@ -59,10 +59,10 @@ class Timed:
 
 @dataclass
 class Report(Timed):
-    """The story of one grid; the fields are those of the JSON that CLI.md promises.
+    """The story of one grid, as ``--json`` prints it.
 
-    `seconds` holds wall-clock seconds by stage: read, boundary, grid (from boundary nodes in memory to grid
-    nodes in memory), guard, quality, write, and total.
+    `seconds` holds wall-clock seconds by stage: read, boundary, load (modules and models, once a process),
+    grid (from boundary nodes in memory to grid nodes in memory), guard, quality, write, and total.
     """
 
     method: str

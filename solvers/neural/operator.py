@@ -70,6 +70,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         return _elliptic(boundary, f"the operator cannot take this body ({error.problem})", begun)
     if changes and not changes[-1] < WILD:
         return _elliptic(boundary, "the operator's polish diverged", begun)
+    spent = time.perf_counter() - begun
     facts = {"method": "operator", "model": network.name if network else "base", "polish": len(changes)}
     grid = Grid(nodes, "o", boundary.parts, boundary.name, facts)
     return Solution(
@@ -78,7 +79,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         model=network.name if network else "base",
         residual=changes[-1] if changes else None,
         cycles=len(changes),
-        seconds={"grid": time.perf_counter() - begun},
+        seconds={"grid": spent},
     )
 
 
