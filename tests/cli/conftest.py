@@ -104,7 +104,7 @@ def wave(n: int = 41) -> dict[str, np.ndarray]:
 
 
 def dataset(path: Path, topology: str, *samples: dict[str, np.ndarray], names: tuple[str, ...] = ()) -> Path:
-    """Write a boundary dataset of the layout that CLI.md describes."""
+    """Write a boundary dataset of layout version 1."""
     with h5py.File(path, "w") as file:
         file.attrs.update(format="meshonet-boundary", version=1, topology=topology)
         for side in ("south", "north", "west", "east"):
