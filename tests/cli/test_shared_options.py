@@ -6,7 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import Meshonet
+from conftest import Meshonet, dataset, duct
 
 from formats.registry import read_grids
 from meshonet_cli.app import application
@@ -117,7 +117,6 @@ def test_gates_decide_the_exit_code(meshonet: Meshonet, duct_h5: Path, command: 
 
 @pytest.mark.parametrize("command", GRID_COMMANDS)
 def test_no_grid_is_folded_in_silence(meshonet: Meshonet, tmp_path: Path, command: str) -> None:
-    from conftest import dataset, duct
 
     edges = duct()
     for side in ("south", "north"):  # a boundary that crosses itself has no valid grid
