@@ -117,7 +117,6 @@ def test_gates_decide_the_exit_code(meshonet: Meshonet, duct_h5: Path, command: 
 
 @pytest.mark.parametrize("command", GRID_COMMANDS)
 def test_no_grid_is_folded_in_silence(meshonet: Meshonet, tmp_path: Path, command: str) -> None:
-
     edges = duct()
     for side in ("south", "north"):  # a boundary that crosses itself has no valid grid
         edges[side][6:15, 1] = 0.5 + (1 if side == "south" else -1) * 0.3
