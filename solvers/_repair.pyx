@@ -12,7 +12,7 @@ cdef extern from "repair_kernel.h":
         const double *width
         const double *height
         double shape
-    size_t repair_workspace(Py_ssize_t ni, Py_ssize_t nj) nogil
+    size_t repair_workspace(Py_ssize_t ni, Py_ssize_t nj, int periodic) nogil
     double repair_energy(const Patch *patch, double epsilon, double *gx, double *gy, double *smallest,
                          double *work) nogil
     int repair_minimise(const Patch *patch, double epsilon, int most, double still, double until_valid,
@@ -35,7 +35,7 @@ def energy(double[:, ::1] x, double[:, ::1] y, const double[::1] width, const do
     cdef Patch p = patch_of(x, y, width, height, periodic, shape)
     cdef double smallest = 0.0, total
     cdef double[:, ::1] gx = np.empty((p.ni, p.nj)), gy = np.empty((p.ni, p.nj))
-    cdef double[::1] work = np.empty(repair_workspace(p.ni, p.nj))
+    cdef double[::1] work = np.empty(repair_workspace(p.ni, p.nj, p.periodic))
     total = repair_energy(&p, epsilon, &gx[0, 0], &gy[0, 0], &smallest, &work[0])
     return total, gx.base, gy.base, smallest
 
@@ -46,7 +46,7 @@ def minimise(double[:, ::1] x, double[:, ::1] y, const double[::1] width, const 
     cdef Patch p = patch_of(x, y, width, height, periodic, shape)
     cdef double total = 0.0, smallest = 0.0
     cdef int done
-    cdef double[::1] work = np.empty(repair_workspace(p.ni, p.nj))
+    cdef double[::1] work = np.empty(repair_workspace(p.ni, p.nj, p.periodic))
     with nogil:
         done = repair_minimise(&p, epsilon, most, still, until_valid, &total, &smallest, &work[0])
     return done, total, smallest

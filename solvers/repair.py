@@ -1,34 +1,40 @@
 """Unfold cells: minimise the corner energy of `solvers._repair` around the folded ones.
 
-A grid with a few folded cells is unfolded on windows around them, which grow while they stay folded. A grid
-folded all over is unfolded on coarser copies of itself first: the coarsest as a whole, then each finer one is
-filled from it and what is left is unfolded on windows. Only inner nodes move, so the boundary stays as it is.
+A grid with a few folded cells is unfolded on windows around them, which grow while they stay folded. What
+that cannot undo is unfolded on coarser copies of the grid first: the coarsest at once, then each finer one
+follows, and what is left is unfolded on windows. Only inner nodes move, so the boundary stays as it is.
 """
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.arrays import Floats, as_planar
-from geometry.quality import count_folded, folded_cells
-from solvers._repair import minimise
+from geometry.grid import Grid
+from geometry.quality import count_folded, folded_cells, per_cell
+from solvers.unfold import smooth, unfold
 from solvers.windows import Window, windows
 
-MARGIN = 6
-"""Cells around a group of folded ones that move with them in the first round."""
+MARGINS = (6, 12, 16)
+"""Cells around a group of folded ones that move with them, round by round."""
 
-ROUNDS = 3
-"""Rounds of windows, each with twice the margin of the last."""
+PATCHES = (32, 64)
+"""The same for windows that are unfolded through coarser copies."""
 
-FEW = 0.01
+LARGEST = 2500
+"""Cells of a grid or window up to which it is unfolded at once."""
+
+FEW = 0.001
 """Fraction of folded cells up to which windows come before coarser copies."""
 
-COARSEST = 33
-"""A copy with this many nodes or fewer along a direction is unfolded as a whole."""
+POOR = 0.1
+"""Scaled Jacobian below which a cell that coarser copies left is smoothed."""
 
-VALID = 1e-3
-"""Smallest corner Jacobian, in areas of the reference cell, at which unfolding may stop."""
+SHARP = 0.5
+"""Radians by which an edge turns at a node that coarser copies must keep."""
 
 
 def repair(nodes: Floats, periodic: bool) -> int:
@@ -39,93 +45,136 @@ def repair(nodes: Floats, periodic: bool) -> int:
     nodes : the grid; its rim stays as it is.
     periodic : an O grid: column ni-1 repeats column 0, and both move together.
     """
-    ni, nj = nodes.shape[:2]
-    if min(ni, nj) < 3:
-        return count_folded(nodes)
-    if count_folded(nodes) <= max(FEW * ni * nj, 20) and unfold_windows(nodes, periodic) == 0:
+    bad = folded_cells(nodes)
+    if min(nodes.shape[:2]) < 3 or len(bad) == 0:
+        return len(bad)
+    if _few(len(bad), nodes) and unfold_windows(nodes, periodic) == 0:
+        smooth_windows(nodes, periodic, bad)
         return 0
-    return unfold_nested(nodes, periodic)
+    left = unfold_nested(nodes, periodic) and unfold_patches(nodes, periodic)
+    poor = np.argwhere(per_cell(Grid(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR)
+    if left == 0 and _few(len(poor), nodes):
+        smooth_windows(nodes, periodic, poor)
+    return left
 
 
 def unfold_windows(nodes: Floats, periodic: bool) -> int:
     """Unfold windows around folded cells, as `repair`."""
     left = count_folded(nodes)
-    for k in range(ROUNDS):
+    for margin in MARGINS:
         if left == 0:
             break
-        for window in windows(folded_cells(nodes), MARGIN * 2**k, nodes.shape[:2], periodic):
-            _unfold_window(nodes, window, periodic)
+        for window in windows(folded_cells(nodes), margin, nodes.shape[:2], periodic, LARGEST):
+            patch = _cut(nodes, window, periodic)
+            before = count_folded(patch)
+            if before and unfold(patch) < before:
+                _put(nodes, window, periodic, patch)
+        left = count_folded(nodes)
+    return left
+
+
+def smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64]) -> None:
+    """Smooth windows around `cells` (n, 2) of valid planar `nodes` (ni, nj, 2), in place."""
+    for window in windows(cells, 2 * MARGINS[0], nodes.shape[:2], periodic, LARGEST):
+        patch = _cut(nodes, window, periodic)
+        smooth(patch)
+        if count_folded(patch) == 0:
+            _put(nodes, window, periodic, patch)
+
+
+def unfold_patches(nodes: Floats, periodic: bool) -> int:
+    """Unfold larger windows through coarser copies, as `repair`."""
+    left = count_folded(nodes)
+    for margin in PATCHES:
+        if left == 0:
+            break
+        for window in windows(folded_cells(nodes), margin, nodes.shape[:2], periodic, 16 * LARGEST):
+            patch = _cut(nodes, window, periodic)
+            before = count_folded(patch)
+            if before and unfold_nested(patch, False) < before:
+                _put(nodes, window, periodic, patch)
         left = count_folded(nodes)
     return left
 
 
 def unfold_nested(nodes: Floats, periodic: bool) -> int:
-    """Unfold coarser copies first and fill this grid from them, as `repair`."""
+    """Unfold coarser copies first and let this grid follow, as `repair`."""
     ni, nj = nodes.shape[:2]
-    if min(ni, nj) <= COARSEST:
+    tangled = not _few(count_folded(nodes), nodes)
+    small = ni * nj <= LARGEST
+    if ni * nj > LARGEST // 2 and min(ni, nj) > 5:
+        _follow_coarser(nodes, periodic)
+    elif tangled:
         unfold(nodes, periodic)
-        return count_folded(nodes)
-    i, j = _kept(ni), _kept(nj)
+    left = unfold_windows(nodes, periodic)
+    if left and small:
+        left = unfold(nodes, periodic)
+    if left == 0 and small and tangled:
+        smooth(nodes, periodic)
+    return left
+
+
+def _follow_coarser(nodes: Floats, periodic: bool) -> None:
+    """Unfold a coarser copy of planar `nodes` (ni, nj, 2); move them as it moved, or fill them from it."""
+    ni, nj = nodes.shape[:2]
+    i, j = _kept(nodes[:, 0], nodes[:, -1]), _kept(nodes[0], nodes[-1])
     coarse = as_planar(nodes[np.ix_(i, j)])
-    if count_folded(coarse):
-        before = coarse.copy(order="K")
-        unfold_nested(coarse, periodic)
-        moved = nodes + _between(coarse - before, i, j, ni, nj)
-        filled = _between(coarse, i, j, ni, nj)
-        filled[:, 0], filled[:, -1] = nodes[:, 0], nodes[:, -1]
-        if not periodic:
-            filled[0], filled[-1] = nodes[0], nodes[-1]
-        nodes[...] = min(moved, filled, key=count_folded)
-    return unfold_windows(nodes, periodic)
+    if count_folded(coarse) == 0:
+        return
+    before = coarse.copy(order="K")
+    unfold_nested(coarse, periodic)
+    moved = nodes + _between(coarse - before, i, j, ni, nj)
+    filled = _between(coarse, i, j, ni, nj)
+    filled[:, 0], filled[:, -1] = nodes[:, 0], nodes[:, -1]
+    if not periodic:
+        filled[0], filled[-1] = nodes[0], nodes[-1]
+    nodes[...] = min(moved, filled, key=count_folded)
 
 
-def unfold(patch: Floats, periodic: bool = False) -> None:
-    """Unfold, then smooth, the inner nodes of planar `patch` (m, n, 2) in place, as far as that goes.
-
-    The regularisation ε shrinks with the worst corner, at least by half: small enough to tell folded from
-    valid, large enough to let a cell unfold.
-    """
-    x, y = patch[..., 0], patch[..., 1]
-    width, height = reference_lengths(patch)
-    epsilon, best, idle = 1.0, -np.inf, 0
-    for _ in range(20):
-        _, _, smallest = minimise(x, y, width, height, periodic, 0.0, epsilon, 200, 1e-4, VALID)
-        if smallest > 0:
-            minimise(x, y, width, height, periodic, 0.5, 0.0, 100, 1e-3)
-            return
-        idle = 0 if smallest > 0.9 * best else idle + 1
-        if idle == 3:
-            return
-        best = max(best, smallest)
-        epsilon = min(0.5 * epsilon, max(0.2 * abs(smallest), 1e-6))
+def _few(cells: int, nodes: Floats) -> bool:
+    """Return whether so few `cells` of `nodes` (ni, nj, 2) are meant that windows around them come first."""
+    return cells <= max(FEW * nodes.shape[0] * nodes.shape[1], 50)
 
 
-def reference_lengths(patch: Floats) -> tuple[Floats, Floats]:
-    """Return the mean lengths of the cells of `patch` (m, n, 2) along xi (m-1,) and eta (n-1,)."""
-    along, across = (np.diff(patch, axis=axis) for axis in (0, 1))
-    width = np.hypot(along[..., 0], along[..., 1]).mean(axis=1)
-    height = np.hypot(across[..., 0], across[..., 1]).mean(axis=0)
-    return width, height
-
-
-def _unfold_window(nodes: Floats, window: Window, periodic: bool) -> None:
-    """Unfold one window in place, unless that leaves as many folded cells as before."""
+def _cut(nodes: Floats, window: Window, periodic: bool) -> Floats:
+    """Return a planar copy of the nodes of `window`."""
     rows = np.arange(window.i0, window.i1 + 1)
     if periodic:
         rows %= nodes.shape[0] - 1
-    patch = as_planar(nodes[rows, window.j0 : window.j1 + 1])
-    before = count_folded(patch)
-    unfold(patch)
-    if count_folded(patch) >= before:
-        return
-    nodes[rows[1:-1], window.j0 + 1 : window.j1] = patch[1:-1, 1:-1]
+    return as_planar(nodes[rows, window.j0 : window.j1 + 1])
+
+
+def _put(nodes: Floats, window: Window, periodic: bool, patch: Floats) -> None:
+    """Set the inner nodes of `window` to those of `patch`."""
+    rows = np.arange(window.i0 + 1, window.i1)
+    if periodic:
+        rows %= nodes.shape[0] - 1
+    nodes[rows, window.j0 + 1 : window.j1] = patch[1:-1, 1:-1]
     if periodic:
         nodes[-1] = nodes[0]
 
 
-def _kept(n: int) -> NDArray[np.intp]:
-    """Return every second of n indices and the last."""
-    return np.minimum(2 * np.arange(n // 2 + 1), n - 1)
+def _kept(one: Floats, other: Floats) -> NDArray[np.intp]:
+    """Return about every second index of two opposite edges (n, 2), the ends and sharp corners among them.
+
+    A copy that lost the tip of a spike would lead its lines through the spike.
+    """
+    n = len(one)
+    corners = np.flatnonzero(np.maximum(_turning(one), _turning(other)) > SHARP) + 1
+    if len(corners) > n // 8:  # a rough edge: all its nodes are alike
+        corners = corners[:0]
+    stops = np.concatenate([[0], corners, [n - 1]])
+    pieces = [np.arange(a, b, 2) for a, b in pairwise(stops)]
+    return np.concatenate([*pieces, [n - 1]])
+
+
+def _turning(points: Floats) -> Floats:
+    """Return the angle in radians by which the polyline `points` (n, 2) turns at its inner points (n-2,)."""
+    step = np.diff(points, axis=0)
+    before, after = step[:-1], step[1:]
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turning: Floats = np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
+    return turning
 
 
 def _between(values: Floats, i: NDArray[np.intp], j: NDArray[np.intp], ni: int, nj: int) -> Floats:

@@ -2,14 +2,14 @@
 
    A cell corner with edges u along xi and v along eta has g = |u|², h = |v|², J = u × v, and costs
 
-       (1 - s) (r g + h / r) / (2 χ) + s g h / χ²,        χ = (J + sqrt(J² + ε²)) / 2,
+       (1 - s) (r g + h / r) / (2 χ) + s (g h / χ²)²,        χ = (J + sqrt(J² + ε²)) / 2,
 
    with r = height / width of the reference cell. The first term is the discrete harmonic (Winslow) functional,
    infinite at folded cells when ε = 0: Ivanenko, Comput. Math. Math. Phys. 28 (1988) 159-165. The second is
-   1 / sin² of the corner's angle. ε > 0 makes the cost finite for folded cells and lets them unfold: Garanzha,
+   1 / sin⁴ of the corner's angle. ε > 0 makes the cost finite for folded cells and lets them unfold: Garanzha,
    Kaporin, Comput. Math. Math. Phys. 39 (1999) 1426-1440; Garanzha et al., ACM Trans. Graph. 40 (2021) 109.
-   ε is measured in areas of the reference cell. The minimiser is L-BFGS with a diagonal start: Nocedal, Wright,
-   Numerical Optimization (2006), algorithm 7.4. */
+   ε is measured in areas of the reference cell. The minimiser is Newton's method with the parts of the Hessian
+   that are never negative, a banded Cholesky factor and backtracking. */
 #include "repair_kernel.h"
 #include "clones.h"
 #include <math.h>
@@ -28,10 +28,11 @@ MESHONET_INLINE Corner corner(double ux, double uy, double vx, double vy, double
     const double chi = J > 0.0 ? 0.5 * (J + root) : 0.5 * eps2 / (root - J);
     const double inverse = 1.0 / chi;
     const double harmonic = 0.5 * (1.0 - shape) * (r * g + h / r) * inverse;
-    const double angle = shape * g * h * inverse * inverse;
-    const double by_g = (0.5 * (1.0 - shape) * r + shape * h * inverse) * inverse;
-    const double by_h = (0.5 * (1.0 - shape) / r + shape * g * inverse) * inverse;
-    const double by_J = -(harmonic + 2.0 * angle) / root; /* dχ/dJ = χ / root */
+    const double q = g * h * inverse * inverse; /* 1 / sin² */
+    const double angle = shape * q * q;
+    const double by_g = (0.5 * (1.0 - shape) * r + 2.0 * shape * q * h * inverse) * inverse;
+    const double by_h = (0.5 * (1.0 - shape) / r + 2.0 * shape * q * g * inverse) * inverse;
+    const double by_J = -(harmonic + 4.0 * angle) / root; /* dχ/dJ = χ / root */
     Corner c;
     c.energy = harmonic + angle;
     c.jacobian = J;
@@ -111,9 +112,42 @@ static void constrain(const Patch *p, double *g)
         g[i * nj] = g[i * nj + nj - 1] = 0.0;
 }
 
-size_t repair_workspace(ptrdiff_t ni, ptrdiff_t nj)
+/* ---- the order of the unknowns: node by node along the shorter direction, x and y of a node side by side ---- */
+
+typedef struct {
+    ptrdiff_t first_i, rows, columns; /* free nodes: rows first_i .. first_i + rows - 1, columns 1 .. columns */
+    int along_i;                      /* neighbours in i are neighbours in the order */
+    ptrdiff_t count, band;            /* unknowns; entries left of the diagonal */
+} Order;
+
+static Order order_of(ptrdiff_t ni, ptrdiff_t nj, int periodic)
 {
-    return (size_t)(2 * ni * nj) * (2 * REPAIR_PAIRS + 5) + (size_t)(9 * nj);
+    Order o;
+    o.first_i = periodic ? 0 : 1;
+    o.rows = periodic ? ni - 1 : ni - 2;
+    o.columns = nj - 2;
+    o.along_i = periodic || o.rows < o.columns;
+    o.count = 2 * o.rows * o.columns;
+    const ptrdiff_t line = o.along_i ? o.rows : o.columns;
+    o.band = periodic ? 4 * line - 1 : 2 * (line + 1) + 1; /* the seam couples both ends of neighbouring lines */
+    if (o.band > o.count - 1)
+        o.band = o.count - 1;
+    return o;
+}
+
+/* First unknown of node (i, j), or -1 when it is fixed. */
+MESHONET_INLINE ptrdiff_t unknown(const Patch *p, const Order *o, ptrdiff_t i, ptrdiff_t j)
+{
+    const ptrdiff_t row = (p->periodic && i == p->ni - 1 ? 0 : i) - o->first_i, column = j - 1;
+    if (row < 0 || row >= o->rows || column < 0 || column >= o->columns)
+        return -1;
+    return 2 * (o->along_i ? column * o->rows + row : row * o->columns + column);
+}
+
+size_t repair_workspace(ptrdiff_t ni, ptrdiff_t nj, int periodic)
+{
+    const Order o = order_of(ni, nj, periodic);
+    return (size_t)(o.count * (o.band + 2) + 4 * ni * nj + 9 * nj);
 }
 
 MESHONET_CLONES
@@ -139,10 +173,110 @@ double repair_energy(const Patch *p, double epsilon, double *gx, double *gy, dou
     return isfinite(energy) ? energy : INFINITY;
 }
 
-/* ---- L-BFGS over z = (x, y), 2 ni nj values of which the fixed ones never move ---- */
+/* ---- Hessian ---- */
+
+/* Symmetric matrix by rows: entry (k, m), k - band <= m <= k, at values[k (band + 1) + m - k + band]. */
+typedef struct {
+    double *values;
+    ptrdiff_t count, band;
+} Banded;
+
+MESHONET_INLINE double *entry(const Banded *a, ptrdiff_t k, ptrdiff_t m)
+{
+    return a->values + k * (a->band + 1) + m - k + a->band;
+}
+
+/* Add the 2 x 2 block of nodes p (rows) and q (columns), given by their first unknowns, -1 for a fixed node; only
+   the half below the diagonal is kept. */
+MESHONET_INLINE void add_block(const Banded *a, ptrdiff_t p, ptrdiff_t q, double xx, double xy, double yx, double yy)
+{
+    if (p < 0 || q < 0)
+        return;
+    if (p < q) {
+        const ptrdiff_t swap = p;
+        p = q, q = swap;
+        const double other = xy;
+        xy = yx, yx = other;
+    }
+    double *row = entry(a, p, q), *next = row + a->band + 1; /* one row down, one column left of the same place */
+    row[0] += xx;
+    if (p != q)
+        row[1] += xy;
+    next[-1] += yx;
+    next[0] += yy;
+}
+
+/* Second derivatives of a corner's cost by z = (u_x, u_y, v_x, v_y), less the parts that can be negative.
+   With f = (r g + h / r) / 2 the harmonic part keeps
+       ∇²f / χ - χ' (∇f ∇Jᵀ + ∇J ∇fᵀ) / χ² + 2 f χ'² ∇J ∇Jᵀ / χ³,
+   which is not negative since ∇f ∇fᵀ <= 2 f ∇²f; the angle part a = (g h / χ²)² keeps
+       a (w wᵀ + 4 χ'² ∇J ∇Jᵀ / χ² + 4 u⊥ u⊥ᵀ / g² + 4 v⊥ v⊥ᵀ / h²),    w = ∇a / a. */
+MESHONET_INLINE void corner_hessian(const double z[4], double r, double eps2, double shape, double hessian[4][4])
+{
+    const double g = z[0] * z[0] + z[1] * z[1], h = z[2] * z[2] + z[3] * z[3], J = z[0] * z[3] - z[1] * z[2];
+    const double root = sqrt(J * J + eps2), chi = J > 0.0 ? 0.5 * (J + root) : 0.5 * eps2 / (root - J);
+    const double slope = 1.0 / root; /* χ' / χ */
+    const double f = 0.5 * (r * g + h / r), q = g * h / (chi * chi);
+    const double harmonic = (1.0 - shape) / chi, angle = shape * q * q;
+    const double both = slope * slope * (2.0 * f * harmonic + 4.0 * angle), cross = harmonic * slope;
+    const double by_f[4] = {r * z[0], r * z[1], z[2] / r, z[3] / r}, by_J[4] = {z[3], -z[2], -z[1], z[0]};
+    const double w[4] = {4.0 * (z[0] / g - slope * by_J[0]), 4.0 * (z[1] / g - slope * by_J[1]),
+                         4.0 * (z[2] / h - slope * by_J[2]), 4.0 * (z[3] / h - slope * by_J[3])};
+    for (int k = 0; k < 4; k++)
+        for (int m = 0; m < 4; m++)
+            hessian[k][m] = both * by_J[k] * by_J[m] + angle * w[k] * w[m] - cross * (by_f[k] * by_J[m] + by_J[k] * by_f[m]);
+    const double ug = 4.0 * angle / (g * g), vh = 4.0 * angle / (h * h);
+    hessian[0][0] += harmonic * r + ug * z[1] * z[1];
+    hessian[1][1] += harmonic * r + ug * z[0] * z[0];
+    hessian[0][1] -= ug * z[0] * z[1], hessian[1][0] -= ug * z[0] * z[1];
+    hessian[2][2] += harmonic / r + vh * z[3] * z[3];
+    hessian[3][3] += harmonic / r + vh * z[2] * z[2];
+    hessian[2][3] -= vh * z[2] * z[3], hessian[3][2] -= vh * z[2] * z[3];
+}
+
+/* Add a corner: node c, its neighbours a along u and b along v, given by their first unknowns. `flip` is -1 when
+   one of u = ±(a - c), v = ±(b - c) runs towards c. */
+MESHONET_INLINE void add_corner(const Banded *matrix, double h[4][4], double flip, ptrdiff_t a, ptrdiff_t b, ptrdiff_t c)
+{
+    for (int k = 0; k < 2; k++)
+        for (int m = 2; m < 4; m++)
+            h[k][m] *= flip, h[m][k] *= flip;
+    double ca[2][2], cb[2][2]; /* by c and a, by c and b: c moves both edges backwards */
+    for (int k = 0; k < 2; k++)
+        for (int m = 0; m < 2; m++)
+            ca[k][m] = -h[k][m] - h[k + 2][m], cb[k][m] = -h[k][m + 2] - h[k + 2][m + 2];
+    add_block(matrix, a, a, h[0][0], h[0][1], h[1][0], h[1][1]);
+    add_block(matrix, b, b, h[2][2], h[2][3], h[3][2], h[3][3]);
+    add_block(matrix, a, b, h[0][2], h[0][3], h[1][2], h[1][3]);
+    add_block(matrix, c, a, ca[0][0], ca[0][1], ca[1][0], ca[1][1]);
+    add_block(matrix, c, b, cb[0][0], cb[0][1], cb[1][0], cb[1][1]);
+    add_block(matrix, c, c, -ca[0][0] - cb[0][0], -ca[0][1] - cb[0][1], -ca[1][0] - cb[1][0], -ca[1][1] - cb[1][1]);
+}
 
 MESHONET_CLONES
-double repair_dot(const double *restrict a, const double *restrict b, ptrdiff_t n)
+void repair_hessian(const Patch *p, const Order *o, double epsilon, const Banded *matrix)
+{
+    memset(matrix->values, 0, (size_t)(matrix->count * (matrix->band + 1)) * sizeof(double));
+    for (ptrdiff_t i = 0; i < p->ni - 1; i++)
+        for (ptrdiff_t j = 0; j < p->nj - 1; j++) {
+            const double area = p->width[i] * p->height[j], r = p->height[j] / p->width[i];
+            const double eps2 = epsilon * epsilon * area * area;
+            const double *x = p->x + i * p->nj + j, *y = p->y + i * p->nj + j;
+            const ptrdiff_t n[2][2] = {{unknown(p, o, i, j), unknown(p, o, i, j + 1)},
+                                       {unknown(p, o, i + 1, j), unknown(p, o, i + 1, j + 1)}};
+            for (int di = 0; di < 2; di++)
+                for (int dj = 0; dj < 2; dj++) { /* the corner at node (i + di, j + dj) */
+                    const ptrdiff_t along = di * p->nj;
+                    const double z[4] = {x[p->nj + dj] - x[dj], y[p->nj + dj] - y[dj], x[along + 1] - x[along],
+                                         y[along + 1] - y[along]};
+                    double full[4][4];
+                    corner_hessian(z, r, eps2, p->shape, full);
+                    add_corner(matrix, full, di == dj ? 1.0 : -1.0, n[1 - di][dj], n[di][1 - dj], n[di][dj]);
+                }
+        }
+}
+
+MESHONET_INLINE double dot(const double *restrict a, const double *restrict b, ptrdiff_t n)
 {
     double sum = 0.0;
     for (ptrdiff_t k = 0; k < n; k++)
@@ -150,153 +284,113 @@ double repair_dot(const double *restrict a, const double *restrict b, ptrdiff_t 
     return sum;
 }
 
+/* Products of two rows with two rows: half the loads of four products taken one by one. */
+MESHONET_INLINE void four_dots(const double *restrict a0, const double *restrict a1, const double *restrict b0,
+                               const double *restrict b1, ptrdiff_t n, double s[2][2])
+{
+    double s00 = 0.0, s01 = 0.0, s10 = 0.0, s11 = 0.0;
+    for (ptrdiff_t k = 0; k < n; k++) {
+        s00 += a0[k] * b0[k], s01 += a0[k] * b1[k];
+        s10 += a1[k] * b0[k], s11 += a1[k] * b1[k];
+    }
+    s[0][0] = s00, s[0][1] = s01, s[1][0] = s10, s[1][1] = s11;
+}
+
+/* Inverse square root of what is left of a pivot; one that is not positive leaves its unknown alone. */
+MESHONET_INLINE double inverse_root(double left, double pivot)
+{
+    return left > 1e-14 * pivot ? 1.0 / sqrt(left) : 1e-150;
+}
+
+/* Solve A d = b in place of b. A is overwritten by its Cholesky factor, with the inverse of its diagonal. Rows are
+   taken in pairs, x and y of a node, which begin in the same column since the band is odd. */
 MESHONET_CLONES
-void repair_add(double *restrict a, double factor, const double *restrict b, ptrdiff_t n)
+void repair_cholesky(const Banded *a, double *b)
 {
-    for (ptrdiff_t k = 0; k < n; k++)
-        a[k] += factor * b[k];
-}
-
-typedef struct {
-    double *step, *change; /* REPAIR_PAIRS rows of n: s = z' - z, y = g' - g */
-    double rho[REPAIR_PAIRS];
-    int count, newest;
-} Memory;
-
-/* d = -H g by the two-loop recursion; `diagonal` starts the inverse Hessian. */
-static void direction(const Memory *m, const double *g, const double *diagonal, double *d, ptrdiff_t n)
-{
-    double alpha[REPAIR_PAIRS], gamma = 1.0;
-    memcpy(d, g, (size_t)n * sizeof(double));
-    for (int k = 0; k < m->count; k++) {
-        const int q = (m->newest - k + REPAIR_PAIRS) % REPAIR_PAIRS;
-        alpha[q] = m->rho[q] * repair_dot(m->step + q * n, d, n);
-        repair_add(d, -alpha[q], m->change + q * n, n);
-    }
-    if (m->count > 0) {
-        const double *y = m->change + m->newest * n;
-        double yhy = 0.0;
-        for (ptrdiff_t k = 0; k < n; k++)
-            yhy += y[k] * y[k] * diagonal[k];
-        gamma = 1.0 / (m->rho[m->newest] * yhy);
-    }
-    for (ptrdiff_t k = 0; k < n; k++)
-        d[k] *= gamma * diagonal[k];
-    for (int k = m->count - 1; k >= 0; k--) {
-        const int q = (m->newest - k + REPAIR_PAIRS) % REPAIR_PAIRS;
-        const double beta = m->rho[q] * repair_dot(m->change + q * n, d, n);
-        repair_add(d, alpha[q] - beta, m->step + q * n, n);
-    }
-    for (ptrdiff_t k = 0; k < n; k++)
-        d[k] = -d[k];
-}
-
-/* Inverse of the diagonal of the harmonic functional's Hessian on reference cells: 1 / Σ (r + 1/r) / area. */
-static void start_diagonal(const Patch *p, double *diagonal)
-{
-    const ptrdiff_t ni = p->ni, nj = p->nj;
-    for (ptrdiff_t i = 0; i < ni; i++)
-        for (ptrdiff_t j = 0; j < nj; j++) {
-            double sum = 0.0;
-            for (ptrdiff_t a = i - 1; a <= i; a++)
-                for (ptrdiff_t b = j - 1; b <= j; b++) {
-                    if ((!p->periodic && (a < 0 || a >= ni - 1)) || b < 0 || b >= nj - 1)
-                        continue;
-                    const double w = p->width[(a + ni - 1) % (ni - 1)], h = p->height[b];
-                    sum += 2.0 * (1.0 / (w * w) + 1.0 / (h * h));
-                }
-            diagonal[i * nj + j] = diagonal[ni * nj + i * nj + j] = 1.0 / sum;
+    const ptrdiff_t count = a->count, band = a->band;
+    for (ptrdiff_t k = 0; k < count; k += 2) {
+        const ptrdiff_t low = k + 1 > band ? k + 1 - band : 0;
+        double *x = entry(a, k, low) - low, *y = entry(a, k + 1, low) - low, s[2][2]; /* indexed by column */
+        for (ptrdiff_t m = low; m < k; m += 2) {
+            const ptrdiff_t start = m + 1 - band > low ? m + 1 - band : low;
+            const double *u = entry(a, m, start) - start, *v = entry(a, m + 1, start) - start;
+            four_dots(x + start, y + start, u + start, v + start, m - start, s);
+            x[m] = (x[m] - s[0][0]) * u[m];
+            y[m] = (y[m] - s[1][0]) * u[m];
+            x[m + 1] = (x[m + 1] - s[0][1] - x[m] * v[m]) * v[m + 1];
+            y[m + 1] = (y[m + 1] - s[1][1] - y[m] * v[m]) * v[m + 1];
         }
+        four_dots(x + low, y + low, x + low, y + low, k - low, s);
+        x[k] = inverse_root(x[k] - s[0][0], x[k]);
+        y[k] = (y[k] - s[1][0]) * x[k];
+        y[k + 1] = inverse_root(y[k + 1] - s[1][1] - y[k] * y[k], y[k + 1]);
+        b[k] = (b[k] - dot(x + low, b + low, k - low)) * x[k];
+        b[k + 1] = (b[k + 1] - dot(y + low, b + low, k + 1 - low)) * y[k + 1];
+    }
+    for (ptrdiff_t k = count - 1; k >= 0; k--) {
+        const ptrdiff_t low = k > band ? k - band : 0;
+        const double *row = entry(a, k, low) - low, value = b[k] *= row[k];
+        for (ptrdiff_t m = low; m < k; m++)
+            b[m] -= value * row[m];
+    }
 }
 
-/* Largest move of a node under `factor` times d, in shortest reference lengths of its cell. */
-static double largest_move(const Patch *p, const double *d, double factor)
+/* ---- Newton's method ---- */
+
+/* Move the free nodes by `factor` times the step d; returns the largest move in shorter reference lengths. */
+static double move(const Patch *p, const Order *o, const double *d, double factor)
 {
     double most = 0.0;
-    for (ptrdiff_t i = 0; i < p->ni - 1; i++)
-        for (ptrdiff_t j = 1; j < p->nj - 1; j++) {
+    for (ptrdiff_t i = o->first_i; i < o->first_i + o->rows; i++)
+        for (ptrdiff_t j = 1; j <= o->columns; j++) {
+            const ptrdiff_t k = unknown(p, o, i, j), at = i * p->nj + j;
             const double length = p->width[i] < p->height[j] ? p->width[i] : p->height[j];
-            const double dx = d[i * p->nj + j], dy = d[(p->ni + i) * p->nj + j];
-            const double move = factor * factor * (dx * dx + dy * dy) / (length * length);
-            most = move > most ? move : most;
+            p->x[at] += factor * d[k];
+            p->y[at] += factor * d[k + 1];
+            most = fmax(most, fabs(factor) * hypot(d[k], d[k + 1]) / length);
         }
-    return sqrt(most);
-}
-
-static void set_nodes(const Patch *p, const double *z, double factor, const double *d)
-{
-    const ptrdiff_t size = p->ni * p->nj;
-    for (ptrdiff_t k = 0; k < size; k++) {
-        p->x[k] = z[k] + factor * d[k];
-        p->y[k] = z[size + k] + factor * d[size + k];
-    }
     if (p->periodic) {
-        memcpy(p->x + size - p->nj, p->x, (size_t)p->nj * sizeof(double));
-        memcpy(p->y + size - p->nj, p->y, (size_t)p->nj * sizeof(double));
+        memcpy(p->x + (p->ni - 1) * p->nj, p->x, (size_t)p->nj * sizeof(double));
+        memcpy(p->y + (p->ni - 1) * p->nj, p->y, (size_t)p->nj * sizeof(double));
     }
-}
-
-/* Keep the pair (s, y) when the curvature along it is positive. */
-static void remember(Memory *m, const double *s, const double *y, ptrdiff_t n)
-{
-    const double sy = repair_dot(s, y, n);
-    if (!(sy > 1e-12 * sqrt(repair_dot(s, s, n) * repair_dot(y, y, n))))
-        return;
-    m->newest = (m->newest + 1) % REPAIR_PAIRS;
-    memcpy(m->step + m->newest * n, s, (size_t)n * sizeof(double));
-    memcpy(m->change + m->newest * n, y, (size_t)n * sizeof(double));
-    m->rho[m->newest] = 1.0 / sy;
-    m->count = m->count < REPAIR_PAIRS ? m->count + 1 : REPAIR_PAIRS;
+    return most;
 }
 
 int repair_minimise(const Patch *p, double epsilon, int most, double still, double until_valid, double *energy,
                     double *smallest, double *work)
 {
-    const ptrdiff_t size = p->ni * p->nj, n = 2 * size;
-    double *z = work, *g = z + n, *d = g + n, *g_new = d + n, *diagonal = g_new + n;
-    double *pairs = diagonal + n, *rows = pairs + 2 * REPAIR_PAIRS * n;
-    Memory memory = {pairs, pairs + REPAIR_PAIRS * n, {0}, 0, 0};
+    const ptrdiff_t size = p->ni * p->nj;
+    const Order o = order_of(p->ni, p->nj, p->periodic);
+    const Banded hessian = {work, o.count, o.band};
+    double *d = work + o.count * (o.band + 1), *gx = d + o.count, *gy = gx + size, *rows = gy + 3 * size;
     int done = 0;
-    start_diagonal(p, diagonal);
-    memcpy(z, p->x, (size_t)size * sizeof(double));
-    memcpy(z + size, p->y, (size_t)size * sizeof(double));
-    *energy = repair_energy(p, epsilon, g, g + size, smallest, rows);
+    *energy = repair_energy(p, epsilon, gx, gy, smallest, rows);
     while (done < most && isfinite(*energy) && !(until_valid > 0.0 && *smallest > until_valid)) {
-        direction(&memory, g, diagonal, d, n);
-        double slope = repair_dot(g, d, n);
-        if (!(slope < 0.0)) {
-            memory.count = 0;
-            direction(&memory, g, diagonal, d, n);
-            slope = repair_dot(g, d, n);
-        }
-        const double reach = largest_move(p, d, 1.0);
-        double factor = reach > 1.0 ? 1.0 / reach : 1.0, low = 0.0, trial = INFINITY;
+        double slope = 0.0, factor = 1.0, before = *energy;
+        for (ptrdiff_t i = o.first_i; i < o.first_i + o.rows; i++)
+            for (ptrdiff_t j = 1; j <= o.columns; j++) {
+                const ptrdiff_t k = unknown(p, &o, i, j);
+                d[k] = -gx[i * p->nj + j], d[k + 1] = -gy[i * p->nj + j];
+            }
+        repair_hessian(p, &o, epsilon, &hessian);
+        repair_cholesky(&hessian, d);
+        for (ptrdiff_t i = o.first_i; i < o.first_i + o.rows; i++)
+            for (ptrdiff_t j = 1; j <= o.columns; j++) {
+                const ptrdiff_t k = unknown(p, &o, i, j), at = i * p->nj + j;
+                slope += gx[at] * d[k] + gy[at] * d[k + 1];
+            }
+        if (!(slope < 0.0))
+            break;
+        double moved = move(p, &o, d, factor);
         int tries = 0;
-        for (; tries < 30; tries++) {
-            set_nodes(p, z, factor, d);
-            trial = repair_energy(p, epsilon, g_new, g_new + size, &low, rows);
-            if (trial <= *energy + 1e-4 * factor * slope)
-                break;
-            /* minimum of the parabola through both values and the slope, within bounds */
-            const double bend = trial - *energy - factor * slope;
-            const double best = isfinite(bend) && bend > 0.0 ? -0.5 * factor * factor * slope / bend : 0.0;
-            factor = best > 0.5 * factor ? 0.5 * factor : best < 0.1 * factor ? 0.1 * factor : best;
-        }
-        if (tries == 30) {
-            set_nodes(p, z, 0.0, d);
-            if (memory.count == 0)
-                break;
-            memory.count = 0;
-            continue;
+        *energy = repair_energy(p, epsilon, gx, gy, smallest, rows);
+        for (; tries < 40 && !(*energy <= before + 1e-4 * factor * slope); tries++) {
+            move(p, &o, d, -0.5 * factor);
+            factor *= 0.5, moved *= 0.5;
+            *energy = repair_energy(p, epsilon, gx, gy, smallest, rows);
         }
         done++;
-        for (ptrdiff_t k = 0; k < n; k++)
-            d[k] *= factor, g[k] = g_new[k] - g[k];
-        remember(&memory, d, g, n);
-        repair_add(z, 1.0, d, n);
-        memcpy(g, g_new, (size_t)n * sizeof(double));
-        *energy = trial, *smallest = low;
-        if (largest_move(p, d, 1.0) < still)
+        if (tries == 40 || moved < still)
             break;
     }
     return done;

@@ -11,10 +11,8 @@ typedef struct {
     double shape;                /* weight of the angle term against the harmonic one, 0 to 1 */
 } Patch;
 
-enum { REPAIR_PAIRS = 10 };
-
 /* Doubles of workspace that repair_minimise needs. */
-size_t repair_workspace(ptrdiff_t ni, ptrdiff_t nj);
+size_t repair_workspace(ptrdiff_t ni, ptrdiff_t nj, int periodic);
 
 /* Energy of the patch; its gradient in gx, gy (ni, nj), zero at fixed nodes; the smallest corner Jacobian over
    reference area. `epsilon` regularises; with 0 the energy of a folded patch is infinite. `work` as above. */

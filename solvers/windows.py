@@ -8,9 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-LARGEST = 2500
-"""A window with more cells than this is split, when its bad cells can be."""
-
 NEIGHBOURS = [(da, db) for da in (-1, 0, 1) for db in (-1, 0, 1) if (da, db) != (0, 0)]
 
 
@@ -35,15 +32,18 @@ class Window:
         return (self.i1 - self.i0) * (self.j1 - self.j0)
 
 
-def windows(bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool) -> Iterator[Window]:
+def windows(
+    bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
+) -> Iterator[Window]:
     """Yield windows around the groups of cells `bad` (n, 2), with `margin` cells and more about each.
 
-    Bad cells whose `margin`-sized tiles touch are one group. Windows stay inside the (ni, nj) nodes of
+    Bad cells whose `margin`-sized tiles touch are one group; one that needs more than `largest` cells is
+    split, down to single tiles. Windows stay inside the (ni, nj) nodes of
     `shape`; where `periodic`, one may run past the seam, but not onto itself.
 
     Examples
     --------
-    >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False))
+    >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(i0=12, i1=30, j0=0, j1=12)]
     """
     around = -(-(shape[0] - 1) // margin)
@@ -56,19 +56,21 @@ def windows(bad: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodi
                 if near in waiting:
                     waiting.remove(near)
                     group.append((a + da, b + db))
-        yield from _cover(np.array(sorted(group)), margin, shape, periodic)
+        yield from _cover(np.array(sorted(group)), margin, shape, periodic, largest)
 
 
-def _cover(tiles: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool) -> Iterator[Window]:
+def _cover(
+    tiles: NDArray[np.int64], margin: int, shape: tuple[int, ...], periodic: bool, largest: int
+) -> Iterator[Window]:
     """Yield windows over `tiles` (n, 2) of `margin` cells; a large group is halved until they are small."""
     low, high = tiles.min(axis=0), tiles.max(axis=0)
     i0, j0 = (int(k) for k in (low - 1) * margin)
     i1, j1 = (int(k) for k in (high + 2) * margin)
     i0, i1 = (i0, min(i1, i0 + shape[0] - 2)) if periodic else (max(i0, 0), min(i1, shape[0] - 1))
     window = Window(i0, i1, max(j0, 0), min(j1, shape[1] - 1))
-    if window.cells <= LARGEST or len(tiles) == 1:
+    if window.cells <= largest or len(tiles) == 1:
         yield window
         return
     along = int(np.argmax(high - low))
     for half in np.array_split(tiles[np.argsort(tiles[:, along], kind="stable")], 2):
-        yield from _cover(half, margin, shape, periodic)
+        yield from _cover(half, margin, shape, periodic, largest)

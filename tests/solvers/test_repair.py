@@ -8,8 +8,9 @@ from geometry.arrays import Floats, as_planar
 from geometry.boundary import Boundary
 from solvers._repair import energy, minimise
 from solvers.elliptic.solve import solve
-from solvers.repair import reference_lengths, repair, unfold
+from solvers.repair import repair
 from solvers.tfi import tfi
+from solvers.unfold import reference_lengths, unfold
 
 
 def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
@@ -27,7 +28,7 @@ def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
 @pytest.mark.parametrize("periodic", [False, True])
 def test_gradient_is_that_of_the_energy(shape: float, epsilon: float, periodic: bool) -> None:
     nodes = tangled(naca(9, 6) if periodic else arch(7, 6), 0.004 if epsilon == 0 else 0.3)
-    lengths = reference_lengths(nodes)
+    lengths = reference_lengths(nodes, periodic)
     x, y = nodes[..., 0], nodes[..., 1]
     _, gx, gy, _ = energy(x, y, *lengths, periodic, shape, epsilon)
     rng = np.random.default_rng(1)
@@ -51,7 +52,7 @@ def test_energy_of_a_parallelogram_is_known() -> None:
     nodes = as_planar(np.array([[[0, 0], v], [u, u + v]], dtype=float))
     width, height = np.array([2.0]), np.array([0.5])
     total, _, _, smallest = energy(nodes[..., 0], nodes[..., 1], width, height, False, 1.0, 0.0)
-    assert total == pytest.approx(4 / np.sin(angle) ** 2)
+    assert total == pytest.approx(4 / np.sin(angle) ** 4)
     assert smallest == pytest.approx(np.sin(angle))
     harmonic = energy(nodes[..., 0], nodes[..., 1], width, height, False, 0.0, 0.0)[0]
     assert harmonic == pytest.approx(4 / np.sin(angle))
@@ -60,12 +61,14 @@ def test_energy_of_a_parallelogram_is_known() -> None:
 def test_a_folded_patch_costs_infinitely_without_regularisation() -> None:
     nodes = tangled(arch(9, 9), 0.3)
     assert folded(nodes) > 0
-    assert energy(nodes[..., 0], nodes[..., 1], *reference_lengths(nodes), False, 0.0, 0.0)[0] == np.inf
+    assert (
+        energy(nodes[..., 0], nodes[..., 1], *reference_lengths(nodes, False), False, 0.0, 0.0)[0] == np.inf
+    )
 
 
 def test_a_minimum_is_found_to_the_tolerance_and_kept() -> None:
     nodes = tangled(arch(17, 17), 0.005)
-    lengths = reference_lengths(nodes)
+    lengths = reference_lengths(nodes, False)
     x, y = nodes[..., 0], nodes[..., 1]
     first = minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)
     gx, gy = energy(x, y, *lengths, False, 0.0, 0.0)[1:3]
@@ -79,7 +82,7 @@ def test_a_minimum_is_found_to_the_tolerance_and_kept() -> None:
 def test_random_tangles_unfold(boundary: Boundary) -> None:
     nodes = tangled(boundary, 0.05)
     assert folded(nodes) > 10
-    unfold(nodes, boundary.topology == "o")
+    assert unfold(nodes, boundary.topology == "o") == 0
     assert folded(nodes) == 0
 
 
@@ -106,15 +109,15 @@ def test_what_solvers_fold_is_repaired_and_the_boundary_kept(make, n: int, start
 
 
 def test_a_fold_across_the_seam_is_repaired() -> None:
-    boundary = naca(80, 40)
+    boundary = naca(200, 40)
     nodes = tfi(boundary).nodes.copy(order="K")
     nodes[0, 5] = nodes[-1, 5] = nodes[2, 8]
     nodes[1, 6] = nodes[-3, 3]
     assert folded(nodes) > 3
-    far = nodes[20:60].copy()
+    far = nodes[60:140].copy()
     assert repair(nodes, True) == 0
     assert np.array_equal(nodes[0], nodes[-1])
-    assert np.array_equal(nodes[20:60], far)
+    assert np.array_equal(nodes[60:140], far)
 
 
 def test_repaired_corners_are_open_not_merely_positive() -> None:
@@ -127,7 +130,7 @@ def test_repaired_corners_are_open_not_merely_positive() -> None:
         / np.linalg.norm(u, axis=-1)
         / np.linalg.norm(v, axis=-1)
     )
-    assert sine.min() > 0.05
+    assert sine.min() > 0.2
 
 
 @pytest.mark.parametrize("shape", [(2, 5), (5, 2), (2, 2)])

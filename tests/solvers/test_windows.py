@@ -4,7 +4,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solvers.windows import LARGEST, windows
+from solvers.windows import windows
+
+LARGEST = 2500
 
 
 @settings(max_examples=60, deadline=None)
@@ -19,7 +21,7 @@ def test_every_bad_cell_lies_in_a_window_inside_the_grid(
     bad = np.unique(
         np.stack([rng.integers(0, ni - 1, count), rng.integers(0, nj - 1, count)], axis=1), axis=0
     )
-    found = list(windows(bad, margin, (ni, nj), periodic))
+    found = list(windows(bad, margin, (ni, nj), periodic, LARGEST))
     for i, j in bad:
         assert any(
             w.j0 <= j < w.j1 and (w.i0 <= i < w.i1 or (periodic and (i - w.i0) % (ni - 1) < w.i1 - w.i0))
@@ -33,7 +35,7 @@ def test_every_bad_cell_lies_in_a_window_inside_the_grid(
 
 def test_a_group_on_both_sides_of_the_seam_is_one_window() -> None:
     bad = np.array([[0, 3], [98, 3], [97, 4]])
-    (window,) = windows(bad, 6, (100, 40), True)
+    (window,) = windows(bad, 6, (100, 40), True, LARGEST)
     rows = np.arange(window.i0, window.i1) % 99
     assert set(bad[:, 0]) <= set(rows)
     assert window.cells < 40 * 20
@@ -41,6 +43,6 @@ def test_a_group_on_both_sides_of_the_seam_is_one_window() -> None:
 
 def test_a_long_group_is_split() -> None:
     bad = np.stack([np.arange(300), np.arange(300)], axis=1)
-    found = list(windows(bad, 6, (400, 400), False))
+    found = list(windows(bad, 6, (400, 400), False, LARGEST))
     assert len(found) > 4
     assert max(w.cells for w in found) <= LARGEST
