@@ -29,8 +29,10 @@ def extension(pyx: Path) -> Extension:
     kernel = pyx.with_name(pyx.stem.removeprefix("_") + "_kernel.c")
     sources = [str(pyx), *([str(kernel)] if kernel.exists() else [])]
     name = ".".join(pyx.with_suffix("").parts)
+    folders = ["include", str(pyx.parent)]
+    headers = [str(header) for folder in folders for header in sorted(Path(folder).glob("*.h"))]
     return Extension(
-        name, sources, include_dirs=["include", str(pyx.parent)], extra_compile_args=FLAGS, libraries=["m"]
+        name, sources, include_dirs=folders, extra_compile_args=FLAGS, libraries=["m"], depends=headers
     )
 
 

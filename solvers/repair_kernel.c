@@ -11,6 +11,7 @@
    ε is measured in areas of the reference cell. The minimiser is Newton's method with the parts of the Hessian
    that are never negative, a banded Cholesky factor and backtracking. */
 #include "repair_kernel.h"
+#include "banded.h"
 #include "clones.h"
 #include <math.h>
 #include <string.h>
@@ -147,7 +148,7 @@ MESHONET_INLINE ptrdiff_t unknown(const Patch *p, const Order *o, ptrdiff_t i, p
 size_t repair_workspace(ptrdiff_t ni, ptrdiff_t nj, int periodic)
 {
     const Order o = order_of(ni, nj, periodic);
-    return (size_t)(o.count * (o.band + 2) + 4 * ni * nj + 9 * nj);
+    return (size_t)(o.count * (o.band + 2) + 2 * ni * nj + 9 * nj);
 }
 
 MESHONET_CLONES
@@ -174,37 +175,6 @@ double repair_energy(const Patch *p, double epsilon, double *gx, double *gy, dou
 }
 
 /* ---- Hessian ---- */
-
-/* Symmetric matrix by rows: entry (k, m), k - band <= m <= k, at values[k (band + 1) + m - k + band]. */
-typedef struct {
-    double *values;
-    ptrdiff_t count, band;
-} Banded;
-
-MESHONET_INLINE double *entry(const Banded *a, ptrdiff_t k, ptrdiff_t m)
-{
-    return a->values + k * (a->band + 1) + m - k + a->band;
-}
-
-/* Add the 2 x 2 block of nodes p (rows) and q (columns), given by their first unknowns, -1 for a fixed node; only
-   the half below the diagonal is kept. */
-MESHONET_INLINE void add_block(const Banded *a, ptrdiff_t p, ptrdiff_t q, double xx, double xy, double yx, double yy)
-{
-    if (p < 0 || q < 0)
-        return;
-    if (p < q) {
-        const ptrdiff_t swap = p;
-        p = q, q = swap;
-        const double other = xy;
-        xy = yx, yx = other;
-    }
-    double *row = entry(a, p, q), *next = row + a->band + 1; /* one row down, one column left of the same place */
-    row[0] += xx;
-    if (p != q)
-        row[1] += xy;
-    next[-1] += yx;
-    next[0] += yy;
-}
 
 /* Second derivatives of a corner's cost by z = (u_x, u_y, v_x, v_y), less the parts that can be negative.
    With f = (r g + h / r) / 2 the harmonic part keeps
@@ -254,7 +224,7 @@ MESHONET_INLINE void add_corner(const Banded *matrix, double h[4][4], double fli
 }
 
 MESHONET_CLONES
-void repair_hessian(const Patch *p, const Order *o, double epsilon, const Banded *matrix)
+static void hessian_of(const Patch *p, const Order *o, double epsilon, const Banded *matrix)
 {
     memset(matrix->values, 0, (size_t)(matrix->count * (matrix->band + 1)) * sizeof(double));
     for (ptrdiff_t i = 0; i < p->ni - 1; i++)
@@ -274,65 +244,6 @@ void repair_hessian(const Patch *p, const Order *o, double epsilon, const Banded
                     add_corner(matrix, full, di == dj ? 1.0 : -1.0, n[1 - di][dj], n[di][1 - dj], n[di][dj]);
                 }
         }
-}
-
-MESHONET_INLINE double dot(const double *restrict a, const double *restrict b, ptrdiff_t n)
-{
-    double sum = 0.0;
-    for (ptrdiff_t k = 0; k < n; k++)
-        sum += a[k] * b[k];
-    return sum;
-}
-
-/* Products of two rows with two rows: half the loads of four products taken one by one. */
-MESHONET_INLINE void four_dots(const double *restrict a0, const double *restrict a1, const double *restrict b0,
-                               const double *restrict b1, ptrdiff_t n, double s[2][2])
-{
-    double s00 = 0.0, s01 = 0.0, s10 = 0.0, s11 = 0.0;
-    for (ptrdiff_t k = 0; k < n; k++) {
-        s00 += a0[k] * b0[k], s01 += a0[k] * b1[k];
-        s10 += a1[k] * b0[k], s11 += a1[k] * b1[k];
-    }
-    s[0][0] = s00, s[0][1] = s01, s[1][0] = s10, s[1][1] = s11;
-}
-
-/* Inverse square root of what is left of a pivot; one that is not positive leaves its unknown alone. */
-MESHONET_INLINE double inverse_root(double left, double pivot)
-{
-    return left > 1e-14 * pivot ? 1.0 / sqrt(left) : 1e-150;
-}
-
-/* Solve A d = b in place of b. A is overwritten by its Cholesky factor, with the inverse of its diagonal. Rows are
-   taken in pairs, x and y of a node, which begin in the same column since the band is odd. */
-MESHONET_CLONES
-void repair_cholesky(const Banded *a, double *b)
-{
-    const ptrdiff_t count = a->count, band = a->band;
-    for (ptrdiff_t k = 0; k < count; k += 2) {
-        const ptrdiff_t low = k + 1 > band ? k + 1 - band : 0;
-        double *x = entry(a, k, low) - low, *y = entry(a, k + 1, low) - low, s[2][2]; /* indexed by column */
-        for (ptrdiff_t m = low; m < k; m += 2) {
-            const ptrdiff_t start = m + 1 - band > low ? m + 1 - band : low;
-            const double *u = entry(a, m, start) - start, *v = entry(a, m + 1, start) - start;
-            four_dots(x + start, y + start, u + start, v + start, m - start, s);
-            x[m] = (x[m] - s[0][0]) * u[m];
-            y[m] = (y[m] - s[1][0]) * u[m];
-            x[m + 1] = (x[m + 1] - s[0][1] - x[m] * v[m]) * v[m + 1];
-            y[m + 1] = (y[m + 1] - s[1][1] - y[m] * v[m]) * v[m + 1];
-        }
-        four_dots(x + low, y + low, x + low, y + low, k - low, s);
-        x[k] = inverse_root(x[k] - s[0][0], x[k]);
-        y[k] = (y[k] - s[1][0]) * x[k];
-        y[k + 1] = inverse_root(y[k + 1] - s[1][1] - y[k] * y[k], y[k + 1]);
-        b[k] = (b[k] - dot(x + low, b + low, k - low)) * x[k];
-        b[k + 1] = (b[k + 1] - dot(y + low, b + low, k + 1 - low)) * y[k + 1];
-    }
-    for (ptrdiff_t k = count - 1; k >= 0; k--) {
-        const ptrdiff_t low = k > band ? k - band : 0;
-        const double *row = entry(a, k, low) - low, value = b[k] *= row[k];
-        for (ptrdiff_t m = low; m < k; m++)
-            b[m] -= value * row[m];
-    }
 }
 
 /* ---- Newton's method ---- */
@@ -356,41 +267,55 @@ static double move(const Patch *p, const Order *o, const double *d, double facto
     return most;
 }
 
+/* d = -gradient, in the order of the unknowns. */
+static void descent(const Patch *p, const Order *o, const double *gx, const double *gy, double *d)
+{
+    for (ptrdiff_t i = o->first_i; i < o->first_i + o->rows; i++)
+        for (ptrdiff_t j = 1; j <= o->columns; j++) {
+            const ptrdiff_t k = unknown(p, o, i, j), at = i * p->nj + j;
+            d[k] = -gx[at], d[k + 1] = -gy[at];
+        }
+}
+
+/* Derivative of the energy along d. */
+static double slope_along(const Patch *p, const Order *o, const double *gx, const double *gy, const double *d)
+{
+    double slope = 0.0;
+    for (ptrdiff_t i = o->first_i; i < o->first_i + o->rows; i++)
+        for (ptrdiff_t j = 1; j <= o->columns; j++) {
+            const ptrdiff_t k = unknown(p, o, i, j), at = i * p->nj + j;
+            slope += gx[at] * d[k] + gy[at] * d[k + 1];
+        }
+    return slope;
+}
+
 int repair_minimise(const Patch *p, double epsilon, int most, double still, double until_valid, double *energy,
                     double *smallest, double *work)
 {
-    const ptrdiff_t size = p->ni * p->nj;
+    enum { HALVINGS = 40 };
     const Order o = order_of(p->ni, p->nj, p->periodic);
     const Banded hessian = {work, o.count, o.band};
-    double *d = work + o.count * (o.band + 1), *gx = d + o.count, *gy = gx + size, *rows = gy + 3 * size;
+    double *d = work + o.count * (o.band + 1), *gx = d + o.count, *gy = gx + p->ni * p->nj, *rows = gy + p->ni * p->nj;
     int done = 0;
     *energy = repair_energy(p, epsilon, gx, gy, smallest, rows);
     while (done < most && isfinite(*energy) && !(until_valid > 0.0 && *smallest > until_valid)) {
-        double slope = 0.0, factor = 1.0, before = *energy;
-        for (ptrdiff_t i = o.first_i; i < o.first_i + o.rows; i++)
-            for (ptrdiff_t j = 1; j <= o.columns; j++) {
-                const ptrdiff_t k = unknown(p, &o, i, j);
-                d[k] = -gx[i * p->nj + j], d[k + 1] = -gy[i * p->nj + j];
-            }
-        repair_hessian(p, &o, epsilon, &hessian);
-        repair_cholesky(&hessian, d);
-        for (ptrdiff_t i = o.first_i; i < o.first_i + o.rows; i++)
-            for (ptrdiff_t j = 1; j <= o.columns; j++) {
-                const ptrdiff_t k = unknown(p, &o, i, j), at = i * p->nj + j;
-                slope += gx[at] * d[k] + gy[at] * d[k + 1];
-            }
+        const double before = *energy;
+        descent(p, &o, gx, gy, d);
+        hessian_of(p, &o, epsilon, &hessian);
+        banded_solve(&hessian, d);
+        const double slope = slope_along(p, &o, gx, gy, d);
         if (!(slope < 0.0))
             break;
-        double moved = move(p, &o, d, factor);
-        int tries = 0;
+        double factor = 1.0, moved = move(p, &o, d, factor);
         *energy = repair_energy(p, epsilon, gx, gy, smallest, rows);
-        for (; tries < 40 && !(*energy <= before + 1e-4 * factor * slope); tries++) {
-            move(p, &o, d, -0.5 * factor);
-            factor *= 0.5, moved *= 0.5;
+        int halvings = 0;
+        for (; halvings < HALVINGS && !(*energy <= before + 1e-4 * factor * slope); halvings++) {
+            factor *= 0.5;
+            moved = move(p, &o, d, -factor);
             *energy = repair_energy(p, epsilon, gx, gy, smallest, rows);
         }
         done++;
-        if (tries == 40 || moved < still)
+        if (halvings == HALVINGS || moved < still)
             break;
     }
     return done;

@@ -1,0 +1,261 @@
+/* Zebra line relaxation along eta and along xi, both colours in one pass over memory. */
+#ifndef MESHONET_LINES_H
+#define MESHONET_LINES_H
+#include "stencil.h"
+#include <string.h>
+
+enum { LANES = 8, BLOCK = 128 };
+
+/* ---- eta lines: i fixed, unknowns along j; neighbouring lines of one colour are independent ---- */
+
+typedef struct {
+    double *lower, *upper, *diagonal, *bx, *by; /* LANES rows of `stride` each */
+    ptrdiff_t stride;
+} EtaSystem;
+
+MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+{
+    const Rows r = rows_at(g, i);
+    const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
+    const Differences eta = g->eta;
+    const ptrdiff_t mj = g->mj;
+    double *restrict lower = s->lower + k * s->stride, *restrict upper = s->upper + k * s->stride;
+    double *restrict diagonal = s->diagonal + k * s->stride;
+    double *restrict bx = s->bx + k * s->stride, *restrict by = s->by + k * s->stride;
+    const double *restrict fx = forced ? g->fx + i * (mj + 1) : 0, *restrict fy = forced ? g->fy + i * (mj + 1) : 0;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 1; j < mj; j++) {
+        const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
+        lower[j] = c.south;
+        upper[j] = c.north;
+        diagonal[j] = -(c.east + c.west + c.north + c.south);
+        bx[j] = c.cross_x - c.east * r.xe[j] - c.west * r.xw[j] + (forced ? fx[j] : 0.0);
+        by[j] = c.cross_y - c.east * r.ye[j] - c.west * r.yw[j] + (forced ? fy[j] : 0.0);
+    }
+    upper[0] = 0.0, bx[0] = r.xc[0], by[0] = r.yc[0];
+}
+
+/* Assemble the tridiagonal system of eta line i in lane k. */
+MESHONET_CLONES
+static void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+{
+    if (forced)
+        eta_assemble_with(g, i, s, k, 1);
+    else
+        eta_assemble_with(g, i, s, k, 0);
+}
+
+/* Solve `lanes` systems side by side (their recurrences overlap) and write lines i, i + 2, ... */
+MESHONET_INLINE void eta_solve_with(const Level *g, ptrdiff_t i, const EtaSystem *s, int lanes)
+{
+    const ptrdiff_t ld = g->mj + 1, mj = g->mj, st = s->stride;
+    double up[LANES], px[LANES], py[LANES];
+    for (int k = 0; k < lanes; k++)
+        up[k] = 0.0, px[k] = s->bx[k * st], py[k] = s->by[k * st];
+    for (ptrdiff_t j = 1; j < mj; j++)
+        for (int k = 0; k < lanes; k++) {
+            const ptrdiff_t q = k * st + j;
+            const double low = s->lower[q], w = 1.0 / (s->diagonal[q] - low * up[k]);
+            s->upper[q] = up[k] = s->upper[q] * w;
+            s->bx[q] = px[k] = (s->bx[q] - low * px[k]) * w;
+            s->by[q] = py[k] = (s->by[q] - low * py[k]) * w;
+        }
+    double *x = g->x + i * ld, *y = g->y + i * ld;
+    for (int k = 0; k < lanes; k++)
+        px[k] = x[2 * k * ld + mj], py[k] = y[2 * k * ld + mj];
+    for (ptrdiff_t j = mj - 1; j > 0; j--)
+        for (int k = 0; k < lanes; k++) {
+            const ptrdiff_t q = k * st + j;
+            x[2 * k * ld + j] = px[k] = s->bx[q] - s->upper[q] * px[k];
+            y[2 * k * ld + j] = py[k] = s->by[q] - s->upper[q] * py[k];
+        }
+}
+
+MESHONET_CLONES
+static void eta_solve(const Level *g, ptrdiff_t i, const EtaSystem *s, int lanes)
+{
+    if (lanes == LANES)
+        eta_solve_with(g, i, s, LANES);
+    else
+        eta_solve_with(g, i, s, lanes);
+}
+
+/* Relax the `lines` (LANES at the most) eta lines i, i + 2, ... */
+static void eta_group(const Level *g, ptrdiff_t i, ptrdiff_t lines, int forced)
+{
+    const ptrdiff_t stride = padded(g->mj);
+    double *b = g->scratch;
+    const EtaSystem s = {b, b + LANES * stride, b + 2 * LANES * stride, b + 3 * LANES * stride, b + 4 * LANES * stride, stride};
+    for (int k = 0; k < lines; k++)
+        eta_assemble(g, i + 2 * k, &s, k, forced);
+    eta_solve(g, i, &s, (int)lines);
+}
+
+static void close_ring(const Level *g)
+{
+    const ptrdiff_t last = g->mi * (g->mj + 1);
+    memcpy(g->x + last, g->x, (size_t)(g->mj + 1) * sizeof(double));
+    memcpy(g->y + last, g->y, (size_t)(g->mj + 1) * sizeof(double));
+}
+
+/* How many of k, k + 2, ... lie below `end`, `most` at the most. */
+static ptrdiff_t every_second(ptrdiff_t k, ptrdiff_t end, ptrdiff_t most)
+{
+    const ptrdiff_t n = k < end ? (end - k + 1) / 2 : 0;
+    return n < most ? n : most;
+}
+
+/* Both colours in one pass over memory: a group of lines of the second follows as soon as its neighbours of the
+   first are done. */
+static void eta_lines(const Level *g, int forced)
+{
+    const ptrdiff_t first = g->periodic ? 0 : 1, mi = g->mi;
+    for (ptrdiff_t i = first; i <= mi; i += 2 * LANES) {
+        eta_group(g, i, every_second(i, mi, LANES), forced);
+        if (g->periodic && i == 0)
+            close_ring(g);
+        const ptrdiff_t behind = i > first ? i - 1 : first + 1;
+        const ptrdiff_t ready = i + 2 * LANES - 2; /* later lines wait for the next group, unless there is none */
+        eta_group(g, behind, every_second(behind, ready < mi ? ready : mi, LANES), forced);
+    }
+}
+
+/* ---- xi lines: j fixed, unknowns along i; a block of lines of one colour advances together ---- */
+
+/* One tridiagonal row of each line of the block. */
+typedef struct {
+    double lower, upper, diagonal, bx, by;
+} XiRow;
+
+MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff_t j, int forced)
+{
+    const Stencil c = stencil(r, j, g->xi.forward[i], g->xi.backward[i], g->xi.centred[i], &g->eta);
+    XiRow t;
+    t.lower = c.west;
+    t.upper = c.east;
+    t.diagonal = -(c.east + c.west + c.north + c.south);
+    t.bx = c.cross_x - c.north * r->xc[j + 1] - c.south * r->xc[j - 1];
+    t.by = c.cross_y - c.north * r->yc[j + 1] - c.south * r->yc[j - 1];
+    if (forced) {
+        t.bx += g->fx[i * (g->mj + 1) + j];
+        t.by += g->fy[i * (g->mj + 1) + j];
+    }
+    return t;
+}
+
+/* Fixed ends: lines j0, j0 + 2, ... (n of them) between rows 0 and mi. */
+MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int forced)
+{
+    const ptrdiff_t mi = g->mi, ld = g->mj + 1;
+    double *up = g->scratch, *px = up + BLOCK * (mi + 1), *py = px + BLOCK * (mi + 1);
+    for (int k = 0; k < n; k++)
+        up[k] = 0.0, px[k] = g->x[j0 + 2 * k], py[k] = g->y[j0 + 2 * k];
+    for (ptrdiff_t i = 1; i < mi; i++) {
+        const Rows r = rows_at(g, i);
+        double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
+        const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        MESHONET_INDEPENDENT
+        for (int k = 0; k < n; k++) {
+            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
+            const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
+            u[k] = t.upper * w;
+            bx[k] = (t.bx - t.lower * bx1[k]) * w;
+            by[k] = (t.by - t.lower * by1[k]) * w;
+        }
+    }
+    double ex[BLOCK], ey[BLOCK];
+    for (int k = 0; k < n; k++)
+        ex[k] = g->x[mi * ld + j0 + 2 * k], ey[k] = g->y[mi * ld + j0 + 2 * k];
+    for (ptrdiff_t i = mi - 1; i > 0; i--) {
+        const double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
+        double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
+        for (int k = 0; k < n; k++) {
+            x[2 * k] = ex[k] = bx[k] - u[k] * ex[k];
+            y[2 * k] = ey[k] = by[k] - u[k] * ey[k];
+        }
+    }
+}
+
+/* Periodic lines: with X_0 = 0 one solution of rows 1 .. mi-1 meets the right side and another, p, has X_0 = 1
+   and no right side; row 0 then says which combination X = q + X_0 p is the line. */
+MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int forced)
+{
+    const ptrdiff_t mi = g->mi, ld = g->mj + 1;
+    double *up = g->scratch, *qx = up + BLOCK * (mi + 1), *qy = qx + BLOCK * (mi + 1), *p = qy + BLOCK * (mi + 1);
+    XiRow closing[BLOCK];
+    const Rows r0 = rows_at(g, 0);
+    for (int k = 0; k < n; k++) {
+        closing[k] = xi_row(g, &r0, 0, j0 + 2 * k, forced);
+        up[k] = qx[k] = qy[k] = 0.0, p[k] = 1.0;
+        qx[mi * BLOCK + k] = qy[mi * BLOCK + k] = 0.0, p[mi * BLOCK + k] = 1.0;
+    }
+    for (ptrdiff_t i = 1; i < mi; i++) {
+        const Rows r = rows_at(g, i);
+        double *restrict u = up + i * BLOCK, *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK;
+        double *restrict bp = p + i * BLOCK;
+        const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        const double *restrict bp1 = bp - BLOCK;
+        MESHONET_INDEPENDENT
+        for (int k = 0; k < n; k++) {
+            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
+            const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
+            u[k] = t.upper * w;
+            bx[k] = (t.bx - t.lower * bx1[k]) * w;
+            by[k] = (t.by - t.lower * by1[k]) * w;
+            bp[k] = -t.lower * bp1[k] * w;
+        }
+    }
+    for (ptrdiff_t i = mi - 1; i > 0; i--) {
+        const double *restrict u = up + i * BLOCK;
+        double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
+        for (int k = 0; k < n; k++) {
+            bx[k] -= u[k] * bx[k + BLOCK];
+            by[k] -= u[k] * by[k + BLOCK];
+            bp[k] -= u[k] * bp[k + BLOCK];
+        }
+    }
+    double x0[BLOCK], y0[BLOCK];
+    const ptrdiff_t last = (mi - 1) * BLOCK;
+    for (int k = 0; k < n; k++) {
+        const XiRow t = closing[k];
+        const double w = 1.0 / (t.diagonal + t.lower * p[last + k] + t.upper * p[BLOCK + k]);
+        x0[k] = (t.bx - t.lower * qx[last + k] - t.upper * qx[BLOCK + k]) * w;
+        y0[k] = (t.by - t.lower * qy[last + k] - t.upper * qy[BLOCK + k]) * w;
+        g->x[j0 + 2 * k] = g->x[mi * ld + j0 + 2 * k] = x0[k];
+        g->y[j0 + 2 * k] = g->y[mi * ld + j0 + 2 * k] = y0[k];
+    }
+    for (ptrdiff_t i = 1; i < mi; i++) {
+        const double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
+        double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
+        for (int k = 0; k < n; k++) {
+            x[2 * k] = bx[k] + x0[k] * bp[k];
+            y[2 * k] = by[k] + y0[k] * bp[k];
+        }
+    }
+}
+
+MESHONET_CLONES
+static void xi_group(const Level *g, ptrdiff_t j0, ptrdiff_t lines, int forced)
+{
+    if (g->periodic && forced)
+        xi_block_periodic(g, j0, (int)lines, 1);
+    else if (g->periodic)
+        xi_block_periodic(g, j0, (int)lines, 0);
+    else if (forced)
+        xi_block_fixed(g, j0, (int)lines, 1);
+    else
+        xi_block_fixed(g, j0, (int)lines, 0);
+}
+
+/* Both colours in one pass, as eta_lines. */
+static void xi_lines(const Level *g, int forced)
+{
+    const ptrdiff_t mj = g->mj;
+    for (ptrdiff_t j = 1; j <= mj; j += 2 * BLOCK) {
+        xi_group(g, j, every_second(j, mj, BLOCK), forced);
+        const ptrdiff_t behind = j > 1 ? j - 1 : 2, ready = j + 2 * BLOCK - 2;
+        xi_group(g, behind, every_second(behind, ready < mj ? ready : mj, BLOCK), forced);
+    }
+}
+
+#endif
