@@ -11,4 +11,7 @@ def measure(
     where: NDArray[np.int64],
     keep: int,
     kept: NDArray[np.float64],
+    brackets: NDArray[np.float64],
+    counts: NDArray[np.int64],
+    caught: NDArray[np.float64],
 ) -> None: ...

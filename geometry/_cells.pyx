@@ -15,6 +15,7 @@ cdef extern from "cells_kernel.h":
     void cells_areas(const double *x, const double *y, ptrdiff_t nj, double *area) nogil
     void cells_row(const double *x, const double *y, ptrdiff_t nj, const double *before, const double *here, const double *after, double *out) nogil
     void cells_reduce(const double *row, ptrdiff_t cells, double *low, double *high, double *sum) nogil
+    ptrdiff_t cells_catch(const double *row, ptrdiff_t cells, double low, double high, int64_t *counts, double *caught, ptrdiff_t room) nogil
 
 
 def count_folded(const double[:, ::1] x, const double[:, ::1] y):
@@ -36,13 +37,17 @@ def folded_cells(const double[:, ::1] x, const double[:, ::1] y, ptrdiff_t room)
 
 
 def measure(const double[:, ::1] x, const double[:, ::1] y, bint periodic, double[:, ::1] summary,
-            int64_t[:, :, ::1] where, int keep, double[:, ::1] kept):
+            int64_t[:, :, ::1] where, int keep, double[:, :, ::1] kept,
+            const double[:, :, ::1] brackets, int64_t[:, :, ::1] counts, double[:, :, ::1] caught):
     """Run over all cells once.
 
     summary (METRICS, 3): min, mean, max of each metric. where (METRICS, 2, 2): cell (i, j) of the min and of
-    the max, first in order. keep: the metric whose values go to `kept` (ni-1, nj-1), or -1 for none.
+    the max, first in order. keep: the first of the metrics whose values go to `kept` (n, ni-1, nj-1).
+    brackets (METRICS, m, 2): pairs of values; counts (METRICS, m, 4), zeros before: how many cells are less than
+    the first, at most the first, less than the second, at most the second. caught (METRICS, m, room): values
+    between the two, in no order; there are more than `room` when the counts say so.
     """
-    cdef ptrdiff_t ni = x.shape[0], nj = x.shape[1], cells = nj - 1, i, j, k
+    cdef ptrdiff_t ni = x.shape[0], nj = x.shape[1], cells = nj - 1, i, j, k, m, had, room = caught.shape[2]
     cdef double[:, ::1] areas = np.empty((4, nj + 1))
     cdef double[:, ::1] rows = np.empty((METRICS, cells))
     cdef double low, high, total
@@ -75,9 +80,13 @@ def measure(const double[:, ::1] x, const double[:, ::1] y, bint periodic, doubl
                     summary[k, 2] = high
                     note(&rows[k, 0], cells, high, i, &where[k, 1, 0])
                 summary[k, 1] = total if i == 0 else summary[k, 1] + total
-            if keep >= 0:
+                for m in range(brackets.shape[1]):
+                    had = min(counts[k, m, 2] - counts[k, m, 1], room)
+                    cells_catch(&rows[k, 0], cells, brackets[k, m, 0], brackets[k, m, 1], &counts[k, m, 0],
+                                &caught[k, m, 0] + had, room - had)
+            for k in range(kept.shape[0]):
                 for j in range(cells):
-                    kept[i, j] = rows[keep, j]
+                    kept[k, i, j] = rows[keep + k, j]
         for k in range(METRICS):
             summary[k, 1] /= (ni - 1) * cells
 

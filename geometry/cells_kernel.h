@@ -13,5 +13,6 @@ void cells_areas(const double *x, const double *y, ptrdiff_t nj, double *area);
 void cells_row(const double *x, const double *y, ptrdiff_t nj, const double *before, const double *here,
                const double *after, double *out);
 void cells_reduce(const double *row, ptrdiff_t cells, double *low, double *high, double *sum);
+ptrdiff_t cells_catch(const double *row, ptrdiff_t cells, double from, double to, int64_t counts[4], double *caught, ptrdiff_t room);
 
 #endif

@@ -16,6 +16,11 @@ from geometry.arrays import Floats, as_planar
 from geometry.errors import BadCell, InputError
 from geometry.grid import Grid
 from geometry.metrics import METRICS, NAMES
+from geometry.percentiles import Run, no_run, prepared
+
+PERCENTS = (1.0, 99.0)
+FEW = 1 << 18
+"""Cells up to which percentiles come from the values of all cells."""
 
 
 @dataclass(frozen=True)
@@ -96,21 +101,25 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     ----------
     grid : any topology; neighbours across the seam count for ``o``.
     percentiles : also find the 1st and 99th percentile of every metric, by linear interpolation between
-        cells. They need a sort of all cells and take several times as long as the rest.
+        cells. They take about a third of the time of the rest (`geometry.percentiles`).
     """
     x, y = grid.x, grid.y
-    table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
-    _cells.measure(x, y, grid.topology == "o", table, where, -1, np.empty((0, 0)))
+    cells = (grid.ni - 1) * (grid.nj - 1)
+    run = prepared(x, y, PERCENTS) if percentiles and cells > FEW else no_run()
+    values = np.empty((len(METRICS) if percentiles and cells <= FEW else 0, grid.ni - 1, grid.nj - 1))
+    table, where = _run(grid, 0, values, run)
     metrics = {}
     for k, metric in enumerate(METRICS):
         low, mean, high = (float(value) for value in table[k])
         i, j = where[k, 0 if metric.worst == "min" else 1]
         ends: list[float | None] = [None, None]
-        if percentiles:
-            values = per_cell(grid, metric.name).ravel()
-            ends = [float(value) for value in np.percentile(values, [1, 99], overwrite_input=True)]
+        if percentiles and cells > FEW:
+            ends = [run.percentile(k, m, cells, percent) for m, percent in enumerate(PERCENTS)]
+        if percentiles and None in ends:
+            all_values = values[k] if len(values) else per_cell(grid, metric.name)
+            ends = [float(v) for v in np.percentile(all_values.ravel(), PERCENTS, overwrite_input=True)]
         metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
-    return Quality((grid.ni - 1) * (grid.nj - 1), count_folded(grid.nodes), metrics)
+    return Quality(cells, count_folded(grid.nodes), metrics)
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
@@ -123,10 +132,22 @@ def per_cell(grid: Grid, name: str) -> Floats:
     """
     if name not in NAMES:
         raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
-    cells = np.empty((grid.ni - 1, grid.nj - 1))
+    cells = np.empty((1, grid.ni - 1, grid.nj - 1))
+    _run(grid, NAMES.index(name), cells, no_run())
+    return np.asarray(cells[0])
+
+
+def _run(grid: Grid, first: int, values: Floats, run: Run) -> tuple[Floats, NDArray[np.int64]]:
+    """Run over all cells; return min, mean, max (metrics, 3) and the places of min and max (metrics, 2, 2).
+
+    `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
+    """
     table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
-    _cells.measure(grid.x, grid.y, grid.topology == "o", table, where, NAMES.index(name), cells)
-    return cells
+    periodic = grid.topology == "o"
+    _cells.measure(
+        grid.x, grid.y, periodic, table, where, first, values, run.brackets, run.counts, run.caught
+    )
+    return table, where
 
 
 def _planes(nodes: Floats) -> Sequence[Floats]:

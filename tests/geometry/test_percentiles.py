@@ -1,0 +1,88 @@
+"""Percentiles of large grids: those of numpy over all cells, to the last bit."""
+
+import numpy as np
+import pytest
+
+from geometry import quality
+from geometry.grid import Grid
+from geometry.metrics import NAMES
+from geometry.percentiles import no_run, prepared
+from geometry.quality import measure, per_cell
+
+
+def lattice(ni: int, nj: int) -> np.ndarray:
+    return np.stack(np.meshgrid(np.linspace(0, 1, ni), np.linspace(0, 1, nj), indexing="ij"), axis=-1)
+
+
+def shaken(ni: int, nj: int, amount: float) -> Grid:
+    step = np.array([1 / (ni - 1), 1 / (nj - 1)])
+    return Grid(lattice(ni, nj) + step * np.random.default_rng(3).uniform(-amount, amount, (ni, nj, 2)))
+
+
+def ring(ni: int, nj: int) -> Grid:
+    """An ellipse's layers, the first cells flat: distributions with long tails."""
+    turn = np.linspace(0, -2 * np.pi, ni)[:, None]
+    radius = 1 + np.geomspace(1e-6, 10, nj)[None, :]
+    nodes = np.stack([radius * np.cos(turn), (radius - 0.8) * np.sin(turn)], axis=-1)
+    nodes[-1] = nodes[0]
+    return Grid(nodes, "o")
+
+
+def folded() -> Grid:
+    nodes = lattice(300, 280)
+    nodes[100:140, 100:140] = nodes[139:99:-1, 100:140]
+    return Grid(nodes)
+
+
+GRIDS = {
+    "shaken": lambda: shaken(310, 290, 0.4),
+    "smooth": lambda: ring(400, 220),
+    "thin": lambda: ring(20001, 5),
+    "of one value": lambda: Grid(lattice(257, 257)),
+    "folded": folded,
+}
+
+
+@pytest.mark.parametrize("name", GRIDS)
+def test_they_are_those_of_all_cells_sorted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = GRIDS[name]()
+    monkeypatch.setattr(quality, "FEW", 100)
+    found = measure(grid, percentiles=True)
+    monkeypatch.setattr(quality, "FEW", 10**9)
+    for metric in NAMES:
+        low, high = np.percentile(per_cell(grid, metric), [1, 99])
+        assert (found[metric].p01, found[metric].p99) == (low, high), metric
+        few = measure(grid, percentiles=True)[metric]
+        assert (few.p01, few.p99) == (low, high), metric
+
+
+@pytest.mark.parametrize("name", ["shaken", "smooth", "of one value"])
+def test_a_sample_says_where_to_look(name: str) -> None:
+    """Or they would be right, but slow."""
+    grid = GRIDS[name]()
+    run, cells = prepared(grid.x, grid.y, (1.0, 99.0)), (grid.ni - 1) * (grid.nj - 1)
+    quality._run(grid, 0, np.empty((0, grid.ni - 1, grid.nj - 1)), run)
+    hits = [
+        run.percentile(k, m, cells, p) is not None for k in range(len(NAMES)) for m, p in enumerate((1, 99))
+    ]
+    assert sum(hits) >= len(hits) - 1
+    assert run.caught.size < 0.5 * cells
+
+
+def test_what_a_bracket_misses_or_cannot_hold_is_found_anyway(monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = shaken(90, 80, 0.4)
+    monkeypatch.setattr(quality, "FEW", 100)
+    expected = measure(grid, percentiles=True)
+
+    def elsewhere(x: np.ndarray, y: np.ndarray, percents: tuple[float, ...]) -> object:
+        run = prepared(x, y, percents)
+        run.brackets[:4] = 1e9
+        run.brackets[4:] = [-1e9, 1e9]
+        return run
+
+    monkeypatch.setattr(quality, "prepared", elsewhere)
+    assert measure(grid, percentiles=True) == expected
+
+
+def test_a_run_that_looks_for_nothing_keeps_nothing() -> None:
+    assert no_run().brackets.shape[1] == no_run().caught.shape[1] == 0
