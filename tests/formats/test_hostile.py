@@ -23,7 +23,7 @@ from geometry.errors import InputError
 from geometry.grid import Grid
 
 READABLE = [name for name in TABLE if format_named(name).read_grids or format_named(name).read_shapes]
-SECONDS = 5.0
+SECONDS = 5.0  # of processor time: a busy machine is not a fault
 SECTION = "A SECTION\n" + "".join(
     f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in np.linspace(0, 2 * np.pi, 41)
 )
@@ -52,7 +52,7 @@ def good(name: str) -> bytes:
 def refuse(record: Format, data: bytes) -> None:
     """Read `data`; anything but shapes, grids or an InputError that says something is a failure."""
     source = Source("hostile", data=data)
-    start = time.perf_counter()
+    start = time.process_time()
     for read in (record.read_shapes, record.read_grids):
         if read is None:
             continue
@@ -67,7 +67,7 @@ def refuse(record: Format, data: bytes) -> None:
         assert str(refusal).isprintable()
         assert 10 < len(str(refusal)) < 400
         assert refusal.remedy
-    assert time.perf_counter() - start < SECONDS
+    assert time.process_time() - start < SECONDS
 
 
 def mutations(name: str) -> st.SearchStrategy[bytes]:
