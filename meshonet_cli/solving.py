@@ -27,8 +27,10 @@ def at_any_resolution(method: partial[Solution], coarse: int | None) -> Method:
     if settings.get("initial") is not None:
         raise InputError("a coarse solve has no use for a grid to start from", "drop --initial or --coarse")
     from solvers.coarse import solve_coarse
+    from solvers.elliptic.solve import solve_thomas_middlecoff
 
-    return partial(solve_coarse, method=method, n=coarse, smooth=True)
+    uncontrolled = method.func is not solve_thomas_middlecoff  # the sweeps know no control functions
+    return partial(solve_coarse, method=method, n=coarse, smooth=uncontrolled)
 
 
 def given(**settings: Any) -> dict[str, Any]:

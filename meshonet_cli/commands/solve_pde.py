@@ -11,16 +11,18 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
     "meshonet solve-pde duct.csv --res 400 --coarse 65 -o fine.vts",
+    "meshonet solve-pde duct.csv --method thomas-middlecoff --spacing tanh -o layers.vts",
     "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
 
 # fmt: off
 Method = Annotated[
-    Literal["auto", "winslow", "variational", "hyperbolic"],
+    Literal["auto", "winslow", "thomas-middlecoff", "variational", "hyperbolic"],
     typer.Option(
-        "--method", metavar="auto|winslow|variational|hyperbolic",
-        help="Equations to solve: winslow is elliptic; variational (quad) minimises a functional of angles "
+        "--method", metavar="auto|winslow|thomas-middlecoff|variational|hyperbolic",
+        help="Equations to solve: winslow is elliptic; thomas-middlecoff too, with control functions that "
+        "carry the spacing of the edges inside; variational (quad) minimises a functional of angles "
         "and edge lengths: better angles, no folds; hyperbolic marches from the wall, and is what auto takes "
         "when a first cell is given.",
     ),
@@ -94,19 +96,19 @@ def solve_pde(
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.session import Session
     from meshonet_cli.solving import at_any_resolution, given
-    from solvers.elliptic.solve import solve
+    from solvers.elliptic.solve import solve, solve_thomas_middlecoff
     from solvers.variational.solve import solve as minimise
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     marched = layer.marching(method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse})
-    solvers = {"auto": solve, "winslow": solve, "variational": minimise}
+    elliptic = {"auto": solve, "winslow": solve, "thomas-middlecoff": solve_thomas_middlecoff}
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
         ),
-        marched or at_any_resolution(partial(solvers[method], **settings), coarse),
+        marched or at_any_resolution(partial(elliptic.get(method, minimise), **settings), coarse),
         allow_invalid,
         parse_gates(fail_on),
     )

@@ -12,6 +12,11 @@ cdef extern from "multigrid_kernel.h":
         const double *before
         const double *at
         const double *after
+    ctypedef struct Control:
+        Py_ssize_t terms
+        const double *along
+        const double *across
+        const double *reach
     ctypedef struct CLevel "Level":
         Py_ssize_t mi
         Py_ssize_t mj
@@ -26,6 +31,8 @@ cdef extern from "multigrid_kernel.h":
         Differences eta
         Transfer xi_coarse
         Transfer eta_coarse
+        Control phi
+        Control psi
         double *scratch
     size_t multigrid_scratch(Py_ssize_t mi, Py_ssize_t mj) nogil
     void multigrid_smooth(const CLevel *level, int forced) nogil
@@ -52,7 +59,7 @@ cdef class Level:
     """
 
     cdef CLevel level
-    cdef list kept
+    cdef list kept, controls
     cdef readonly object x, y, x0, y0, fx, fy
 
     def __init__(self, double[:, ::1] x, double[:, ::1] y, tuple xi, tuple eta, bint periodic,
@@ -60,6 +67,7 @@ cdef class Level:
         cdef double[:, ::1] plane
         self.x, self.y = x.base, y.base
         self.kept = [x, y, scratch]
+        self.controls = []
         self.level.mi, self.level.mj = x.shape[0] - 1, x.shape[1] - 1
         if <size_t>scratch.shape[0] < multigrid_scratch(self.level.mi, self.level.mj):
             raise ValueError("too little scratch")
@@ -102,6 +110,30 @@ cdef class Level:
         self.level.eta_coarse.before = self.row(eta[1], NJ)
         self.level.eta_coarse.at = self.row(eta[2], NJ)
         self.level.eta_coarse.after = self.row(eta[3], NJ)
+
+    def control(self, tuple phi, tuple psi, object xi_reach, object eta_reach):
+        """Set control functions along xi and along eta.
+
+        Each is (along (terms, ni), across (terms, nj)), the factors of a sum of products that is the logarithm
+        of the ratio of neighbouring steps; no terms mean no control. `xi_reach` (ni), `eta_reach` (nj): the longer
+        step at each node.
+        """
+        self.controls = []
+        self.level.phi = self.factors(phi, xi_reach, self.level.mi + 1)
+        self.level.psi = self.factors(psi, eta_reach, self.level.mj + 1)
+
+    cdef Control factors(self, tuple pair, object reach, Py_ssize_t n) except *:
+        cdef Control c
+        cdef const double[:, ::1] along = pair[0], across = pair[1]
+        cdef const double[::1] steps = reach
+        if along.shape[1] != self.level.mi + 1 or across.shape[1] != self.level.mj + 1 or steps.shape[0] != n \
+                or along.shape[0] != across.shape[0]:
+            raise ValueError("control functions do not fit the level")
+        self.controls.append((along, across, steps))
+        c.terms, c.reach = along.shape[0], &steps[0]
+        c.along = &along[0, 0] if c.terms else NULL
+        c.across = &across[0, 0] if c.terms else NULL
+        return c
 
     def smooth(self, bint forced, int sweeps=1):
         """Relax in place: eta lines, then xi lines, two colours each."""

@@ -52,6 +52,10 @@ class Direction:
         both = before + after
         return 2.0 / (both * after), 2.0 / (both * before), 1.0 / both
 
+    def reach(self) -> Floats:
+        """Return the longer of the two steps at each node, (n,)."""
+        return np.maximum(*self._steps())
+
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
         """Return the weights (right (n,); before, at, after (coarse n,)) of interpolation and restriction.
 

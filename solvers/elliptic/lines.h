@@ -1,6 +1,7 @@
 /* Zebra line relaxation along eta and along xi, both colours in one pass over memory. */
 #ifndef MESHONET_LINES_H
 #define MESHONET_LINES_H
+#include "control.h"
 #include "stencil.h"
 #include <string.h>
 
@@ -10,10 +11,11 @@ enum { LANES = 8, BLOCK = 128 };
 
 typedef struct {
     double *lower, *upper, *diagonal, *bx, *by; /* LANES rows of `stride` each */
+    double *phi, *psi; /* of the line at work */
     ptrdiff_t stride;
 } EtaSystem;
 
-MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int mode)
 {
     const Rows r = rows_at(g, i);
     const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
@@ -22,10 +24,15 @@ MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSys
     double *restrict lower = s->lower + k * s->stride, *restrict upper = s->upper + k * s->stride;
     double *restrict diagonal = s->diagonal + k * s->stride;
     double *restrict bx = s->bx + k * s->stride, *restrict by = s->by + k * s->stride;
+    const int forced = mode & FORCED;
     const double *restrict fx = forced ? g->fx + i * (mj + 1) : 0, *restrict fy = forced ? g->fy + i * (mj + 1) : 0;
+    const double *restrict phi = s->phi, *restrict psi = s->psi;
+    if (mode & CONTROLLED)
+        control_row(g, i, 0, 1, mj, s->phi, s->psi);
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 1; j < mj; j++) {
-        const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
+        const Stencil c = stencil(&r, j, forward, backward, centred, &eta, mode & CONTROLLED ? phi[j] : 0.0,
+                                  mode & CONTROLLED ? psi[j] : 0.0, mode);
         lower[j] = c.south;
         upper[j] = c.north;
         diagonal[j] = -(c.east + c.west + c.north + c.south);
@@ -37,10 +44,14 @@ MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSys
 
 /* Assemble the tridiagonal system of eta line i in lane k. */
 MESHONET_CLONES
-static void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int forced)
+static void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int mode)
 {
-    if (forced)
-        eta_assemble_with(g, i, s, k, 1);
+    if (mode == (FORCED | CONTROLLED))
+        eta_assemble_with(g, i, s, k, FORCED | CONTROLLED);
+    else if (mode == CONTROLLED)
+        eta_assemble_with(g, i, s, k, CONTROLLED);
+    else if (mode == FORCED)
+        eta_assemble_with(g, i, s, k, FORCED);
     else
         eta_assemble_with(g, i, s, k, 0);
 }
@@ -85,9 +96,11 @@ static void eta_group(const Level *g, ptrdiff_t i, ptrdiff_t lines, int forced)
 {
     const ptrdiff_t stride = padded(g->mj);
     double *b = g->scratch;
-    const EtaSystem s = {b, b + LANES * stride, b + 2 * LANES * stride, b + 3 * LANES * stride, b + 4 * LANES * stride, stride};
+    double *control = b + 5 * LANES * stride;
+    const EtaSystem s = {b, b + LANES * stride, b + 2 * LANES * stride, b + 3 * LANES * stride, b + 4 * LANES * stride,
+                         control, control + stride, stride};
     for (int k = 0; k < lines; k++)
-        eta_assemble(g, i + 2 * k, &s, k, forced);
+        eta_assemble(g, i + 2 * k, &s, k, mode_of(g, forced));
     eta_solve(g, i, &s, (int)lines);
 }
 
@@ -127,16 +140,16 @@ typedef struct {
     double lower, upper, diagonal, bx, by;
 } XiRow;
 
-MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff_t j, int forced)
+MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff_t j, double phi, double psi, int mode)
 {
-    const Stencil c = stencil(r, j, g->xi.forward[i], g->xi.backward[i], g->xi.centred[i], &g->eta);
+    const Stencil c = stencil(r, j, g->xi.forward[i], g->xi.backward[i], g->xi.centred[i], &g->eta, phi, psi, mode);
     XiRow t;
     t.lower = c.west;
     t.upper = c.east;
     t.diagonal = -(c.east + c.west + c.north + c.south);
     t.bx = c.cross_x - c.north * r->xc[j + 1] - c.south * r->xc[j - 1];
     t.by = c.cross_y - c.north * r->yc[j + 1] - c.south * r->yc[j - 1];
-    if (forced) {
+    if (mode & FORCED) {
         t.bx += g->fx[i * (g->mj + 1) + j];
         t.by += g->fy[i * (g->mj + 1) + j];
     }
@@ -144,8 +157,9 @@ MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff
 }
 
 /* Fixed ends: lines j0, j0 + 2, ... (n of them) between rows 0 and mi. */
-MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int forced)
+MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int mode)
 {
+    double phi[BLOCK], psi[BLOCK];
     const ptrdiff_t mi = g->mi, ld = g->mj + 1;
     double *up = g->scratch, *px = up + BLOCK * (mi + 1), *py = px + BLOCK * (mi + 1);
     for (int k = 0; k < n; k++)
@@ -154,9 +168,12 @@ MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int for
         const Rows r = rows_at(g, i);
         double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
         const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        if (mode & CONTROLLED)
+            control_row(g, i, j0, 2, n, phi, psi);
         MESHONET_INDEPENDENT
         for (int k = 0; k < n; k++) {
-            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
+            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, mode & CONTROLLED ? phi[k] : 0.0,
+                                   mode & CONTROLLED ? psi[k] : 0.0, mode);
             const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
             u[k] = t.upper * w;
             bx[k] = (t.bx - t.lower * bx1[k]) * w;
@@ -178,14 +195,18 @@ MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int for
 
 /* Periodic lines: with X_0 = 0 one solution of rows 1 .. mi-1 meets the right side and another, p, has X_0 = 1
    and no right side; row 0 then says which combination X = q + X_0 p is the line. */
-MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int forced)
+MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int mode)
 {
+    double phi[BLOCK], psi[BLOCK];
     const ptrdiff_t mi = g->mi, ld = g->mj + 1;
     double *up = g->scratch, *qx = up + BLOCK * (mi + 1), *qy = qx + BLOCK * (mi + 1), *p = qy + BLOCK * (mi + 1);
     XiRow closing[BLOCK];
     const Rows r0 = rows_at(g, 0);
+    if (mode & CONTROLLED)
+        control_row(g, 0, j0, 2, n, phi, psi);
     for (int k = 0; k < n; k++) {
-        closing[k] = xi_row(g, &r0, 0, j0 + 2 * k, forced);
+        closing[k] = xi_row(g, &r0, 0, j0 + 2 * k, mode & CONTROLLED ? phi[k] : 0.0, mode & CONTROLLED ? psi[k] : 0.0,
+                            mode);
         up[k] = qx[k] = qy[k] = 0.0, p[k] = 1.0;
         qx[mi * BLOCK + k] = qy[mi * BLOCK + k] = 0.0, p[mi * BLOCK + k] = 1.0;
     }
@@ -195,9 +216,12 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
         double *restrict bp = p + i * BLOCK;
         const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
         const double *restrict bp1 = bp - BLOCK;
+        if (mode & CONTROLLED)
+            control_row(g, i, j0, 2, n, phi, psi);
         MESHONET_INDEPENDENT
         for (int k = 0; k < n; k++) {
-            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, forced);
+            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, mode & CONTROLLED ? phi[k] : 0.0,
+                                   mode & CONTROLLED ? psi[k] : 0.0, mode);
             const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
             u[k] = t.upper * w;
             bx[k] = (t.bx - t.lower * bx1[k]) * w;
@@ -237,14 +261,15 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
 MESHONET_CLONES
 static void xi_group(const Level *g, ptrdiff_t j0, ptrdiff_t lines, int forced)
 {
-    if (g->periodic && forced)
-        xi_block_periodic(g, j0, (int)lines, 1);
-    else if (g->periodic)
-        xi_block_periodic(g, j0, (int)lines, 0);
-    else if (forced)
-        xi_block_fixed(g, j0, (int)lines, 1);
+    const int n = (int)lines, mode = mode_of(g, forced);
+    if (mode == (FORCED | CONTROLLED))
+        g->periodic ? xi_block_periodic(g, j0, n, FORCED | CONTROLLED) : xi_block_fixed(g, j0, n, FORCED | CONTROLLED);
+    else if (mode == CONTROLLED)
+        g->periodic ? xi_block_periodic(g, j0, n, CONTROLLED) : xi_block_fixed(g, j0, n, CONTROLLED);
+    else if (mode == FORCED)
+        g->periodic ? xi_block_periodic(g, j0, n, FORCED) : xi_block_fixed(g, j0, n, FORCED);
     else
-        xi_block_fixed(g, j0, (int)lines, 0);
+        g->periodic ? xi_block_periodic(g, j0, n, 0) : xi_block_fixed(g, j0, n, 0);
 }
 
 /* Both colours in one pass, as eta_lines. */

@@ -1,4 +1,4 @@
-"""Full multigrid (nested iteration) with FAS V-cycles for Winslow's system.
+"""Full multigrid (nested iteration) with FAS V-cycles for Winslow's system, with or without controls.
 
 Each level relaxes alternating zebra lines, coefficients re-evaluated line by line. A cycle sends nodes and
 residual down, solves the coarse equations with the truncation error as right side (full approximation
@@ -17,6 +17,7 @@ import numpy as np
 from geometry.arrays import Floats, planar_nodes
 from solvers.elliptic._multigrid import Level, scratch_size
 from solvers.elliptic.coarsening import Direction
+from solvers.elliptic.control import Controls
 from solvers.tfi import Four, interpolate, parameters
 
 
@@ -44,13 +45,22 @@ class Multigrid:
     edges : (south, north, west, east) nodes.
     periodic : in xi.
     settings : how the cycles run.
+    controls : control functions, none when not given.
     """
 
-    def __init__(self, nodes: Floats, edges: Four, periodic: bool, settings: Settings | None = None) -> None:
+    def __init__(
+        self,
+        nodes: Floats,
+        edges: Four,
+        periodic: bool,
+        settings: Settings | None = None,
+        controls: Controls | None = None,
+    ) -> None:
         self.settings = settings or Settings()
         self.levels: list[Level] = []
         self._edges: list[Four] = []
         self._along: list[Four] = []
+        self._directions: list[tuple[Direction, Direction]] = []
         along = parameters(edges, "arclength")
         xi = Direction(np.arange(float(nodes.shape[0])), periodic)
         eta = Direction(np.arange(float(nodes.shape[1])), False)
@@ -64,11 +74,24 @@ class Multigrid:
             self.levels.append(level)
             self._edges.append(edges)
             self._along.append(along)
+            self._directions.append((xi, eta))
             if min(xi.cells, eta.cells) <= max(self.settings.coarsest, 7):
-                return
+                break
             level.transfer(xi.transfer(), eta.transfer())
             edges, along = _thinned(edges, xi, eta), _thinned(along, xi, eta)
             xi, eta = xi.coarse(), eta.coarse()
+        if controls is not None:
+            self.control(controls)
+
+    def control(self, controls: Controls) -> None:
+        """Set the control functions of every level."""
+        phi, psi = controls.phi, controls.psi
+        for k, (level, (xi, eta)) in enumerate(zip(self.levels, self._directions, strict=True)):
+            if k > 0:
+                finer = self._directions[k - 1]
+                i, j = finer[0].kept(), finer[1].kept()
+                phi, psi = phi.kept(i, j), psi.kept(i, j)
+            level.control((phi.along, phi.across), (psi.along, psi.across), xi.reach(), eta.reach())
 
     def interpolate_edges(self, k: int) -> None:
         """Fill level `k` with the transfinite interpolation of its edges."""

@@ -1,8 +1,9 @@
 /* Kernels of the multigrid solver for Winslow's equations
 
-       L(x) = α x_ξξ - 2β x_ξη + γ x_ηη = f,    α = x_η·x_η,  β = x_ξ·x_η,  γ = x_ξ·x_ξ,    x = (x, y),
+       L(x) = α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = f,
+       α = x_η·x_η,  β = x_ξ·x_η,  γ = x_ξ·x_ξ,    x = (x, y),
 
-   by central differences. x and y share their coefficients, so a line of nodes is one tridiagonal matrix with
+   by central differences, with the control functions φ and ψ of control.h. x and y share their coefficients, so a line of nodes is one tridiagonal matrix with
    two right sides. Signs: the matrix of a line has diagonal -(east + west + north + south) < 0. */
 #include "multigrid_kernel.h"
 #include "lines.h"
@@ -10,9 +11,9 @@
 
 size_t multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj)
 {
-    const size_t eta_lines = (size_t)(5 * LANES * padded(mj));
+    const size_t eta_lines = (size_t)((5 * LANES + 2) * padded(mj));
     const size_t xi_lines = (size_t)(4 * BLOCK * (mi + 1));
-    const size_t rows = (size_t)(8 * padded(mj));
+    const size_t rows = (size_t)(10 * padded(mj));
     size_t most = eta_lines > xi_lines ? eta_lines : xi_lines;
     return (most > rows ? most : rows) + 64;
 }
@@ -25,16 +26,21 @@ void multigrid_smooth(const Level *level, int forced)
 
 /* ---- residual, restriction, correction ---- */
 
-MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, int forced, double *restrict rx, double *restrict ry)
+MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, int mode, double *restrict rx, double *restrict ry)
 {
+    const int forced = mode & FORCED;
+    double *restrict phi = g->scratch + 8 * padded(g->mj), *restrict psi = phi + padded(g->mj);
     const Rows r = rows_at(g, i);
     const double forward = g->xi.forward[i], backward = g->xi.backward[i], centred = g->xi.centred[i];
     const Differences eta = g->eta;
     const double *restrict fx = forced ? g->fx + i * (g->mj + 1) : 0;
     const double *restrict fy = forced ? g->fy + i * (g->mj + 1) : 0;
+    if (mode & CONTROLLED)
+        control_row(g, i, 0, 1, g->mj, phi, psi);
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 1; j < g->mj; j++) {
-        const Stencil c = stencil(&r, j, forward, backward, centred, &eta);
+        const Stencil c = stencil(&r, j, forward, backward, centred, &eta, mode & CONTROLLED ? phi[j] : 0.0,
+                                  mode & CONTROLLED ? psi[j] : 0.0, mode);
         const double x = r.xc[j], y = r.yc[j];
         rx[j] = c.cross_x - c.east * (r.xe[j] - x) - c.west * (r.xw[j] - x) - c.north * (r.xc[j + 1] - x) -
                 c.south * (r.xc[j - 1] - x) + (forced ? fx[j] : 0.0);
@@ -47,8 +53,13 @@ MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, int forced, 
 MESHONET_CLONES
 static void residual_row(const Level *g, ptrdiff_t i, int forced, double *rx, double *ry)
 {
-    if (forced)
-        residual_row_with(g, i, 1, rx, ry);
+    const int mode = mode_of(g, forced);
+    if (mode == (FORCED | CONTROLLED))
+        residual_row_with(g, i, FORCED | CONTROLLED, rx, ry);
+    else if (mode == CONTROLLED)
+        residual_row_with(g, i, CONTROLLED, rx, ry);
+    else if (mode == FORCED)
+        residual_row_with(g, i, FORCED, rx, ry);
     else
         residual_row_with(g, i, 0, rx, ry);
 }

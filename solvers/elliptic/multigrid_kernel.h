@@ -1,4 +1,4 @@
-/* One level of the multigrid hierarchy for Winslow's system, and what can be done to it. */
+/* One level of the multigrid hierarchy for Winslow's system with control functions, and what can be done to it. */
 #ifndef MESHONET_MULTIGRID_KERNEL_H
 #define MESHONET_MULTIGRID_KERNEL_H
 #include <stddef.h>
@@ -9,6 +9,15 @@
 typedef struct {
     const double *forward, *backward, *centred;
 } Differences;
+
+/* A control function: the logarithm of the ratio by which neighbouring steps grow along one direction, as a sum of
+   products  l(i, j) = Σ_t along[t][i] across[t][j],  so that it needs no memory on the grid. `reach` is the longer
+   of the two steps at each node of that direction. */
+typedef struct {
+    ptrdiff_t terms;
+    const double *along, *across; /* terms x (mi + 1) and terms x (mj + 1) */
+    const double *reach;
+} Control;
 
 /* Weights between the nodes of one direction and the coarse nodes 0, 2, 4 ... and the last:
        interpolation  x[k] = (1 - right[k]) X[left] + right[k] X[left + 1] at nodes that the coarse level lacks
@@ -26,6 +35,7 @@ typedef struct {
     double *x0, *y0;  /* what the finer level sent down, null on the finest */
     Differences xi, eta;
     Transfer xi_coarse, eta_coarse; /* to the next coarser level, null on the coarsest */
+    Control phi, psi;               /* along xi and along eta; no terms: none */
     double *scratch;                /* multigrid_scratch() doubles */
 } Level;
 

@@ -1,4 +1,11 @@
-"""Boundary in, Winslow grid out: start, cycles, stop, and what to do when they diverge."""
+"""Boundary in, elliptic grid out: start, cycles, stop, and what to do when they diverge.
+
+::
+
+    interpolation --nested iteration--> cycles --stop--> grid        Winslow, or with control functions
+                                          |
+                                       diverges --> more sweeps --> controls little by little
+"""
 
 from __future__ import annotations
 
@@ -10,6 +17,7 @@ from geometry.arrays import SIDES, Floats, planar_nodes
 from geometry.boundary import Boundary
 from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
+from solvers.elliptic.control import Controls, thomas_middlecoff
 from solvers.elliptic.multigrid import Multigrid, Settings
 from solvers.solution import Solution
 
@@ -19,6 +27,8 @@ ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, s
 Around slits and spikes, one sweep leaves coarse levels with corrections that the fine one cannot follow.
 """
 
+CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
+"""Parts of the control functions, each solved from the solution before, when all at once diverge."""
 
 SOLVED = 1e-4
 """Relative residual that counts as discretisation level when there is no better estimate."""
@@ -29,9 +39,15 @@ class _DivergedError(Exception):
 
 
 def solve(
-    boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None
+    boundary: Boundary,
+    *,
+    tol: float | None = None,
+    max_cycles: int = 30,
+    initial: Grid | None = None,
+    controls: Controls | None = None,
+    method: str = "winslow",
 ) -> Solution:
-    """Solve Winslow's equations for the nodes inside `boundary`.
+    """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
     Parameters
     ----------
@@ -41,6 +57,8 @@ def solve(
     max_cycles : cycles on the finest level at the most.
     initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
         nodes are replaced.
+    controls : control functions (`solvers.elliptic.control`), none when not given.
+    method : what the solution is called.
 
     Returns
     -------
@@ -58,32 +76,62 @@ def solve(
     _check(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
     notes: tuple[str, ...] = ()
-    for k, settings in enumerate(ATTEMPTS):
+    for k, (settings, steps) in enumerate(_attempts(controls)):
+        start = initial if k == 0 else None
         try:
-            nodes, residual, cycles = _attempt(boundary, tol, max_cycles, initial, settings)
+            for part in steps:
+                weaker = None if controls is None else controls.scaled(part)
+                nodes, residual, cycles = _attempt(boundary, tol, max_cycles, start, settings, weaker)
+                start = Grid(nodes, boundary.topology) if part != 1.0 else None
         except _DivergedError as error:
             notes += (f"attempt {k + 1} diverged ({error})",)
-            initial = None
             continue
         if tol is not None and residual > tol:
             notes += (f"stopped after {cycles} cycles at residual {residual:.1e}, short of {tol:g}",)
-        facts = {"method": "winslow", "residual": residual, "cycles": cycles}
+        facts = {"method": method, "residual": residual, "cycles": cycles}
         grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
         spent = {"grid": time.perf_counter() - begun}
-        return Solution(grid, "winslow", residual=residual, cycles=cycles, seconds=spent, notes=notes)
-    raise SolverError(
-        f"Winslow's equations diverged from every start ({'; '.join(notes)}); use more nodes or tfi"
+        return Solution(grid, method, residual=residual, cycles=cycles, seconds=spent, notes=notes)
+    name = "Winslow's equations" if controls is None else f"the equations of {method}"
+    raise SolverError(f"{name} diverged from every start ({'; '.join(notes)}); use more nodes or tfi")
+
+
+def solve_thomas_middlecoff(
+    boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None
+) -> Solution:
+    """Solve Winslow's equations with the control functions of the edges' own spacing.
+
+    As `solve`, with `solvers.elliptic.control.thomas_middlecoff`.
+    """
+    return solve(
+        boundary,
+        tol=tol,
+        max_cycles=max_cycles,
+        initial=initial,
+        controls=thomas_middlecoff(boundary),
+        method="thomas-middlecoff",
     )
 
 
+def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ...]]]:
+    """Return the settings to try in turn and the parts of the controls, one after another, of each."""
+    whole: list[tuple[Settings, tuple[float, ...]]] = [(settings, (1.0,)) for settings in ATTEMPTS]
+    return whole if controls is None else [*whole, (ATTEMPTS[-1], CONTINUATION)]
+
+
 def _attempt(
-    boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None, settings: Settings
+    boundary: Boundary,
+    tol: float | None,
+    max_cycles: int,
+    initial: Grid | None,
+    settings: Settings,
+    controls: Controls | None,
 ) -> tuple[Floats, float, int]:
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
     periodic = boundary.topology == "o"
-    levels = Multigrid(nodes, edges, periodic, settings)
+    levels = Multigrid(nodes, edges, periodic, settings, controls)
     if initial is None:
         start = levels.nested_iteration()
     else:
@@ -93,6 +141,7 @@ def _attempt(
         nodes[inside, 1:-1] = initial.nodes[inside, 1:-1]
     noise = _round_off(boundary)
     if start <= noise:  # transfinite interpolation solves the equations: a rectangle, say
+        levels.interpolate_edges(0)
         return nodes, 0.0, 0
     goal = max((SOLVED if tol is None else tol) * start, noise)
     estimate = tol is None and initial is None

@@ -1,8 +1,16 @@
-/* The stencil of Winslow's operator at one node; see multigrid_kernel.c for the equations. */
+/* The stencil of Winslow's operator with control functions at one node; see multigrid_kernel.c for the equations. */
 #ifndef MESHONET_STENCIL_H
 #define MESHONET_STENCIL_H
 #include "clones.h"
 #include "multigrid_kernel.h"
+
+/* What a kernel has to do beside L: a right side, control functions. Constants where it is inlined. */
+enum { FORCED = 1, CONTROLLED = 2 };
+
+MESHONET_INLINE int mode_of(const Level *g, int forced)
+{
+    return (forced ? FORCED : 0) | (g->phi.terms + g->psi.terms > 0 ? CONTROLLED : 0);
+}
 
 /* Rows i-1, i and i+1 of both coordinates. */
 typedef struct {
@@ -16,7 +24,7 @@ typedef struct {
 } Stencil;
 
 MESHONET_INLINE Stencil stencil(const Rows *r, ptrdiff_t j, double forward, double backward, double centred,
-                                const Differences *eta)
+                                const Differences *eta, double phi, double psi, int mode)
 {
     const double ej = eta->centred[j];
     const double x_xi = centred * (r->xe[j] - r->xw[j]), x_eta = ej * (r->xc[j + 1] - r->xc[j - 1]);
@@ -26,10 +34,17 @@ MESHONET_INLINE Stencil stencil(const Rows *r, ptrdiff_t j, double forward, doub
     const double gamma = x_xi * x_xi + y_xi * y_xi;
     const double twice = 2.0 * beta * centred * ej;
     Stencil s;
-    s.east = forward * alpha;
-    s.west = backward * alpha;
-    s.north = eta->forward[j] * gamma;
-    s.south = eta->backward[j] * gamma;
+    if (mode & CONTROLLED) {
+        s.east = (forward + centred * phi) * alpha;
+        s.west = (backward - centred * phi) * alpha;
+        s.north = (eta->forward[j] + ej * psi) * gamma;
+        s.south = (eta->backward[j] - ej * psi) * gamma;
+    } else {
+        s.east = forward * alpha;
+        s.west = backward * alpha;
+        s.north = eta->forward[j] * gamma;
+        s.south = eta->backward[j] * gamma;
+    }
     s.cross_x = twice * (r->xe[j + 1] - r->xe[j - 1] - r->xw[j + 1] + r->xw[j - 1]);
     s.cross_y = twice * (r->ye[j + 1] - r->ye[j - 1] - r->yw[j + 1] + r->yw[j - 1]);
     return s;

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet, wave
+from conftest import Meshonet, dataset, duct, wave
 
 from formats.registry import read_grids
 from solvers.elliptic.winslow import residual
@@ -37,6 +37,26 @@ def test_the_method_can_be_named(meshonet: Meshonet, duct_h5: Path) -> None:
     done = meshonet("solve-pde", duct_h5, "--method", "magic", "-o", "g.vts")
     assert done.code == 2
     assert "magic" in done.err
+
+
+def test_thomas_middlecoff_keeps_the_spacing_of_the_sides(meshonet: Meshonet, tmp_path: Path) -> None:
+    edges = duct(21, 33)
+    for side in ("west", "east"):
+        edges[side][:, 1] **= 3
+    source = dataset(tmp_path / "layers.h5", "quad", edges)
+    told = meshonet("solve-pde", source, "--method", "thomas-middlecoff", "-o", "g.vts", "--json").only
+    assert (told["method"], told["folded"]) == ("thomas-middlecoff", 0)
+    (grid,) = read_grids("g.vts")
+    first = np.diff(grid.y, axis=1)[:, 0]
+    meshonet("solve-pde", source, "-o", "plain.vts")
+    (plain,) = read_grids("plain.vts")
+    assert first.max() < 0.2 * np.diff(plain.y, axis=1)[:, 0].max()
+    told = meshonet(
+        "solve-pde", source, "--method", "thomas-middlecoff", "--coarse", "17", "-o", "c.vts", "--json"
+    ).only
+    (coarse,) = read_grids("c.vts")
+    assert told["folded"] == 0
+    np.testing.assert_allclose(coarse.nodes, grid.nodes, atol=5e-3)
 
 
 def test_a_march_needs_a_first_cell_and_takes_no_elliptic_options(meshonet: Meshonet, body_h5: Path) -> None:

@@ -1,0 +1,119 @@
+"""Control functions: how steps between nodes grow along ξ and along η, as sources of Winslow's equations.
+
+::
+
+    α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = 0
+
+On a straight line φ = -(ln |x_ξ|)_ξ. A control function is kept as the logarithm l of the ratio of
+neighbouring steps, and as a sum of products of a function of ξ and one of η: it takes no memory on the grid,
+coarser levels get it by leaving nodes out, and the scheme (φ = -(2/h) tanh(h l/2), see ``control.h``) is
+exact for geometric growth on every level.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+
+STEEPEST = 2.0
+"""Largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4."""
+
+
+@dataclass(frozen=True, eq=False)
+class Factors:
+    """Σ_t along[t, i] across[t, j].
+
+    Parameters
+    ----------
+    along : (terms, ni).
+    across : (terms, nj).
+    """
+
+    along: Floats
+    across: Floats
+
+    @classmethod
+    def none(cls, ni: int, nj: int) -> Factors:
+        """Return the sum of no terms."""
+        return cls(np.zeros((0, ni)), np.zeros((0, nj)))
+
+    def values(self) -> Floats:
+        """Return the sum at every node, (ni, nj)."""
+        return np.asarray(self.along.T @ self.across)
+
+    def kept(
+        self, i: np.ndarray[tuple[int], np.dtype[np.intp]], j: np.ndarray[tuple[int], np.dtype[np.intp]]
+    ) -> Factors:
+        """Return the factors at the nodes `i` and `j`."""
+        return Factors(np.ascontiguousarray(self.along[:, i]), np.ascontiguousarray(self.across[:, j]))
+
+    def scaled(self, part: float) -> Factors:
+        """Return `part` times the sum."""
+        return replace(self, along=part * self.along)
+
+    def __add__(self, other: Factors) -> Factors:
+        along, across = (self.along, other.along), (self.across, other.across)
+        return Factors(np.concatenate(along), np.concatenate(across))
+
+
+@dataclass(frozen=True, eq=False)
+class Controls:
+    """The control functions of a grid.
+
+    Parameters
+    ----------
+    phi, psi : logarithm of the ratio of neighbouring steps along ξ and along η.
+    """
+
+    phi: Factors
+    psi: Factors
+
+    def scaled(self, part: float) -> Controls:
+        """Return `part` times both."""
+        return Controls(self.phi.scaled(part), self.psi.scaled(part))
+
+    def __add__(self, other: Controls) -> Controls:
+        return Controls(self.phi + other.phi, self.psi + other.psi)
+
+
+def thomas_middlecoff(boundary: Boundary) -> Controls:
+    """Return the control functions that carry the spacing of the edges into the domain.
+
+    On an edge, φ = -(x_ξ·x_ξξ)/(x_ξ·x_ξ), which is -(ln s_ξ)_ξ with its arc length s: it asks of the lines
+    that leave the edge that they be straight and at right angles to it. Inside it is linear between opposite
+    edges. An O boundary has no west and east to take ψ from but its cut.
+
+    Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
+    """
+    periodic = boundary.topology == "o"
+    up = np.linspace(0.0, 1.0, boundary.nj)
+    right = np.linspace(0.0, 1.0, boundary.ni)
+    south, north = (step_ratios(edge, periodic=periodic) for edge in (boundary.south, boundary.north))
+    west, east = (step_ratios(edge, periodic=False) for edge in (boundary.west, boundary.east))
+    return Controls(
+        Factors(np.stack([south, north]), np.stack([1.0 - up, up])),
+        Factors(np.stack([1.0 - right, right]), np.stack([west, east])),
+    )
+
+
+def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
+    """Return the logarithm (n,) of the ratio of the steps after and before each node of an edge (n, 2).
+
+    At the ends of an open edge that of the neighbours; at most `STEEPEST`: a corner may have any.
+
+    Examples
+    --------
+    >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
+    >>> np.exp(step_ratios(edge, periodic=False)).tolist()
+    [2.0, 2.0, 2.0, 2.0]
+    """
+    steps = np.log(np.hypot(*np.diff(edge, axis=0).T))
+    ratios = np.zeros(len(edge))
+    if len(edge) > 2:
+        ratios[1:-1] = np.diff(steps)
+        ratios[0], ratios[-1] = (2 * [steps[0] - steps[-1]]) if periodic else (ratios[1], ratios[-2])
+    return np.clip(ratios, -STEEPEST, STEEPEST)
