@@ -17,7 +17,9 @@ Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Mot
 
 from __future__ import annotations
 
+from cmath import exp
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
@@ -33,6 +35,8 @@ SECOND_PRONG = (
     0.25  # q sits this far from the corner p towards the pole: deep enough to act gently, still inside
 )
 WALKED = 1200  # points, at the least, that are walked around the wall to follow the square root's branch
+
+Plane = TypeVar("Plane", complex, Complexes)
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,7 @@ class Corner:
             straight = (self.Q * r - self.P) / (r - 1.0)
         return np.where(v == self.p, self.P, straight)
 
-    def restore(self, v: Complexes) -> Complexes:
+    def restore(self, v: Plane) -> Plane:
         """Return v for v', the inverse of `remove`."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
@@ -75,6 +79,13 @@ class Lift:
     def to_plane(self, w: Complexes) -> Complexes:
         """Return z for strip points w, any shape."""
         zeta = self.pole + np.exp(w + 1j * self.phase)
+        for corner in reversed(self.corners):
+            zeta = corner.restore(zeta)
+        return self.centre + self.quarter * (zeta + 1.0 / zeta)
+
+    def point(self, w: complex) -> complex:
+        """Return z for one strip point: `to_plane` without the cost of an array."""
+        zeta = self.pole + exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
         return self.centre + self.quarter * (zeta + 1.0 / zeta)

@@ -17,11 +17,8 @@ cdef extern from "maps_kernel.h":
         double phase
         int n_corners
         const CornerMap *corners
-        double psi_far, reach
-        int n_laurent
-        const Cplx *laurent
 
-    void lift_to_plane(double *psi_x, double *phi_y, long rows, long m, const LiftMaps *maps) noexcept nogil
+    void lift_to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *maps) noexcept nogil
 
 
 cdef Cplx _pair(z):
@@ -31,8 +28,7 @@ cdef Cplx _pair(z):
     return c
 
 
-def to_plane(double[:, ::1] psi_x, double[:, ::1] phi_y, lift, double psi_far, double reach,
-             const double complex[::1] laurent):
+def to_plane(double[:, ::1] psi_x, double[:, ::1] phi_y, lift):
     """Turn psi into x and phi into y (mirrored back: y = -Im z), both (rows, m), in place."""
     if psi_x.shape[0] != phi_y.shape[0] or psi_x.shape[1] != phi_y.shape[1]:
         raise ValueError("psi and phi differ in shape")
@@ -47,9 +43,8 @@ def to_plane(double[:, ::1] psi_x, double[:, ::1] phi_y, lift, double psi_far, d
             corners[i].p, corners[i].q = _pair(corner.p), _pair(corner.q)
             corners[i].P, corners[i].Q, corners[i].k = _pair(corner.P), _pair(corner.Q), corner.k
         maps.centre, maps.quarter, maps.pole = _pair(lift.centre), _pair(lift.quarter), _pair(lift.pole)
-        maps.phase, maps.psi_far, maps.reach = lift.phase, psi_far, reach
+        maps.phase = lift.phase
         maps.n_corners, maps.corners = n, corners
-        maps.n_laurent, maps.laurent = laurent.shape[0], <const Cplx *>&laurent[0]
         with nogil:
-            lift_to_plane(&psi_x[0, 0], &phi_y[0, 0], rows, m, &maps)
+            lift_to_plane(&psi_x[0, 0], &phi_y[0, 0], rows * m, &maps)
     free(corners)

@@ -7,12 +7,14 @@ node gets there at once, and dies out within a few cells.
 
 from __future__ import annotations
 
+from cmath import phase
 from itertools import pairwise
+from math import isfinite, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes
+from geometry.arrays import Complexes, Floats
 from geometry.lift import Lift
 from solvers.neural.evaluate import StripGrid
 
@@ -35,27 +37,31 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
         between = (corners[0] - corners[1]) % n
         width = min(CELLS, 0.5 * min(between, n - between))
     first = np.array([grid.at(c, 1) for c in corners])
-    pull = np.array([[_along(a - b, n, width) for b in corners] for a in corners])
+    pull = _along(np.subtract.outer(corners, corners), n, width)
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         for k, c in enumerate(corners):
             rest = float(pull[k] @ shift - shift[k])
             shift[k] = _secant(lift, wall, c, complex(first[k]) + 1j * rest, float(shift[k]), LARGEST * step)
-    across = grid.eta / grid.eta[1] * np.exp(-(grid.eta / grid.eta[1] - 1.0) / CELLS) * (1.0 - grid.eta)
-    across /= across[1]
+
+    def across(eta: Floats) -> Floats:
+        cells = eta / grid.eta[1]
+        fading: Floats = cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - grid.eta[1])
+        return fading
+
     reach = int(np.ceil(6.0 * width))
     for c, s in zip(corners, shift, strict=True):
         if s == 0.0:
             continue
         rows = np.arange(c - reach, c + reach + 1)
-        along = s * np.array([_along(int(r) - c, n, width) for r in rows])
+        along = s * _along(rows - c, n, width)
         for part in _pieces(rows, n):
             where = rows[part] % n
             grid.nudge(slice(int(where[0]), int(where[-1]) + 1), along[part], across)
 
 
-def _along(offset: int, n: int, width: float) -> float:
-    return float(np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2)))
+def _along(offset: NDArray[np.intp], n: int, width: float) -> Floats:
+    return np.asarray(np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2)))
 
 
 def _pieces(rows: NDArray[np.intp], n: int) -> list[slice]:
@@ -68,11 +74,11 @@ def _pieces(rows: NDArray[np.intp], n: int) -> list[slice]:
 
 def _secant(lift: Lift, wall: Complexes, c: int, w: complex, start: float, limit: float) -> float:
     """Return the shift of phi that makes the angles at corner c equal; `start` when none is found."""
-    corner, ahead, behind = wall[c], wall[(c + 1) % len(wall)], wall[c - 1]
+    corner, ahead, behind = (complex(wall[k % len(wall)]) for k in (c, c + 1, c - 1))
 
     def unequal(s: float) -> float:
-        line = lift.to_plane(np.array([w + 1j * s]))[0] - corner
-        return float(_turn(behind - corner, line) - _turn(line, ahead - corner))
+        line = lift.point(w + 1j * s) - corner
+        return _turn(behind - corner, line) - _turn(line, ahead - corner)
 
     a, b = start, start + 0.05 * limit
     fa, fb = unequal(a), unequal(b)
@@ -81,9 +87,9 @@ def _secant(lift: Lift, wall: Complexes, c: int, w: complex, start: float, limit
             break
         a, b, fa = b, float(np.clip(b - fb * (b - a) / (fb - fa), -limit, limit)), fb
         fb = unequal(b)
-    return b if np.isfinite(fb) and abs(fb) <= abs(unequal(start)) else start
+    return b if isfinite(fb) and abs(fb) <= abs(unequal(start)) else start
 
 
 def _turn(a: complex, b: complex) -> float:
     """Return the angle from b counter-clockwise to a, in [0, 2 pi)."""
-    return float(np.mod(np.angle(a / b), 2.0 * np.pi))
+    return phase(a / b) % (2.0 * pi)

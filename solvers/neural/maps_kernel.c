@@ -102,8 +102,8 @@ MESHONET_INLINE void restore_corner(const CornerMap *m, long n, double *restrict
     }
 }
 
-static void near_map(double *psi_x, double *phi_y, long n, const LiftMaps *m) __attribute__((always_inline));
-static inline void near_map(double *psi_x, double *phi_y, long n, const LiftMaps *m) {
+static void to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *m) __attribute__((always_inline));
+static inline void to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *m) {
     double vr[CHUNK], vi[CHUNK], a[CHUNK], b[CHUNK];
     unroll(psi_x, phi_y, m->phase, n, vr, vi);
     for (long j = 0; j < n; j++) {
@@ -119,44 +119,7 @@ static inline void near_map(double *psi_x, double *phi_y, long n, const LiftMaps
     }
 }
 
-/* `terms` of the Laurent series by Horner's rule in u = 1/v = exp(-psi - i (phi + phase)) */
-MESHONET_INLINE void far_map(double *psi_x, double *phi_y, long n, const LiftMaps *m, int terms) {
-    double ur[CHUNK], ui[CHUNK], vr[CHUNK], vi[CHUNK], zr[CHUNK], zi[CHUNK];
-    unroll(psi_x, phi_y, m->phase, n, vr, vi);
-    for (long j = 0; j < n; j++) {
-        double w = 1.0 / (vr[j] * vr[j] + vi[j] * vi[j]);
-        ur[j] = vr[j] * w;
-        ui[j] = -vi[j] * w;
-        zr[j] = zi[j] = 0.0;
-    }
-    for (int t = terms - 1; t > 0; t--) {
-        const double cr = m->laurent[t].re, ci = m->laurent[t].im;
-        for (long j = 0; j < n; j++) {
-            double a = zr[j] + cr, b = zi[j] + ci;
-            zr[j] = a * ur[j] - b * ui[j];
-            zi[j] = a * ui[j] + b * ur[j];
-        }
-    }
-    for (long j = 0; j < n; j++) {
-        psi_x[j] = zr[j] + m->laurent[0].re + m->quarter.re * vr[j] - m->quarter.im * vi[j];
-        phi_y[j] = -(zi[j] + m->laurent[0].im + m->quarter.re * vi[j] + m->quarter.im * vr[j]);
-    }
-}
-
 MESHONET_CLONES
-void lift_to_plane(double *psi_x, double *phi_y, long rows, long m, const LiftMaps *maps) {
-    for (long i = 0; i < rows; i++) {
-        double *p = psi_x + i * m, *f = phi_y + i * m;
-        long far = m;
-        while (far > 0 && p[far - 1] > maps->psi_far) far--;
-        for (long j = 0; j < far; j += CHUNK) near_map(p + j, f + j, far - j < CHUNK ? far - j : CHUNK, maps);
-        for (long j = far; j < m; j += CHUNK) {
-            long n = m - j < CHUNK ? m - j : CHUNK;
-            double least = p[j];
-            for (long q = 1; q < n; q++) least = p[j + q] < least ? p[j + q] : least;
-            /* terms fall like exp(-n (psi - psi_wall)): further out, fewer of them reach round-off */
-            int terms = (int)(maps->n_laurent * maps->reach / (least - maps->psi_far + maps->reach)) + 1;
-            far_map(p + j, f + j, n, maps, terms < maps->n_laurent ? terms : maps->n_laurent);
-        }
-    }
+void lift_to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *maps) {
+    for (long j = 0; j < n; j += CHUNK) to_plane(psi_x + j, phi_y + j, n - j < CHUNK ? n - j : CHUNK, maps);
 }

@@ -11,13 +11,9 @@ typedef struct {
     double phase;
     int n_corners;
     const CornerMap *corners; /* in the order in which they are restored */
-    /* beyond |v| = exp(psi_far) the whole map is z = quarter v + sum_n laurent[n] v^-n, v = zeta' - pole */
-    double psi_far, reach; /* reach = psi_far - psi of the wall */
-    int n_laurent;
-    const Cplx *laurent;
 } LiftMaps;
 
-/* Rows of m points each: psi, phi in, x, -y out, in place. */
-void lift_to_plane(double *psi_x, double *phi_y, long rows, long m, const LiftMaps *maps);
+/* n points: psi, phi in, x, -y out, in place. */
+void lift_to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *maps);
 
 #endif

@@ -25,52 +25,100 @@ TAPS = 5
 GATE = 0.3
 
 
-def forward(weights: Mapping[str, Reals], channels: Reals, scalars: Reals) -> Reals:
-    """Return the answer (outputs, columns) for one strip.
+class StripNetwork:
+    """The network of one set of weights, its arrays laid out once for the products below.
 
     Parameters
     ----------
     weights : arrays by torch's names; float32 or float64 decides the arithmetic.
-    channels : (inputs, columns).
-    scalars : (count,).
     """
-    dtype = weights["lift.weight"].dtype
-    constant = np.repeat(scalars[:, None], channels.shape[1], axis=1)
-    h = _pointwise(weights, "lift", np.concatenate([channels, constant]).astype(dtype))
-    a, b = np.split(h, 2)
-    h = a * b + gelu(a)
-    layer = 0
-    while f"conv.{layer}.weight" in weights:
-        a, b = np.split(_convolve(weights, f"conv.{layer}", h), 2)
-        mixed = gelu(a + spectral(weights[f"spectral.{layer}.weight"], h))
-        h = h + _pointwise(weights, f"expand.{layer}", mixed) + dtype.type(GATE) * b * np.tanh(a)
-        layer += 1
-    return np.asarray(_pointwise(weights, "project", h) + spectral(weights["spectral_out.weight"], h))
+
+    def __init__(self, weights: Mapping[str, Reals]) -> None:
+        self.dtype = weights["lift.weight"].dtype
+        self._lift = _Pointwise(weights, "lift")
+        self._layers = [
+            (
+                _taps(weights, f"conv.{n}"),
+                _mixing(weights, f"spectral.{n}"),
+                _Pointwise(weights, f"expand.{n}"),
+            )
+            for n in range(sum(name.startswith("conv.") for name in weights) // 2)
+        ]
+        self._project = _Pointwise(weights, "project")
+        self._spectral_out = _mixing(weights, "spectral_out")
+
+    def __call__(self, channels: Reals, scalars: Reals) -> Reals:
+        """Return the answer (outputs, columns) for `channels` (inputs, columns) and `scalars` (count,)."""
+        constant = np.repeat(scalars[:, None], channels.shape[1], axis=1)
+        h = self._lift(np.concatenate([channels, constant]).astype(self.dtype))
+        width = len(h) // 2
+        h = h[:width] * h[width:] + gelu(h[:width])
+        for (taps, bias), mixing, expand in self._layers:
+            both = _convolve(taps, bias, h)
+            a, b = both[:width], both[width:]
+            gate = np.tanh(a)
+            gate *= b
+            gate *= self.dtype.type(GATE)
+            gate += expand(gelu(a + spectral(mixing, h)))
+            h = h + gate
+        return np.asarray(self._project(h) + spectral(self._spectral_out, h))
 
 
 def gelu(x: Reals) -> Reals:
     """Return the Gaussian error linear unit in its tanh form. Hendrycks & Gimpel, arXiv 1606.08415."""
-    c = x.dtype.type(0.7978845608028654)
-    return np.asarray(0.5 * x * (1.0 + np.tanh(c * (x + x.dtype.type(0.044715) * x * x * x))))
+    y = x * x
+    y *= x.dtype.type(0.044715 * 0.7978845608028654)
+    y += x.dtype.type(0.7978845608028654)
+    y *= x
+    np.tanh(y, out=y)
+    y += x.dtype.type(1.0)
+    y *= x.dtype.type(0.5) * x
+    return np.asarray(y)
 
 
-def spectral(weight: Reals, h: Reals) -> Reals:
-    """Return h (c, n) with its first modes mixed, a complex (c, d) matrix each: weight (modes, c, d, 2)."""
-    mixing = weight[..., 0] + 1j * weight[..., 1]
-    count, n = len(weight), h.shape[1]
-    spectrum = np.fft.rfft(h)[:, :count].astype(mixing.dtype)
+def spectral(mixing: Reals, h: Reals) -> Reals:
+    """Return h (c, n) with its first modes mixed by a complex matrix each: `mixing` (modes, c, d)."""
+    count, n = len(mixing), h.shape[1]
+    spectrum = np.fft.rfft(h)[:, :count].T
     out = np.zeros((mixing.shape[2], n // 2 + 1), mixing.dtype)
-    out[:, :count] = (spectrum.T[:, None, :] @ mixing)[:, 0].T
-    return np.fft.irfft(out, n).astype(h.dtype)
+    out[:, :count] = (spectrum[:, None, :] @ mixing)[:, 0].T
+    return np.fft.irfft(out, n).astype(h.dtype, copy=False)
 
 
-def _pointwise(weights: Mapping[str, Reals], name: str, h: Reals) -> Reals:
-    return np.asarray(weights[f"{name}.weight"][:, :, 0] @ h + weights[f"{name}.bias"][:, None])
+class _Pointwise:
+    """A linear map of the channels, the same in every column."""
+
+    def __init__(self, weights: Mapping[str, Reals], name: str) -> None:
+        self._matrix = np.ascontiguousarray(weights[f"{name}.weight"][:, :, 0])
+        self._bias = weights[f"{name}.bias"][:, None]
+
+    def __call__(self, h: Reals) -> Reals:
+        out = self._matrix @ h
+        out += self._bias
+        return np.asarray(out)
 
 
-def _convolve(weights: Mapping[str, Reals], name: str, h: Reals) -> Reals:
-    """Return the circular convolution over `TAPS` columns as one matrix product."""
+def _taps(weights: Mapping[str, Reals], name: str) -> tuple[Reals, Reals]:
+    """Return a convolution's weights side by side, (outputs, TAPS inputs), and its bias."""
     weight = weights[f"{name}.weight"]
-    shifted = np.concatenate([np.roll(h, TAPS // 2 - t, axis=1) for t in range(TAPS)])
-    flat = np.concatenate([weight[:, :, t] for t in range(TAPS)], axis=1)
-    return np.asarray(flat @ shifted + weights[f"{name}.bias"][:, None])
+    return np.concatenate([weight[:, :, t] for t in range(TAPS)], axis=1), weights[f"{name}.bias"][:, None]
+
+
+def _mixing(weights: Mapping[str, Reals], name: str) -> Reals:
+    weight = weights[f"{name}.weight"]
+    return np.asarray(weight[..., 0] + weight.dtype.type(1) * 1j * weight[..., 1]).astype(
+        np.result_type(weight.dtype, np.complex64)
+    )
+
+
+def _convolve(taps: Reals, bias: Reals, h: Reals) -> Reals:
+    """Return the circular convolution over `TAPS` columns as one matrix product."""
+    width, n = h.shape
+    half = TAPS // 2
+    around = np.concatenate([h[:, -half:], h, h[:, :half]], axis=1)
+    shifted = np.empty((TAPS * width, n), h.dtype)
+    for t in range(TAPS):
+        shifted[t * width : (t + 1) * width] = around[:, t : t + n]
+    out = taps @ shifted
+    out += bias
+    return np.asarray(out)

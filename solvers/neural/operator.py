@@ -125,7 +125,7 @@ def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple
     nodes = planar_nodes(boundary.ni, boundary.nj)
     grid = StripGrid(c, wall, far, np.linspace(0.0, 1.0, boundary.nj))
     halve_corners(grid, lift, z, corners)
-    grid.fill(lift, float(wall.real.max()), nodes)
+    grid.fill(lift, nodes)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     return nodes, changes
 

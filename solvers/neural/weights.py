@@ -14,7 +14,7 @@ import numpy as np
 from geometry.arrays import Complexes, Floats
 from geometry.errors import InputError
 from solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
-from solvers.neural.network import Reals, forward
+from solvers.neural.network import Reals, StripNetwork
 from solvers.neural.strip import LEVELS
 
 DEFAULT = "airfoil-o"
@@ -28,12 +28,12 @@ LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
 class Model:
     """A trained strip operator.
 
-    `weights` are the network's arrays by torch's names, `basis` (Q, LEVELS - 2), `scale` of its targets,
-    `header` what the file says of itself: recipe and held-out figures.
+    `network` answers for a strip in the unit size that `encode` gives it, `basis` (Q, LEVELS - 2), `scale` of
+    its targets, `header` what the file says of itself: recipe and held-out figures.
     """
 
     name: str
-    weights: Mapping[str, Reals]
+    network: StripNetwork
     basis: Floats
     scale: float
     header: Mapping[str, Any]
@@ -41,7 +41,7 @@ class Model:
     def residual(self, wall: Complexes, far: Complexes) -> Complexes:
         """Return modes (2 MODES + 1, LEVELS) of Winslow - harmonic for wall modes (2 MODES + 1,)."""
         channels, scalars, size = encode(wall[None], far[None])
-        answer = forward(self.weights, channels[0], scalars[0])
+        answer = self.network(channels[0], scalars[0])
         return decode(answer.astype(np.float64), self.basis, self.scale, float(size[0]))
 
 
@@ -92,8 +92,8 @@ def _load(path: str) -> Model:
         ) from None
     if basis.shape != (outputs // 2, LEVELS - 2) or inputs != CHANNELS + SCALARS or not np.isfinite(scale):
         raise InputError("its arrays do not fit this version's network", "train it again", source=path)
-    weights = {name: array.astype(np.float32) for name, array in tensors.items()}
-    return Model(header.get("name", Path(path).stem), weights, basis, scale, header)
+    weights: dict[str, Reals] = {name: array.astype(np.float32) for name, array in tensors.items()}
+    return Model(header.get("name", Path(path).stem), StripNetwork(weights), basis, scale, header)
 
 
 def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, Floats]]:

@@ -7,7 +7,7 @@ import torch
 
 from solvers.neural.encoding import CHANNELS, SCALARS
 from solvers.neural.models.strip_fno import StripFNO
-from solvers.neural.network import forward
+from solvers.neural.network import StripNetwork
 from solvers.neural.strip import COLUMNS
 
 
@@ -20,7 +20,7 @@ def test_numpy_equals_torch_to_round_off() -> None:
         wanted = net(torch.tensor(channels), torch.tensor(scalars)).numpy()
     weights = {name: value.numpy() for name, value in net.state_dict().items()}
     for m in range(2):
-        found = forward(weights, channels[m], scalars[m])
+        found = StripNetwork(weights)(channels[m], scalars[m])
         assert np.abs(found - wanted[m]).max() <= 1e-12 * np.abs(wanted).max()
 
 
@@ -30,5 +30,7 @@ def test_the_network_commutes_with_shifts_of_theta() -> None:
     weights = {name: value.numpy() for name, value in net.state_dict().items()}
     rng = np.random.default_rng(2)
     channels, scalars = rng.normal(size=(CHANNELS, COLUMNS)), rng.normal(size=SCALARS)
-    shifted = forward(weights, np.roll(channels, 17, axis=1), scalars)
-    np.testing.assert_allclose(shifted, np.roll(forward(weights, channels, scalars), 17, axis=1), atol=1e-12)
+    shifted = StripNetwork(weights)(np.roll(channels, 17, axis=1), scalars)
+    np.testing.assert_allclose(
+        shifted, np.roll(StripNetwork(weights)(channels, scalars), 17, axis=1), atol=1e-12
+    )
