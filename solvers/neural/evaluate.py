@@ -118,9 +118,9 @@ def _high_modes(F: Complexes, wall: Complexes, far: Complexes, depth: Floats) ->
     rest[k <= min(MODES, (n - 1) // 2)] = 0.0
     strength = np.abs(rest) / n
     high = np.flatnonzero(strength > 1e-3 * FAINT / n)
-    some = np.unique(
-        np.append((1.25 ** np.arange(np.log(len(depth)) / np.log(1.25))).astype(int) - 1, len(depth) - 1)
-    )
+    some = [0]
+    while some[-1] < len(depth) - 1:
+        some.append(min(some[-1] + 1 + some[-1] // 4, len(depth) - 1))
     felt = np.exp(np.outer(-depth[some] * T, k[high])) @ strength[high] > FAINT
     levels = 0 if not felt[0] else len(depth) if felt.all() else int(some[np.argmin(felt)])
     band = np.zeros((levels, n), complex)
