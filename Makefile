@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
-KERNELS := $(shell find geometry solvers include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
+KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
 
 .PHONY: help demo test test-clients lint train bench docs clean
 
@@ -76,4 +76,4 @@ docs: $(VENV)/.developing
 
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing
-	find geometry solvers -name '_*.c' -delete -o -name '*.so' -delete
+	find geometry solvers formats -name '_*.c' -delete -o -name '*.so' -delete

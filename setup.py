@@ -36,7 +36,8 @@ def extension(pyx: Path) -> Extension:
     )
 
 
-MODULES = [extension(pyx) for room in ("geometry", "solvers") for pyx in sorted(Path(room).rglob("_*.pyx"))]
+ROOMS = ("formats", "geometry", "solvers")
+MODULES = [extension(pyx) for room in ROOMS for pyx in sorted(Path(room).rglob("_*.pyx"))]
 setup(
     ext_modules=cythonize(
         MODULES,

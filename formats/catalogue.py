@@ -10,7 +10,7 @@ _PAGE = """# Formats
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
 `meshonet convert IN OUT` goes by the endings; `--from` and `--to` name a format where endings do not tell.
-*Names*: parts of the boundary keep their names. *3D*: `--extrude H` writes it one cell thick in z.
+*Names*: parts of the boundary keep their names. *3D*: `--extrude H` (`--planes K`) repeats it in z.
 *Many*: one file holds several.
 
 """

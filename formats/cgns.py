@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from formats.cgns_nodes import NAME_LENGTH, Node, child, root
 from formats.facts import facts_of
-from formats.format import Format
+from formats.format import Format, Heights
 from formats.patches import Role, cut, patches, roles
 from formats.source import Source
 from formats.words import words
@@ -44,9 +44,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     _write(path, grids, ())
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write one zone of three dimensions, one cell thick, for each grid."""
-    _write(path, grids, (0.0, thickness))
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write one zone of three dimensions, the plane repeated in z, for each grid."""
+    _write(path, grids, heights)
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -127,7 +127,7 @@ def _write_conditions(zone: Node, grid: Grid, planes: int, zones: set[str]) -> d
     stretches = patches(grid)
     role = roles(grid, stretches)
     ranges = [(part.name, _range(part, grid, planes)) for part in stretches]
-    for k, plane in enumerate(("back", "front")[:planes], start=1):
+    for plane, k in (("back", 1), ("front", planes))[:planes]:
         role.setdefault(plane, "symmetry")
         ranges.append((plane, np.array([[1, 1, k], [grid.ni, grid.nj, k]], np.int32)))
     family = words(role, NAME_LENGTH, {"DataClass", *zones})

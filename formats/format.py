@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 from formats.source import Source
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.shape import Shape
+
+Heights: TypeAlias = tuple[float, ...]
+"""z of each plane of a grid that is repeated in z, increasing from 0."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,7 @@ class Format:
     read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
         outer edges then serve) or cannot be read.
     read_grids, write_grids, write_boundaries : None when the format cannot.
-    write_extruded : writes grids one cell thick in z, from 0 to the given height.
+    write_extruded : writes grids as layers of cells between planes at the given heights, two or more.
     sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
     names_parts : whether names of parts and the topology survive in it.
     many : whether one file holds several grids or boundaries.
@@ -40,7 +44,7 @@ class Format:
     read_grids: Callable[[Source], Iterator[Grid]] | None = None
     write_grids: Callable[[Path, Iterable[Grid]], None] | None = None
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
-    write_extruded: Callable[[Path, Iterable[Grid], float], None] | None = None
+    write_extruded: Callable[[Path, Iterable[Grid], Heights], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
     names_parts: bool = False
     many: bool = False

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
 from formats.source import printable
 from formats.unstructured import Indices, extruded, unstructured
 from geometry.arrays import Floats
@@ -30,10 +30,10 @@ def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> Non
     _write(path, points, 1, groups, ("quad", mesh.quads), text=text)
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float, *, text: bool = False) -> None:
-    """Write the one grid of `grids` one cell thick: hexahedra, and faces in groups."""
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights, *, text: bool = False) -> None:
+    """Write the one grid of `grids` repeated in z: hexahedra, and faces in groups."""
     mesh = unstructured(only_one(grids, "a .msh file"))
-    points, faces, hexahedra = extruded(mesh, thickness)
+    points, faces, hexahedra = extruded(mesh, heights)
     groups = [("quad", name, quads) for name, quads in faces.items()]
     _write(path, points, 2, groups, ("hexahedron", hexahedra), text=text)
 

@@ -16,7 +16,6 @@ import numpy as np
 from formats.format import Format, only_one
 from formats.gmsh import INTERIOR, quotable
 from formats.unstructured import Indices, node_numbers, unstructured
-from formats.words import write_rows
 from geometry.grid import Grid
 
 
@@ -33,8 +32,10 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     with path.open("w", encoding="utf-8") as stream:
         used = np.isin(points, lines)
         rows = np.column_stack([points, grid.nodes.reshape(-1, 2)[first]])[used]
-        write_rows(stream, "Point(%d) = {%.17g, %.17g, 0};", rows)
-        write_rows(stream, "Line(%d) = {%d, %d};", np.column_stack([np.arange(len(lines)) + 1, lines]))
+        for k, x, y in rows.tolist():
+            stream.write(f"Point({k:.0f}) = {{{x:.17g}, {y:.17g}, 0}};\n")
+        for k, (start, stop) in enumerate(lines.tolist(), start=1):
+            stream.write(f"Line({k}) = {{{start}, {stop}}};\n")
         stream.write(f"Transfinite Curve {{1:{len(lines)}}} = 2;\n")
         begun = 0
         for k, (loop, corners) in enumerate(loops, start=1):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
 from formats.patches import Role, cut, patches, roles
 from formats.words import words
 from geometry.arrays import Side
@@ -33,9 +33,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     _write(path, only_one(grids, "a .nmf file"), 1)
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:  # noqa: ARG001
-    """Write the map of the one grid of `grids`, of two planes, which are symmetry planes."""
-    _write(path, only_one(grids, "a .nmf file"), 2)
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the map of the one grid of `grids`, repeated in z between symmetry planes."""
+    _write(path, only_one(grids, "a .nmf file"), len(heights))
 
 
 def _write(path: Path, grid: Grid, planes: int) -> None:
@@ -43,7 +43,7 @@ def _write(path: Path, grid: Grid, planes: int) -> None:
     role = roles(grid, stretches)
     word = words(part.name for part in stretches)
     rows = [f"{_TYPES.get(role[part.name], word[part.name])} {_range(part, planes)}" for part in stretches]
-    if planes == 2:
+    if planes > 1:
         rows += [f"SYMMETRY 1 {face} 1 {grid.ni} 1 {grid.nj}" for face in (1, 2)]
     seam = cut(grid)
     if seam:

@@ -1,4 +1,4 @@
-"""OpenFOAM's mesh of a case: ``constant/polyMesh``, one cell thick, front and back ``empty``.
+"""OpenFOAM's mesh of a case: ``constant/polyMesh``, one cell thick unless asked otherwise.
 
 The file named, ``case/case.foam``, is the empty one by which ParaView opens a case; the mesh goes into the
 folder around it. Where ``system`` lacks one of the three dictionaries without which no tool of OpenFOAM
@@ -7,21 +7,24 @@ looks at a mesh, a bare one is written. https://doc.openfoam.com/2312/tools/proc
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
 from formats.output import whole_file, whole_folder
 from formats.patches import Role, patches, roles
+from formats.text_rows import write_rows
 from formats.unstructured import Indices, Unstructured, layer_points, unstructured
-from formats.words import words, write_rows
+from formats.words import words
 from geometry.grid import Grid
 
 EMPTY = "frontAndBack"
-"""Name of the patch of type ``empty``: the planes z = 0 and z = thickness."""
+"""Name of the patch of type ``empty``: the two planes of a grid that is one cell thick."""
 
 _TYPES: dict[Role, str] = {"wall": "wall", "symmetry": "symmetry"}
 _DICTIONARIES = {
@@ -32,44 +35,53 @@ _DICTIONARIES = {
 }
 
 
+class Patch(NamedTuple):
+    """Outer faces that lie behind each other in the list of faces."""
+
+    name: str
+    kind: str
+    size: int
+
+
 @dataclass(frozen=True)
 class Faces:
-    """The faces of a layer, those between cells first.
+    """The faces of some layers of cells, those between cells first.
 
     Parameters
     ----------
     nodes : (f, 4) point numbers; the normal points out of the owner.
     owner : (f,) cell behind each face; the lower of two.
     neighbour : (g,) cell before each of the g inner faces, which are in upper-triangular order.
-    patches : name and count of the outer faces, in order.
+    patches : the outer faces, in order.
     """
 
     nodes: Indices
     owner: Indices
     neighbour: Indices
-    patches: tuple[tuple[str, int], ...]
+    patches: tuple[Patch, ...]
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     """Write the one grid of `grids`, one unit of length thick."""
-    write_extruded(path, grids, 1.0)
+    write_extruded(path, grids, (0.0, 1.0))
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write the one grid of `grids` around `path`, which is left empty, one cell thick in z.
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the one grid of `grids` around `path`, which is left empty, repeated in z.
 
-    The mesh that is there is replaced when the new one is whole.
+    One cell thick, its two planes are a patch ``empty``; thicker, they are symmetry planes. The mesh that is
+    there is replaced when the new one is whole.
     """
     grid = only_one(grids, "a case")
     mesh = unstructured(grid)
-    faces = layer_faces(mesh)
-    role = roles(grid, patches(grid))
+    faces = layer_faces(mesh, _kinds(grid), len(heights) - 1)
     for name in ("constant", "system"):
         (path.parent / name).mkdir(exist_ok=True)
     with whole_folder(path.parent / "constant" / "polyMesh") as folder:
-        _write_points(folder / "points", mesh, thickness)
-        _write_faces(folder, faces, len(mesh.points))
-        _write_boundary(folder / "boundary", faces, role)
+        points = layer_points(mesh, heights)
+        _write_list(folder / "points", "vectorField", "(%e %e %e)", points)
+        _write_faces(folder, faces, len(points))
+        _write_boundary(folder / "boundary", faces)
     for name, told in _DICTIONARIES.items():
         dictionary = path.parent / "system" / name
         if not dictionary.exists():
@@ -78,74 +90,93 @@ def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
     path.write_bytes(b"")
 
 
-def layer_faces(mesh: Unstructured) -> Faces:
-    """Return the faces of the cells over the quadrilaterals of `mesh`.
+def layer_faces(mesh: Unstructured, kinds: Mapping[str, Patch], layers: int) -> Faces:
+    """Return the faces of `layers` layers of cells over the quadrilaterals of `mesh`.
 
     An edge a, b of a cell on its left carries the face a, b, b', a' of the layer, whose normal points to
-    the right: out of the cell.
+    the right: out of the cell. `kinds` has a patch for each name of the mesh's edges.
     """
     count, cells = len(mesh.points), len(mesh.quads)
+    inner, edges, lower, upper = _plane(mesh)
+    layer, every = np.arange(layers)[:, None], np.arange(cells)
+    owner, neighbour = (lower + cells * layer).ravel(), (upper + cells * layer).ravel()
+    nodes = _walls(inner, count, layers)
+    if layers > 1:
+        between = (every + cells * layer[:-1]).ravel()
+        owner, neighbour = np.concatenate([owner, between]), np.concatenate([neighbour, between + cells])
+        plates = [mesh.quads + count * k for k in range(1, layers)]
+        order = np.lexsort([neighbour, owner])
+        owner, neighbour, nodes = owner[order], neighbour[order], np.concatenate([nodes, *plates])[order]
+    back, front = mesh.quads[:, ::-1], mesh.quads + count * layers
+    beside = [_walls(rows, count, layers) for rows, _ in edges.values()]
+    behind = [(cell + cells * layer).ravel() for _, cell in edges.values()]
+    ends = [Patch(EMPTY, "empty", 2 * cells)]
+    if layers > 1:
+        ends = [Patch(name, "symmetryPlane", cells) for name in ("back", "front")]
+    return Faces(
+        np.concatenate([nodes, *beside, back, front]),
+        np.concatenate([owner, *behind, every, every + cells * (layers - 1)]),
+        neighbour,
+        (*(kinds[name]._replace(size=layers * len(rows)) for name, (rows, _) in edges.items()), *ends),
+    )
+
+
+def _plane(mesh: Unstructured) -> tuple[Indices, dict[str, tuple[Indices, Indices]], Indices, Indices]:
+    """Return the inner edges (g, 2), each name's edges and cells, and the two cells at each inner edge."""
+    count = len(mesh.points)
     edges = mesh.quads[:, [0, 1, 1, 2, 2, 3, 3, 0]].reshape(-1, 2)  # four of each cell, in turn
     key = edges.min(axis=1) * count + edges.max(axis=1)
     order = np.argsort(key, kind="stable")
     twice = key[order[1:]] == key[order[:-1]]
     lower, upper = order[:-1][twice], order[1:][twice]
     rows = np.lexsort([upper // 4, lower // 4])
-    inner = edges[lower[rows]]
-
-    outer = [mesh.edges[name] for name in mesh.edges]
-    joined = np.concatenate(outer) if outer else np.empty((0, 2), np.int64)
-    at = np.searchsorted(key, joined.min(axis=1) * count + joined.max(axis=1), sorter=order)
-    sides = np.concatenate([inner, joined])
-    every = np.arange(cells)
-    return Faces(
-        np.concatenate(
-            [np.column_stack([sides, sides[:, ::-1] + count]), mesh.quads[:, ::-1], mesh.quads + count]
-        ),
-        np.concatenate([lower[rows] // 4, order[at] // 4, every, every]),
-        upper[rows] // 4,
-        (*((name, len(mesh.edges[name])) for name in mesh.edges), (EMPTY, 2 * cells)),
-    )
+    outer = {}
+    for name, ends in mesh.edges.items():
+        at = np.searchsorted(key, ends.min(axis=1) * count + ends.max(axis=1), sorter=order)
+        outer[name] = ends, order[at] // 4
+    return edges[lower[rows]], outer, lower[rows] // 4, upper[rows] // 4
 
 
-def _write_points(path: Path, mesh: Unstructured, thickness: float) -> None:
-    points = layer_points(mesh, thickness)
-    with path.open("w", encoding="ascii") as stream:
-        stream.write(f"{_head('vectorField', 'points')}{len(points)}\n(\n")
-        write_rows(stream, "(%.16e %.16e %.16e)", points)
-        stream.write(")\n")
+def _walls(edges: Indices, count: int, layers: int) -> Indices:
+    """Return the faces (n * layers, 4) over edges (n, 2), layer by layer, `count` points a plane."""
+    wall = np.column_stack([edges, edges[:, ::-1] + count])
+    return np.concatenate([wall + count * k for k in range(layers)])
 
 
-def _write_faces(folder: Path, faces: Faces, count: int) -> None:
-    """Write the lists of faces, owners and neighbours; `count` is that of the points of one plane."""
+def _kinds(grid: Grid) -> dict[str, Patch]:
+    """Return title and type of the patch of each part."""
+    role = roles(grid, patches(grid))
+    word = words(role, taken=[EMPTY, "back", "front"], letter=True)
+    return {name: Patch(word[name], _TYPES.get(role[name], "patch"), 0) for name in role}
+
+
+def _write_list(path: Path, kind: str, form: str, rows: NDArray[Any], note: str = "") -> None:
+    with path.open("wb") as stream:
+        stream.write(f"{_head(kind, path.name, note)}{len(rows)}\n(\n".encode("ascii"))
+        write_rows(stream, form, rows)
+        stream.write(b")\n")
+
+
+def _write_faces(folder: Path, faces: Faces, points: int) -> None:
+    """Write the lists of faces, owners and neighbours."""
     note = (
-        f"nPoints: {2 * count} nCells: {int(faces.owner.max()) + 1} "
+        f"nPoints: {points} nCells: {int(faces.owner.max()) + 1} "
         f"nFaces: {len(faces.nodes)} nInternalFaces: {len(faces.neighbour)}"
     )
-    lists = (
-        ("faces", "faceList", "4(%d %d %d %d)", faces.nodes, ""),
-        ("owner", "labelList", "%d", faces.owner[:, None], note),
-        ("neighbour", "labelList", "%d", faces.neighbour[:, None], note),
-    )
-    for name, kind, form, rows, remark in lists:
-        with (folder / name).open("w", encoding="ascii") as stream:
-            stream.write(f"{_head(kind, name, remark)}{len(rows)}\n(\n")
-            write_rows(stream, form, rows)
-            stream.write(")\n")
+    _write_list(folder / "faces", "faceList", "4(%d %d %d %d)", faces.nodes)
+    _write_list(folder / "owner", "labelList", "%d", faces.owner[:, None], note)
+    _write_list(folder / "neighbour", "labelList", "%d", faces.neighbour[:, None], note)
 
 
-def _write_boundary(path: Path, faces: Faces, role: dict[str, Role]) -> None:
-    """Write names, types and face counts of the patches; the last one is the two planes."""
-    word = words((name for name, _ in faces.patches[:-1]), taken=[EMPTY], letter=True)
+def _write_boundary(path: Path, faces: Faces) -> None:
+    """Write names, types and face counts of the patches."""
 
     def entries() -> Iterator[str]:
         start = len(faces.neighbour)
-        for k, (name, count) in enumerate(faces.patches):
-            last = k == len(faces.patches) - 1
-            title, kind = (name, "empty") if last else (word[name], _TYPES.get(role[name], "patch"))
-            yield f"    {title}\n    {{\n        type            {kind};\n"
-            yield f"        nFaces          {count};\n        startFace       {start};\n    }}\n"
-            start += count
+        for patch in faces.patches:
+            yield f"    {patch.name}\n    {{\n        type            {patch.kind};\n"
+            yield f"        nFaces          {patch.size};\n        startFace       {start};\n    }}\n"
+            start += patch.size
 
     text = f"{_head('polyBoundaryMesh', 'boundary')}{len(faces.patches)}\n(\n{''.join(entries())})\n"
     path.write_text(text, encoding="ascii")

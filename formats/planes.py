@@ -1,4 +1,4 @@
-"""A plane grid out of a three-dimensional file: one plane, or two copies of one, in any index direction."""
+"""A plane grid out of a three-dimensional file: one plane, or copies of one, in any index direction."""
 
 from __future__ import annotations
 
@@ -35,8 +35,6 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
     dims = coordinates[0].shape
     told = "x".join(str(n) for n in dims)
     for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
-        if dims[axis] > 2:
-            break
         first = [_plane(c, axis, 0) for c in coordinates]
         if min(first[0].shape) < 2:
             raise InputError(
@@ -44,12 +42,16 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
             )
         if dims[axis] == 1:
             return _nodes(_without_constant(first, told))
-        kept = _without_shift(first, [_plane(c, axis, 1) for c in coordinates])
+        kept = list(range(len(coordinates)))
+        for index in range(1, dims[axis]):
+            if not kept:
+                break
+            kept = _unshifted(first, [_plane(c, axis, index) for c in coordinates], kept)
         if kept:
-            return _nodes(kept)
+            return _nodes([first[k] for k in kept])
     raise InputError(
         f"a grid of {told} nodes is three-dimensional",
-        "give a plane one: one plane, or two copies of one, in some direction",
+        "give a plane one: one plane, or copies of one, in some direction",
     )
 
 
@@ -85,14 +87,19 @@ def _without_constant(plane: list[Floats], told: str) -> list[Floats]:
     return [c for k, c in enumerate(plane) if k != flat[0]]
 
 
-def _without_shift(first: list[Floats], second: list[Floats]) -> list[Floats]:
-    """Return the two coordinates in which two planes agree when the third only steps; else nothing."""
+def _unshifted(first: list[Floats], other: list[Floats], among: list[int]) -> list[int]:
+    """Return the two coordinates in which two planes agree when the third only steps; else nothing.
+
+    Parameters
+    ----------
+    among : the coordinates in which earlier planes agreed; all of them at first, nothing once they differed.
+    """
     size = max(float(np.ptp(c)) for c in first)
     for k in (2, 1, 0):
-        if k >= len(first):
+        kept = [m for m in range(len(first)) if m != k]
+        if k >= len(first) or not set(kept) <= set(among):
             continue
-        flat = max(float(np.ptp(first[k])), float(np.ptp(second[k]))) <= _SAME * size
-        others = [m for m in range(len(first)) if m != k]
-        if flat and all(np.allclose(first[m], second[m], rtol=0, atol=_SAME * size) for m in others):
-            return [first[m] for m in others]
+        flat = max(float(np.ptp(first[k])), float(np.ptp(other[k]))) <= _SAME * size
+        if flat and all(np.allclose(first[m], other[m], rtol=0, atol=_SAME * size) for m in kept):
+            return kept
     return []

@@ -9,9 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
+from formats.text_rows import write_rows
 from formats.unstructured import Indices, extruded, unstructured
-from formats.words import words, write_rows
+from formats.words import words
 from geometry.arrays import Floats
 from geometry.grid import Grid
 
@@ -24,9 +25,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     _write(path, mesh.points, (_QUADRILATERAL, mesh.quads), (_LINE, mesh.edges))
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write the one grid of `grids` one cell thick, its planes as markers ``back`` and ``front``."""
-    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .su2 file")), thickness)
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the one grid of `grids` repeated in z, the outer planes as markers ``back`` and ``front``."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .su2 file")), heights)
     _write(path, points, (_HEXAHEDRON, hexahedra), (_QUADRILATERAL, faces))
 
 
@@ -36,14 +37,14 @@ def _write(
     """Write points (n, 2 or 3), the cells (kind, nodes) and the markers (kind, nodes by name)."""
     kind, nodes = cells
     marker_kind, parts = markers
-    with path.open("w", encoding="ascii") as stream:
-        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(nodes)}\n")
+    with path.open("wb") as stream:
+        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(nodes)}\n".encode("ascii"))
         write_rows(stream, _row(kind, nodes), nodes)
-        stream.write(f"NPOIN= {len(points)}\n")
-        write_rows(stream, " ".join(["%.16e"] * points.shape[1]), points)
-        stream.write(f"NMARK= {len(parts)}\n")
+        stream.write(f"NPOIN= {len(points)}\n".encode("ascii"))
+        write_rows(stream, " ".join(["%e"] * points.shape[1]), points)
+        stream.write(f"NMARK= {len(parts)}\n".encode("ascii"))
         for name, word in words(parts).items():
-            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(parts[name])}\n")
+            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(parts[name])}\n".encode("ascii"))
             write_rows(stream, _row(marker_kind, parts[name]), parts[name])
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -47,21 +48,28 @@ def unstructured(grid: Grid) -> Unstructured:
     return Unstructured(points, quads, _edges(grid, number))
 
 
-def extruded(mesh: Unstructured, thickness: float) -> tuple[Floats, dict[str, Indices], Indices]:
-    """Return points (2n, 3), outward faces by name, hexahedra (m, 8) of a layer from z = 0 to `thickness`.
+def extruded(mesh: Unstructured, heights: Sequence[float]) -> tuple[Floats, dict[str, Indices], Indices]:
+    """Return points (kn, 3), outward faces by name, hexahedra (m, 8) of layers between k planes in z.
 
-    The two planes are the faces ``back`` (z = 0) and ``front``.
+    The outermost planes are the faces ``back`` (the first height) and ``front``. Layer by layer.
     """
-    count = len(mesh.points)
-    faces = {name: np.column_stack([edges, edges[:, ::-1] + count]) for name, edges in mesh.edges.items()}
-    faces["back"], faces["front"] = mesh.quads[:, ::-1], mesh.quads + count
-    return layer_points(mesh, thickness), faces, np.concatenate([mesh.quads, mesh.quads + count], axis=1)
+    count, layers = len(mesh.points), len(heights) - 1
+    columns = np.concatenate([mesh.quads, mesh.quads + count], axis=1)
+    sides = {name: np.column_stack([edges, edges[:, ::-1] + count]) for name, edges in mesh.edges.items()}
+    faces = {name: _repeated(rows, layers, count) for name, rows in sides.items()}
+    faces["back"], faces["front"] = mesh.quads[:, ::-1], mesh.quads + layers * count
+    return layer_points(mesh, heights), faces, _repeated(columns, layers, count)
 
 
-def layer_points(mesh: Unstructured, thickness: float) -> Floats:
-    """Return the points (2n, 3) of a layer: those at z = 0, then those at `thickness`."""
-    planes = [np.column_stack([mesh.points, np.full(len(mesh.points), z)]) for z in (0.0, thickness)]
+def layer_points(mesh: Unstructured, heights: Sequence[float]) -> Floats:
+    """Return the points (kn, 3) of k planes: those at the first height, then those at the next."""
+    planes = [np.column_stack([mesh.points, np.full(len(mesh.points), z)]) for z in heights]
     return np.concatenate(planes)
+
+
+def _repeated(rows: Indices, layers: int, count: int) -> Indices:
+    """Return node numbers (n, m) for every layer, `count` nodes a plane."""
+    return np.concatenate([rows + layer * count for layer in range(layers)])
 
 
 def node_numbers(grid: Grid) -> Indices:

@@ -14,7 +14,8 @@ from typing import BinaryIO
 import numpy as np
 
 from formats.facts import facts_of
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
+from formats.text_rows import write_rows
 from formats.vtk_legacy_read import read_grids, sniff
 from geometry.grid import Grid
 
@@ -41,9 +42,9 @@ def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> Non
     write(path, only_one(grids, "a .vtk file"), text=text)
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float, *, text: bool = False) -> None:
-    """Write the one grid of `grids`, one cell thick in z."""
-    write(path, only_one(grids, "a .vtk file"), (0.0, thickness), text=text)
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights, *, text: bool = False) -> None:
+    """Write the one grid of `grids`, repeated in z."""
+    write(path, only_one(grids, "a .vtk file"), heights, text=text)
 
 
 def _write_points(stream: BinaryIO, grid: Grid, height: float, *, text: bool) -> None:
@@ -54,7 +55,7 @@ def _write_points(stream: BinaryIO, grid: Grid, height: float, *, text: bool) ->
         block = np.empty((len(part), 3), ">f8")
         block[:, :2], block[:, 2] = part, height
         if text:
-            stream.write((("%.16e %.16e %.16e\n" * len(block)) % tuple(block.ravel().tolist())).encode())
+            write_rows(stream, "%e %e %e", block)
         else:
             stream.write(block.data)
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from formats.facts import facts_of
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
 from formats.source import Source, printable
 from geometry.errors import InputError
 from geometry.grid import Grid
@@ -65,9 +65,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     write(path, only_one(grids, "a .vts file"))
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write the one grid of `grids`, one cell thick in z."""
-    write(path, only_one(grids, "a .vts file"), heights=(0.0, thickness))
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the one grid of `grids`, repeated in z."""
+    write(path, only_one(grids, "a .vts file"), heights=heights)
 
 
 def read_grids(source: Source) -> Iterator[Grid]:

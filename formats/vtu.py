@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from formats.format import Format, only_one
+from formats.format import Format, Heights, only_one
 from formats.unstructured import Indices, extruded, unstructured
 from geometry.arrays import Floats
 from geometry.grid import Grid
@@ -24,9 +24,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     _write(path, points, ("quad", mesh.quads), ("line", mesh.edges))
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-    """Write the one grid of `grids` one cell thick: hexahedra, and faces over its parts."""
-    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .vtu file")), thickness)
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the one grid of `grids` repeated in z: hexahedra, and faces over its parts."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .vtu file")), heights)
     _write(path, points, ("hexahedron", hexahedra), ("quad", faces))
 
 

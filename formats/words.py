@@ -1,15 +1,9 @@
-"""Names and rows of numbers as solvers' text files take them."""
+"""Names as solvers' text files take them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import IO, Any
-
-from numpy.typing import NDArray
-
-_ROWS = 1 << 14
-"""Rows turned into text at a time."""
 
 
 def words(
@@ -45,10 +39,3 @@ def words(
         found[name] = word
         used.add(word)
     return found
-
-
-def write_rows(stream: IO[str], form: str, rows: NDArray[Any]) -> None:
-    r"""Write every row of `rows` (n, m) in the ``%`` form `form`, which has m fields and no line end."""
-    for start in range(0, len(rows), _ROWS):
-        part = rows[start : start + _ROWS]
-        stream.write(((form + "\n") * len(part)) % tuple(part.ravel().tolist()))

@@ -7,11 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from formats.edges import LARGEST
+from formats.format import Heights
 from formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
 from formats.source import open_source
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
+from geometry.normalised import normalised
 from geometry.sampling import Sampling
 from geometry.turn import turned
 from meshonet_cli.batch import Destination, items
@@ -46,6 +49,49 @@ class Converted(Timed):
     lines = line
 
 
+@dataclass(frozen=True)
+class Change:
+    """What happens to a grid or boundary on its way.
+
+    Parameters
+    ----------
+    extrude : height in z that a 3D grid gets; None leaves grids flat.
+    planes : planes of nodes in z; None stands for two.
+    swap : have xi run along the sides that eta ran along.
+    normalise : scale to unit chord or unit length.
+    """
+
+    extrude: float | None = None
+    planes: int | None = None
+    swap: bool = False
+    normalise: bool = False
+
+    def heights(self) -> Heights:
+        """Return z of each plane, none for a flat grid.
+
+        Raises
+        ------
+        InputError
+            a height that is not positive, planes without a height.
+        """
+        if self.extrude is None:
+            if self.planes is not None:
+                raise InputError("there is no height", "add --extrude H", source="--planes")
+            return ()
+        if not 0 < self.extrude < LARGEST:
+            raise InputError(f"height {self.extrude:g} is not positive", "use e.g. 1", source="--extrude")
+        planes = self.planes or 2
+        return tuple(self.extrude * k / (planes - 1) for k in range(planes))
+
+    def __call__(self, grid: Grid) -> Grid:
+        """Return `grid` swapped and normalised as asked."""
+        grid = turned(grid) if self.swap else grid
+        return normalised(grid) if self.normalise else grid
+
+
+NOTHING = Change()
+
+
 def convert_files(
     sources: Sequence[str],
     output: str,
@@ -53,8 +99,7 @@ def convert_files(
     *,
     from_format: str | None = None,
     to_format: str | None = None,
-    extrude: float | None = None,
-    swap: bool = False,
+    change: Change = NOTHING,
     skip_existing: bool = False,
 ) -> int:
     """Write what `sources` hold to `output` and return the exit code.
@@ -63,8 +108,7 @@ def convert_files(
 
     Parameters
     ----------
-    extrude : height of the one cell that a 3D grid gets in z; None leaves grids flat.
-    swap : have xi run along the sides that eta ran along.
+    change : what happens to each on its way.
     skip_existing : pass over members whose own file is there.
 
     Raises
@@ -72,22 +116,23 @@ def convert_files(
     InputError
         a format that cannot be written, or not in 3D; a height that is not positive.
     """
-    boundaries = (
-        extrude is None and not swap and _writes_boundaries(sources[0], output, from_format, to_format)
-    )
+    heights = change.heights()
+    flat = not heights and not change.swap
+    boundaries = flat and _writes_boundaries(sources[0], output, from_format, to_format)
     if boundaries:
         destination = Destination(output, to_format, "boundaries")
     else:
-        destination = Destination(output, to_format, put=_extruder(output, to_format, extrude))
+        destination = Destination(output, to_format, put=_extruder(output, to_format, heights))
     prepare(sources, destination, session)
 
     def read(source: str) -> Iterator[Grid | Boundary]:
         if not boundaries:
             return read_grids(source, from_format)
-        return (shape.boundary(Sampling()) for shape in read_shapes(source, from_format))
+        sampling = Sampling(normalise=change.normalise)
+        return (shape.boundary(sampling) for shape in read_shapes(source, from_format))
 
     def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
-        what = turned(item.what) if swap and isinstance(item.what, Grid) else item.what
+        what = change(item.what) if isinstance(item.what, Grid) else item.what
         return what, Converted(item, what)
 
     def tell(report: Converted, path: str) -> None:
@@ -122,15 +167,13 @@ def _writes_boundaries(source: str, output: str, from_format: str | None, to_for
 
 
 def _extruder(
-    output: str, to_format: str | None, height: float | None
+    output: str, to_format: str | None, heights: Heights
 ) -> Callable[[Path, Iterable[Grid]], None] | None:
-    if height is None:
+    if not heights:
         return None
-    if not 0 < height < float("inf"):
-        raise InputError(f"height {height:g} is not positive", "use e.g. 1", source="--extrude")
     found = format_for_output(output, to_format)
     write = found.write_extruded
     if write is None:
         able = ", ".join(other.name for other in formats() if other.write_extruded is not None)
         raise InputError(f"{found.name} holds flat grids only", f"write one of {able}", source=output)
-    return lambda path, grids: write(path, grids, height)
+    return lambda path, grids: write(path, grids, heights)

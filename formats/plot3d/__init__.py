@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from formats.format import Format
+from formats.format import Format, Heights
 from formats.plot3d.read import read_grids, sniff
 from formats.plot3d.write import Put, put_binary, put_fortran, put_text, write_blocks
 from geometry.grid import Grid
@@ -20,8 +20,8 @@ def _format(
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
         write_blocks(path, grids, put, heights)
 
-    def write_extruded(path: Path, grids: Iterable[Grid], thickness: float) -> None:
-        write_blocks(path, grids, put, (0.0, thickness))
+    def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+        write_blocks(path, grids, put, heights)
 
     return Format(
         name=name,

@@ -9,14 +9,13 @@ from typing import BinaryIO
 
 import numpy as np
 
+from formats.text_rows import write_rows
 from geometry.arrays import Floats
 from geometry.errors import InputError
 from geometry.grid import Grid
 
 _LINE = 4
 """Numbers a line of text."""
-_BLOCK = 1 << 16
-"""Numbers formatted at a time."""
 
 Put = Callable[[BinaryIO, Sequence["Block"]], None]
 
@@ -69,14 +68,12 @@ def put_text(stream: BinaryIO, blocks: Sequence[Block]) -> None:
     """Write text: the count of blocks, the dims of each on a line, then the numbers."""
     head = [str(len(blocks)), *(" ".join(map(str, block.dims)) for block in blocks)]
     stream.write(("\n".join(head) + "\n").encode())
-    line = " ".join(["%.16e"] * _LINE) + "\n"
     for block in blocks:
         for values in block.arrays():
-            for start in range(0, len(values), _BLOCK):
-                part = values[start : start + _BLOCK].tolist()
-                lines, rest = divmod(len(part), _LINE)
-                text = line * lines + " ".join(["%.16e"] * rest) + "\n" * bool(rest)
-                stream.write((text % tuple(part)).encode())
+            whole = len(values) - len(values) % _LINE
+            for part, width in ((values[:whole], _LINE), (values[whole:], len(values) - whole)):
+                if width:
+                    write_rows(stream, " ".join(["%e"] * width), part.reshape(-1, width))
 
 
 def put_binary(stream: BinaryIO, blocks: Sequence[Block]) -> None:

@@ -9,6 +9,7 @@ from meshonet_cli import options as o
 EXAMPLES = (
     "meshonet convert grid.vts grid.p3d",
     "meshonet convert grid.vts grid3d.msh --extrude 0.1",
+    "meshonet convert grid.vts grid3d.p3d --normalise --extrude 1 --planes 5",
     "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
     "meshonet convert --list-formats",
@@ -36,12 +37,27 @@ def convert(
         float | None,
         typer.Option(
             "--extrude", metavar="H", show_default=False,
-            help="Make the grid 3D: one cell of this height in z, as 2D cases of 3D solvers need it.",
+            help="Make the grid 3D: this high in z, one cell as 2D cases of 3D solvers need it.",
+        ),
+    ] = None,
+    planes: Annotated[
+        int | None,
+        typer.Option(
+            "--planes", metavar="K", min=2, max=10_000, show_default=False,
+            help="With --extrude: planes of nodes in z, so one cell fewer. [default: 2]",
         ),
     ] = None,
     swap: Annotated[
         bool,
         typer.Option("--swap", help="Have xi run where eta ran (four-sided grids), still right-handed."),
+    ] = False,
+    normalise: Annotated[
+        bool,
+        typer.Option(
+            "--normalise",
+            help="Scale to unit chord, leading edge at (0, 0) and trailing edge at (1, 0); four-sided grids "
+            "to unit length.",
+        ),
     ] = False,
     list_formats: Annotated[
         bool, typer.Option("--list-formats", help="Print what can be read and written, and stop.")
@@ -55,7 +71,7 @@ def convert(
 ) -> int:
     """Turn files from one format into another."""
     from geometry.errors import InputError
-    from meshonet_cli.converting import convert_files, print_formats
+    from meshonet_cli.converting import Change, convert_files, print_formats
     from meshonet_cli.session import Session
 
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
@@ -68,7 +84,7 @@ def convert(
     *sources, target = given
     return convert_files(
         sources, target, session,
-        from_format=from_format, to_format=to_format, extrude=extrude, swap=swap,
-        skip_existing=skip_existing,
+        from_format=from_format, to_format=to_format, skip_existing=skip_existing,
+        change=Change(extrude, planes, swap=swap, normalise=normalise),
     )
 # fmt: on

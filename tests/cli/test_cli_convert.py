@@ -1,12 +1,22 @@
 """`meshonet convert`."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import Meshonet, Process
 
-from formats.registry import TABLE, read_grids, read_shapes
+from formats.registry import TABLE, format_for_output, read_grids, read_shapes
+from geometry.grid import Grid
+
+
+def write(path: str, grids: Sequence[Grid]) -> None:
+    """Write `grids` in the format of the path's ending."""
+    writer = format_for_output(path).write_grids
+    assert writer is not None
+    writer(Path(path), grids)
 
 
 @pytest.fixture
@@ -54,6 +64,43 @@ def test_extrude_makes_one_layer_of_cells(meshonet: Meshonet, grid_vts: Path) ->
     assert reader.GetOutput().GetBounds()[4:] == (0.0, 0.25)
 
 
+def test_planes_say_how_many_layers(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("convert", grid_vts, "grid3d.p3d", "--extrude", "1", "--planes", "5").code == 0
+    text = Path("grid3d.p3d").read_text().split()
+    assert text[:4] == ["1", "41", "15", "5"]
+    assert sorted({float(z) for z in text[4 + 2 * 41 * 15 * 5 :]}) == [0, 0.25, 0.5, 0.75, 1]
+    (before,), (after,) = read_grids("grid.vts"), read_grids("grid3d.p3d")
+    np.testing.assert_array_equal(after.nodes, before.nodes)
+
+
+def test_normalise_gives_unit_chord(meshonet: Meshonet) -> None:
+    meshonet("tfi", "naca:0012", "--res", "41x9", "-o", "grid.vts")
+    (grid,) = read_grids("grid.vts")
+    moved = replace(grid, nodes=3 * grid.nodes @ np.array([[0.8, -0.6], [0.6, 0.8]]) + (5, -2))
+    write("moved.vts", [moved])
+    assert meshonet("convert", "moved.vts", "back.vts", "--normalise").code == 0
+    (back,) = read_grids("back.vts")
+    np.testing.assert_allclose(back.nodes, grid.nodes, atol=1e-12)
+
+
+def test_normalise_gives_a_duct_unit_length(meshonet: Meshonet, duct_h5: Path) -> None:
+    meshonet("tfi", duct_h5, "-o", "duct.vts")
+    assert meshonet("convert", "duct.vts", "unit.vts", "--normalise").code == 0
+    (grid,) = read_grids("unit.vts")
+    assert grid.nodes.min(axis=(0, 1)).tolist() == [0, 0]
+    assert np.ptp(grid.nodes, axis=(0, 1)).max() == 1
+
+
+def test_normalise_reaches_airfoils_that_become_boundaries(meshonet: Meshonet) -> None:
+    x = 0.5 * (1 + np.cos(np.linspace(0, np.pi, 41)))
+    y = 0.3 * np.sqrt(x) * (1 - x)
+    points = np.concatenate([np.stack([x, y], 1), np.stack([x, -y], 1)[-2::-1]])
+    Path("a.dat").write_text("big\n" + "\n".join(f"{10 * u:.8f} {10 * v:.8f}" for u, v in points))
+    assert meshonet("convert", "a.dat", "a.h5", "--normalise").code == 0
+    (shape,) = read_shapes("a.h5")
+    assert abs(np.ptp(shape.south[:, 0]) - 1) < 1e-3  # type: ignore[union-attr]
+
+
 def test_boundaries_become_boundaries(meshonet: Meshonet, three_h5: Path) -> None:
     done = meshonet("convert", three_h5, "flat.vts")
     assert done.code == 2
@@ -73,6 +120,9 @@ def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Pa
         (("grid.vts",), "convert: there is no file to write; name it: meshonet convert grid.vts OUT"),
         (("grid.vts", "grid.abc"), "its ending '.abc' is not known; choose the format with --to"),
         (("grid.vts", "grid.p3d", "--extrude", "0"), "--extrude: height 0 is not positive"),
+        (("grid.vts", "grid.p3d", "--extrude", "inf"), "--extrude: height inf is not positive"),
+        (("grid.vts", "grid.p3d", "--planes", "3"), "--planes: there is no height; add --extrude H"),
+        (("grid.vts", "grid.p3d", "--extrude", "1", "--planes", "1"), "'--planes': 1 is not in the range"),
         (("grid.vts", "grid.h5", "--extrude", "1"), "hdf5 holds flat grids only; write one of"),
         (("missing.vts", "grid.p3d"), "missing.vts: no such file"),
     ],

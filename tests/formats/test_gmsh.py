@@ -59,16 +59,18 @@ def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], text: bool, tmp_
     assert np.array_equal(np.unique(points[:, 0]), np.unique(grid.x))
 
 
+@pytest.mark.parametrize("layers", [1, 3])
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 @pytest.mark.usefixtures("client")
-def test_gmsh_sees_a_layer_of_right_handed_hexahedra(make: type[Grid], tmp_path: Path) -> None:
+def test_gmsh_sees_layers_of_right_handed_hexahedra(make: type[Grid], layers: int, tmp_path: Path) -> None:
     grid = make()
-    write_extruded(tmp_path / "g.msh", [grid], 0.5)
+    write_extruded(tmp_path / "g.msh", [grid], tuple(0.5 * k for k in range(layers + 1)))
     gmsh.open(str(tmp_path / "g.msh"))
     nodes, cells, parts = COUNTS[grid.topology]
-    assert len(gmsh.model.mesh.getNodes()[0]) == 2 * nodes
-    assert groups(2) == {**parts, "back": cells, "front": cells}
-    assert groups(3) == {"fluid": cells}
+    assert len(gmsh.model.mesh.getNodes()[0]) == (layers + 1) * nodes
+    beside = {name: layers * count for name, count in parts.items()}
+    assert groups(2) == {**beside, "back": cells, "front": cells}
+    assert groups(3) == {"fluid": layers * cells}
     hexahedra = gmsh.model.mesh.getElementsByType(5)[0]
     assert min(gmsh.model.mesh.getElementQualities(hexahedra, "minDetJac")) > 0
     faces = gmsh.model.mesh.getElementsByType(3)[1].reshape(-1, 4)

@@ -44,15 +44,18 @@ def patches(mesh: Path) -> dict[str, tuple[str, int, int]]:
     return {name: (kind, int(n), int(start)) for name, kind, n, start in re.findall(form, text)}
 
 
+@pytest.mark.parametrize("layers", [1, 3])
 @pytest.mark.parametrize("make", MAKES)
-def test_cells_are_closed_and_faces_point_out_of_owners_in_order(make: type[Grid], tmp_path: Path) -> None:
+def test_cells_are_closed_and_faces_point_out_of_owners_in_order(
+    make: type[Grid], layers: int, tmp_path: Path
+) -> None:
     grid = make()
-    write_extruded(tmp_path / "case.foam", [grid], 0.5)
+    write_extruded(tmp_path / "case.foam", [grid], tuple(0.5 * k for k in range(layers + 1)))
     mesh = tmp_path / "constant" / "polyMesh"
     points, faces = numbers(mesh / "points"), numbers(mesh / "faces").astype(int)
     owner = numbers(mesh / "owner").astype(int).ravel()
     neighbour = numbers(mesh / "neighbour").astype(int).ravel()
-    inner, cells = len(neighbour), (grid.ni - 1) * (grid.nj - 1)
+    inner, cells = len(neighbour), layers * (grid.ni - 1) * (grid.nj - 1)
     assert (owner[:inner] < neighbour).all()
     order = list(zip(owner[:inner].tolist(), neighbour.tolist(), strict=True))
     assert order == sorted(set(order))
@@ -68,7 +71,7 @@ def test_cells_are_closed_and_faces_point_out_of_owners_in_order(make: type[Grid
     mesh2d = unstructured(grid)
     x, y = np.moveaxis(mesh2d.points[mesh2d.quads], -1, 0)
     plane = 0.5 * ((x[:, 2] - x[:, 0]) * (y[:, 3] - y[:, 1]) - (x[:, 3] - x[:, 1]) * (y[:, 2] - y[:, 0]))
-    assert np.allclose(volume, 0.5 * plane, rtol=1e-12)
+    assert np.allclose(volume, np.tile(0.5 * plane, layers), rtol=1e-12)
     assert volume.min() > 0
     middle = np.zeros((cells, 3))
     np.add.at(middle, owner, centre / 6)
@@ -92,7 +95,7 @@ def test_patches_are_named_typed_and_cover_the_outer_faces(make: type[Grid], tmp
 @pytest.mark.parametrize("make", MAKES)
 def test_vtk_opens_the_case(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
-    write_extruded(tmp_path / "case.foam", [grid], 0.5)
+    write_extruded(tmp_path / "case.foam", [grid], (0.0, 0.5))
     reader = vtkOpenFOAMReader()
     reader.SetFileName(str(tmp_path / "case.foam"))
     reader.UpdateInformation()
@@ -107,11 +110,22 @@ def test_vtk_opens_the_case(make: type[Grid], tmp_path: Path) -> None:
     assert {f"patch/{name}" for name in PATCHES[grid.topology]} <= names
 
 
+def test_the_planes_of_several_layers_are_symmetry_planes(tmp_path: Path) -> None:
+    parts = (Part("front", "south", 0, 12), Part("far", "north", 0, 12))
+    write_extruded(tmp_path / "case.foam", [Grid(ring().nodes, "o", parts)], (0.0, 1.0, 2.0))
+    found = patches(tmp_path / "constant" / "polyMesh")
+    assert {name: told[:2] for name, told in found.items()} == {
+        "front-2": ("wall", 24), "far": ("patch", 24),
+        "back": ("symmetryPlane", 48), "front": ("symmetryPlane", 48),
+    }  # fmt: skip
+
+
 @pytest.mark.client("checkMesh")
+@pytest.mark.parametrize("heights", [(0.0, 0.5), (0.0, 0.25, 0.5)])
 @pytest.mark.parametrize("make", MAKES)
-def test_check_mesh_finds_nothing(make: type[Grid], tmp_path: Path) -> None:
+def test_check_mesh_finds_nothing(make: type[Grid], heights: tuple[float, ...], tmp_path: Path) -> None:
     grid = make(33, 17) if make is not c_grid else make(33, 33, 17)  # type: ignore[call-arg]
-    write_extruded(tmp_path / "case.foam", [grid], 0.5)
+    write_extruded(tmp_path / "case.foam", [grid], heights)
     done = subprocess.run(
         ["checkMesh", "-case", str(tmp_path), "-allTopology"],
         capture_output=True,

@@ -13,7 +13,7 @@ GRID = channel(6, 4)
 X, Y = GRID.x, GRID.y
 
 
-@pytest.mark.parametrize("planes", [1, 2])
+@pytest.mark.parametrize("planes", [1, 2, 5])
 @pytest.mark.parametrize(("axis", "flat"), [*itertools.product(range(3), range(3))])
 def test_a_plane_is_found_in_any_direction(planes: int, axis: int, flat: int) -> None:
     coordinates = [np.stack([c] * planes, axis) for c in (X, Y)]
@@ -30,6 +30,13 @@ def test_float32_copies_of_a_plane_are_copies() -> None:
     x = np.stack([X, X + 1e-8], 2)
     coordinates = [x, np.stack([Y, Y], 2), np.stack([0 * X, 0 * X + 1], 2)]
     assert planar(coordinates).shape == (6, 4, 2)
+
+
+def test_copies_that_do_not_step_the_same_way_are_three_dimensional() -> None:
+    x, y, z = np.stack([X] * 3, 2), np.stack([Y] * 3, 2), np.stack([0 * X, 0 * X + 1, 0 * X + 2], 2)
+    x[..., 2] += 1.0  # the third plane is moved along x too
+    with pytest.raises(InputError, match="a grid of 6x4x3 nodes is three-dimensional"):
+        planar([x, y, z])
 
 
 def test_two_different_planes_are_three_dimensional() -> None:

@@ -204,7 +204,7 @@ def test_vtk_reads_our_text_when_told_its_layout(tmp_path: Path) -> None:
 def test_vtk_reads_a_layer(name: str, tmp_path: Path) -> None:
     writer = format_named(name).write_extruded
     assert writer is not None
-    writer(tmp_path / "g", [RING], 0.5)
+    writer(tmp_path / "g", [RING], (0.0, 0.5))
     (points,) = vtk_blocks(tmp_path / "g")
     assert len(points) == 2 * RING.ni * RING.nj
     assert sorted(set(points[:, 2].tolist())) == [0.0, 0.5]

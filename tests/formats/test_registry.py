@@ -93,12 +93,15 @@ def test_a_grid_comes_back_bit_for_bit_and_the_writer_leaves_it_alone(
 
 
 @pytest.mark.parametrize("name", [n for n in BOTH_WAYS if format_named(n).write_extruded])
-def test_a_grid_one_cell_thick_is_read_as_the_plane_grid_it_was(name: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("heights", [(0.0, 0.1), (0.0, 0.1, 0.2, 0.3)])
+def test_a_grid_repeated_in_z_is_read_as_the_plane_grid_it_was(
+    name: str, heights: tuple[float, ...], tmp_path: Path
+) -> None:
     grid = channel()
     record = format_named(name)
     path = tmp_path / f"thick{record.suffixes[0]}"
     assert record.write_extruded is not None
-    record.write_extruded(path, [grid], 0.1)
+    record.write_extruded(path, [grid], heights)
     (back,) = read_grids(str(path), name)
     assert np.array_equal(back.nodes, grid.nodes)
 

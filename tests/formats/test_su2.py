@@ -63,12 +63,21 @@ def test_the_lines_of_a_marker_are_edges_of_its_part(tmp_path: Path) -> None:
 
 def test_a_layer_has_hexahedra_and_its_planes_as_markers(tmp_path: Path) -> None:
     grid = ring()
-    write_extruded(tmp_path / "g.su2", [grid], 0.5)
+    write_extruded(tmp_path / "g.su2", [grid], (0.0, 0.5))
     mesh = meshio.su2.read(tmp_path / "g.su2")
     assert len(mesh.cells_dict["hexahedron"]) == 48
     assert mesh.points[:, 2].max() == 0.5
     assert len(mesh.points) == 2 * len(unstructured(grid).points)
     assert markers(tmp_path / "g.su2") == {"airfoil": 12, "far": 12, "back": 48, "front": 48}
+
+
+def test_several_layers_have_their_outermost_planes_as_markers(tmp_path: Path) -> None:
+    write_extruded(tmp_path / "g.su2", [ring()], (0.0, 0.5, 1.0, 1.5))
+    mesh = meshio.su2.read(tmp_path / "g.su2")
+    hexahedra = mesh.points[mesh.cells_dict["hexahedron"]]
+    assert len(hexahedra) == 3 * 48
+    assert np.allclose(hexahedra[:, 4:, 2] - hexahedra[:, :4, 2], 0.5)
+    assert markers(tmp_path / "g.su2") == {"airfoil": 36, "far": 36, "back": 48, "front": 48}
 
 
 def test_names_that_no_configuration_could_list_become_different_words(tmp_path: Path) -> None:

@@ -88,7 +88,7 @@ def test_cell_data_of_another_shape_is_refused(tmp_path: Path) -> None:
 
 
 def test_vtk_sees_a_right_handed_layer_of_hexahedra(tmp_path: Path) -> None:
-    write_extruded(tmp_path / "g.vts", [ring()], 0.25)
+    write_extruded(tmp_path / "g.vts", [ring()], (0.0, 0.25))
     data = by_vtk(tmp_path / "g.vts")
     assert dims(data) == (13, 5, 2)
     assert data.GetBounds()[4:] == (0.0, 0.25)

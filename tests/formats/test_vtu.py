@@ -20,7 +20,7 @@ def test_vtk_reads_cells_points_and_the_numbers_of_parts(
 ) -> None:
     mesh = unstructured(make())
     if thick:
-        write_extruded(tmp_path / "g.vtu", [make()], 0.5)
+        write_extruded(tmp_path / "g.vtu", [make()], (0.0, 0.5))
     else:
         write_grids(tmp_path / "g.vtu", [make()])
     reader = vtkXMLUnstructuredGridReader()
