@@ -5,12 +5,13 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
 
-.PHONY: help demo test test-clients lint train bench docs clean
+.PHONY: help demo test test-clients fuzz kills lint train bench docs clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
 	@echo 'make test    the test suite'
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
+	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped model again, from procedural airfoils (resumable; about an hour on one core)'
 	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
@@ -51,6 +52,16 @@ test-clients: $(VENV)/.developing
 	{ command -v cgnscheck && command -v checkMesh; } >/dev/null || \
 	  { apt-get update -qq && apt-get install -y -qq --no-install-recommends cgns-convert openfoam; }
 	MESHONET_CLIENTS=1 $(BIN)/python -m pytest -m client tests/formats
+
+# hostile files for MINUTES a reader, JOBS readers at a time; commands killed COUNT times
+MINUTES ?= 10
+JOBS ?= 1
+COUNT ?= 200
+fuzz: $(VENV)/.developing
+	$(BIN)/python benchmarks/fuzz.py --minutes $(MINUTES) --jobs $(JOBS)
+
+kills: $(VENV)/.developing
+	$(BIN)/python benchmarks/kills.py --count $(COUNT)
 
 lint: $(VENV)/.developing
 	$(BIN)/ruff check .

@@ -56,7 +56,8 @@ def read_geojson(source: Source) -> Iterator[Outline]:
     for number, (name, geometry) in enumerate(features, start=1):
         place = f"feature {number}" if len(features) > 1 else ""
         try:
-            found.append((name or source.stem, place, shape(geometry)))
+            with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
+                found.append((name or source.stem, place, shape(geometry)))
         except (
             ShapelyError,
             ValueError,

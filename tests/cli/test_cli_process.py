@@ -77,6 +77,13 @@ def test_a_signal_ends_it_without_a_trace(tmp_path: Path, number: int, code: int
     assert sorted(path.name for path in tmp_path.iterdir()) == ["grids.h5", "many.h5"]
 
 
+def test_an_interrupt_while_the_program_is_loaded_shows_no_trace(tmp_path: Path) -> None:
+    (tmp_path / "typer.py").write_text("import signal\nsignal.raise_signal(signal.SIGINT)\n")
+    found = {**environment(), "PYTHONPATH": f"{tmp_path}:{ROOT}"}
+    done = subprocess.run(command("models"), capture_output=True, env=found)
+    assert (done.returncode, done.stderr) == (130, b"interrupted\n")
+
+
 def test_a_full_disc_is_told_in_a_line(process: Process, duct_h5: Path) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("no /dev/full here")

@@ -2,51 +2,23 @@
 
 from __future__ import annotations
 
-import functools
-import json
 import time
 import warnings
 from collections.abc import Callable
-from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
-from format_shapes import channel
+from hostile import BITS, READABLE, corpus, foreign, good
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from formats.format import Format
-from formats.registry import TABLE, format_named
+from formats.registry import format_named
 from formats.source import Source
 from geometry.errors import InputError
 from geometry.grid import Grid
 
-READABLE = [name for name in TABLE if format_named(name).read_grids or format_named(name).read_shapes]
 SECONDS = 5.0  # of processor time: a busy machine is not a fault
-SECTION = "A SECTION\n" + "".join(
-    f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in np.linspace(0, 2 * np.pi, 41)
-)
-SQUARE = [[0, 0], [2, 0], [2, 1], [0, 1], [0, 0]]
-TEXTS = {
-    "airfoil": SECTION,
-    "points": SECTION.split("\n", 1)[1],
-    "wkt": "POLYGON ((0 0, 2 0, 2 1, 0 1, 0 0))",
-    "geojson": json.dumps({"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}),
-}
-"""A good file of each format that this package reads and does not write."""
-
-
-@functools.cache
-def good(name: str) -> bytes:
-    """Return a good file of a format."""
-    if name in TEXTS:
-        return TEXTS[name].encode()
-    writer = format_named(name).write_grids
-    assert writer is not None, f"{name} needs a good file in TEXTS"
-    with TemporaryDirectory() as folder:
-        writer(Path(folder) / "g", [channel()])
-        return (Path(folder) / "g").read_bytes()
 
 
 def refuse(record: Format, data: bytes) -> None:
@@ -74,9 +46,7 @@ def mutations(name: str) -> st.SearchStrategy[bytes]:
     """Return a good file of format `name` cut, with bytes changed, put in, taken out or repeated."""
     data = good(name)
     place = st.integers(0, len(data) - 1)
-    bits = st.sampled_from(
-        [b"\0", b"\xff", b"nan", b"-1", b"1e999", b"999999999", b"\x1b[2J", b"*", b",", b"\n", b'"']
-    )
+    bits = st.sampled_from(BITS)
 
     def change(edits: list[tuple[int, int, bytes]]) -> bytes:
         changed = data
@@ -110,6 +80,16 @@ def test_a_damaged_file_is_refused_or_read(name: str, data: st.DataObject) -> No
 @given(data=st.binary(max_size=300))
 def test_arbitrary_bytes_are_refused(name: str, data: bytes) -> None:
     refuse(format_named(name), data)
+
+
+@pytest.mark.parametrize("name", READABLE)
+def test_the_corpus_is_refused_or_read(name: str) -> None:
+    record, files = format_named(name), [*corpus(name), *foreign()]
+    assert len(files) > 80
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for _, data in files:
+            refuse(record, data)
 
 
 LONG: dict[str, Callable[[], bytes]] = {

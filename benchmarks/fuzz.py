@@ -1,0 +1,178 @@
+"""Readers against hostile files: a corpus through the command line, then random damage for some minutes.
+
+    python benchmarks/fuzz.py [--minutes 10] [--readers vts,hdf5] [--jobs 1] [--seed 0]
+
+Each reader works in a process of its own. Passed is a file that is read, or refused by one of the package's
+own errors in two lines at the most, within five seconds of processor time and within memory of 64 MiB plus 40
+times the file. The exit code is 1 when one did not pass; its bytes are kept in fuzz-failures/.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import time
+import traceback
+import tracemalloc
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).parents[1]
+sys.path[:0] = [str(ROOT / "tests" / "formats"), str(ROOT)]
+
+from hostile import READABLE, corpus, foreign, good, mutate
+
+from formats.registry import format_named
+from formats.source import Source
+from geometry.errors import MeshonetError
+
+SECONDS = 5.0
+SPARE, TIMES = 64 << 20, 40
+FAILURES = Path("fuzz-failures")
+
+
+def judge(name: str, data: bytes) -> str:
+    """Return ``read`` or ``refused``, or what is wrong with how the reader took `data`."""
+    record = format_named(name)
+    begun, outcome = time.process_time(), "read"
+    for read in (record.read_shapes, record.read_grids):
+        if read is None:
+            continue
+        try:
+            for item in read(Source("hostile", data=data)):
+                if not item.name.isprintable():
+                    return "a name that cannot be printed"
+        except MeshonetError as error:
+            outcome = "refused"
+            if isinstance(error.__cause__, MemoryError):
+                return "out of memory"
+            if not 10 < len(str(error)) < 400 or not str(error).isprintable():
+                return f"a message that is not one: {error!s:.80}"
+        except (Exception, RecursionError):
+            return traceback.format_exc().splitlines()[-1][:120]
+    spent = time.process_time() - begun
+    return outcome if spent < SECONDS else f"{spent:.1f} s"
+
+
+def attack(name: str, seconds: float, seed: int) -> dict[str, object]:
+    """Damage good files of reader `name` at random for `seconds` of wall time and return the figures."""
+    random, counts, peak = Random(f"{name} {seed}"), Counter(), 0  # noqa: S311  (no secret)
+    limit = 4 << 30
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+    goods, failures, slowest = [good(name)], [], 0.0
+    seeds = [good(name), *(data for _, data in corpus(name))]
+    FAILURES.mkdir(exist_ok=True)
+    suspect = FAILURES / f"{name}-{os.getpid()}"
+    stop = time.monotonic() + seconds
+    while time.monotonic() < stop:
+        data = mutate(random.choice(goods if random.random() < 0.7 else seeds), random)
+        suspect.write_bytes(data)
+        watched = counts.total() % 50 == 0
+        if watched:
+            tracemalloc.start()
+        begun = time.process_time()
+        outcome = judge(name, data)
+        slowest = max(slowest, time.process_time() - begun)
+        if watched:
+            used = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+            peak = max(peak, used)
+            if used > SPARE + TIMES * len(data):
+                outcome = f"{used >> 20} MiB for {len(data)} bytes"
+        counts[outcome if outcome in ("read", "refused") else "failed"] += 1
+        if outcome not in ("read", "refused"):
+            failures.append(outcome)
+            suspect.rename(FAILURES / f"{name}-{len(failures)}")
+    suspect.unlink(missing_ok=True)
+    return {
+        "reader": name, "files": counts.total(), **counts, "slowest_s": round(slowest, 2),
+        "peak_MiB": round(peak / 2**20, 1), "failures": sorted(set(failures))[:5],
+    }  # fmt: skip
+
+
+def apart(name: str, seconds: float, seed: int) -> dict[str, object]:
+    """Return what `attack` does in a process of its own, which it may bring down."""
+    words = [sys.executable, __file__, "--one", name, "--minutes", str(seconds / 60), "--seed", str(seed)]
+    done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode:
+        return {"reader": name, "failures": [f"exit {done.returncode}: {done.stderr[-300:]}"]}
+    return json.loads(done.stdout)
+
+
+def through_the_command_line(jobs: int) -> dict[str, object]:
+    """Give every file of the corpus to ``meshonet convert`` and return the figures."""
+    files = [(name, told, data) for name in READABLE for told, data in corpus(name)]
+    files += [("airfoil", told, data) for told, data in foreign()]
+    files += [("vts", told, data) for told, data in foreign()]
+    with TemporaryDirectory() as folder, ThreadPoolExecutor(jobs) as pool:
+        work = [(Path(folder) / str(k), *file) for k, file in enumerate(files)]
+        outcomes = list(pool.map(lambda args: _converted(args[0], args[1], args[3]), work))
+    wrong = [f"{name}: {told}: {outcome}" for (name, told, _), outcome in zip(files, outcomes, strict=True)
+             if outcome not in ("read", "refused")]  # fmt: skip
+    return {
+        "files": len(files),
+        **Counter(o for o in outcomes if o in ("read", "refused")),
+        "failures": wrong,
+    }
+
+
+def _converted(place: Path, name: str, data: bytes) -> str:
+    place.mkdir()
+    file = place / f"hostile{format_named(name).suffixes[0]}"
+    file.write_bytes(data)
+    words = [sys.executable, "-m", "meshonet_cli", "convert", file.name, "out.h5"]
+    process = subprocess.Popen(
+        words, cwd=place, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    errors = process.stderr.read().decode("utf-8", "replace") if process.stderr else ""
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = code = os.waitstatus_to_exitcode(status)
+    left = {entry.name for entry in place.iterdir()} - {file.name}
+    if usage.ru_utime + usage.ru_stime > SECONDS:
+        return f"{usage.ru_utime + usage.ru_stime:.1f} s"
+    if usage.ru_maxrss > (200 << 10) + (TIMES * len(data) >> 10):
+        return f"{usage.ru_maxrss >> 10} MiB"
+    if code == 0:
+        return "read" if left == {"out.h5"} else f"exit 0 and {left}"
+    if code != 2 or left or "Traceback" in errors or not 1 <= errors.count("\n") <= 2:
+        return f"exit {code}, {left}, {errors[-200:]!r}"
+    return "refused" if "\x1b" not in errors else "an escape on the terminal"
+
+
+def main() -> None:
+    """Print one line of JSON for the corpus and one for each reader."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--minutes", type=float, default=10.0)
+    parser.add_argument("--readers", default=",".join(READABLE))
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--one", help=argparse.SUPPRESS)
+    parser.add_argument("--skip-corpus", action="store_true")
+    given = parser.parse_args()
+    if given.one:
+        print(json.dumps(attack(given.one, 60 * given.minutes, given.seed)))
+        return
+    bad = False
+    if not given.skip_corpus:
+        told = through_the_command_line(given.jobs)
+        print(json.dumps(told), flush=True)
+        bad = bool(told["failures"])
+    with ThreadPoolExecutor(given.jobs) as pool:
+        for told in pool.map(
+            lambda name: apart(name, 60 * given.minutes, given.seed), given.readers.split(",")
+        ):
+            print(json.dumps(told), flush=True)
+            bad = bad or bool(told["failures"])
+    sys.exit(int(bad))
+
+
+if __name__ == "__main__":
+    main()
