@@ -7,6 +7,7 @@ def measure(
     x: NDArray[np.float64],
     y: NDArray[np.float64],
     periodic: bool,
+    wake: int,
     summary: NDArray[np.float64],
     where: NDArray[np.int64],
     keep: int,

@@ -36,12 +36,13 @@ def folded_cells(const double[:, ::1] x, const double[:, ::1] y, ptrdiff_t room)
     return np.asarray(pairs)[:min(found, room)]
 
 
-def measure(const double[:, ::1] x, const double[:, ::1] y, bint periodic, double[:, ::1] summary,
+def measure(const double[:, ::1] x, const double[:, ::1] y, bint periodic, ptrdiff_t wake, double[:, ::1] summary,
             int64_t[:, :, ::1] where, int keep, double[:, :, ::1] kept,
             const double[:, :, ::1] brackets, int64_t[:, :, ::1] counts, double[:, :, ::1] caught):
     """Run over all cells once.
 
-    summary (METRICS, 3): min, mean, max of each metric. where (METRICS, 2, 2): cell (i, j) of the min and of
+    periodic: the last column of nodes is the first. wake: cells (i, 0) and (ni-2-i, 0) with i < wake are
+    neighbours. summary (METRICS, 3): min, mean, max of each metric. where (METRICS, 2, 2): cell (i, j) of the min and of
     the max, first in order. keep: the first of the metrics whose values go to `kept` (n, ni-1, nj-1).
     brackets (METRICS, m, 2): pairs of values; counts (METRICS, m, 4), zeros before: how many cells are less than
     the first, at most the first, less than the second, at most the second. caught (METRICS, m, room): values
@@ -69,6 +70,10 @@ def measure(const double[:, ::1] x, const double[:, ::1] y, bint periodic, doubl
                 after = &areas[3, 0]
             else:
                 after = here
+            if i < wake or i >= ni - 1 - wake:
+                m = ni - 2 - i  # the cell on the other side of the wake
+                here[0] = 0.5 * abs((x[m + 1, 1] - x[m, 0]) * (y[m, 1] - y[m + 1, 0])
+                                    - (y[m + 1, 1] - y[m, 0]) * (x[m, 1] - x[m + 1, 0]))
             cells_row(&x[i, 0], &y[i, 0], nj, before, here, after, &rows[0, 0])
             before = here
             for k in range(METRICS):

@@ -17,7 +17,7 @@ aspect_ratio        longest edge times perimeter over four areas; (r + 1)/2 for 
 orthogonality       angle between the two families of grid lines at the centre of the cell, 0 to 90 degrees
                     (Verdict: the arc cosine of skew)
 area_ratio          greatest ratio, larger over smaller, of the areas of a cell and of one beside it in i or
-                    j, across the seam of an ``o`` grid too
+                    j, across the seam of an ``o`` grid and the wake of a ``c`` grid too
 ==================  ========================================================================================
 
 Sources: C. J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-1751 (2007); its code in

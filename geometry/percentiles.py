@@ -99,7 +99,7 @@ def _sample(x: Floats, y: Floats) -> Floats:
     u, v = (tile.reshape(i.shape[1], -1) for tile in tiles)
     table, where, run = np.empty((n, 3)), np.empty((n, 2, 2), dtype=np.int64), no_run()
     values = np.empty((n, i.shape[1] - 1, u.shape[1] - 1))
-    _cells.measure(u, v, False, table, where, 0, values, run.brackets, run.counts, run.caught)
+    _cells.measure(u, v, False, 0, table, where, 0, values, run.brackets, run.counts, run.caught)
     inside = np.zeros((TILES, i.shape[1] - 1, j.shape[1]), dtype=bool)
     # the last column of a tile joins it to the next one
     inside[..., :-1] = inside_i[:, :, None] & inside_j[:, None, :]

@@ -17,6 +17,7 @@ from geometry.errors import BadCell, InputError
 from geometry.grid import Grid
 from geometry.metrics import METRICS, NAMES
 from geometry.percentiles import Run, no_run, prepared
+from geometry.seams import wake_cells
 
 PERCENTS = (1.0, 99.0)
 FEW = 1 << 18
@@ -99,7 +100,7 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
 
     Parameters
     ----------
-    grid : any topology; neighbours across the seam count for ``o``.
+    grid : any topology; neighbours across the seam of ``o`` and the wake of ``c`` count.
     percentiles : also find the 1st and 99th percentile of every metric, by linear interpolation between
         cells. They take about a third of the time of the rest (`geometry.percentiles`).
     """
@@ -143,10 +144,8 @@ def _run(grid: Grid, first: int, values: Floats, run: Run) -> tuple[Floats, NDAr
     `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
     """
     table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
-    periodic = grid.topology == "o"
-    _cells.measure(
-        grid.x, grid.y, periodic, table, where, first, values, run.brackets, run.counts, run.caught
-    )
+    joins = grid.topology == "o", wake_cells(grid)
+    _cells.measure(grid.x, grid.y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
     return table, where
 
 

@@ -11,9 +11,18 @@ from formats.registry import read_grids
 from geometry.compare import Difference, compare
 from geometry.errors import BadCell, InputError
 from geometry.grid import Grid
+from geometry.profiles import Figures, Judgement, judge
 from geometry.quality import Quality, measure, worst_cells
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.gates import Gate
+from meshonet_cli.judging import (
+    judgement_json,
+    judgement_table,
+    problems,
+    walls,
+    walls_json,
+    walls_table,
+)
 from meshonet_cli.member import Item
 from meshonet_cli.report import Timed, figure, quality_json, quality_table
 from meshonet_cli.session import Session
@@ -26,6 +35,8 @@ class Grade(Timed):
     grid: Grid
     quality: Quality
     worst: Sequence[BadCell]
+    figures: Figures
+    judgement: Judgement | None = None
     difference: Difference | None = None
 
     def as_json(self) -> dict[str, Any]:
@@ -39,7 +50,10 @@ class Grade(Timed):
             "folded": self.quality.folded,
             "worst_cells": [vars(cell) for cell in self.worst],
             "quality": quality_json(self.quality),
+            "walls": walls_json(self.figures.wall_rows),
         }
+        if self.judgement:
+            told |= judgement_json(self.figures, self.judgement)
         if self.difference:
             told["compare"] = vars(self.difference) | {"at": list(self.difference.at)}
         return told | {"seconds": self.times_json()}
@@ -50,6 +64,10 @@ class Grade(Timed):
         folded = f"{quality.folded} folded" if quality.folded else "none folded"
         size = f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid, {quality.cells} cells"
         rows = [f"{self.item.label}: {size}, {folded}", quality_table(quality)]
+        if self.figures.wall_rows and (self.judgement or grid.topology != "quad"):
+            rows.append(walls_table(self.figures.wall_rows))
+        if self.judgement:
+            rows.append(judgement_table(self.figures, self.judgement))
         rows += [f"folded at i={c.i}, j={c.j}: x={c.x:.6g}, y={c.y:.6g}" for c in self.worst]
         if self.difference:
             d = self.difference
@@ -67,6 +85,7 @@ def grade_grids(
     *,
     fmt: str | None = None,
     other: str | None = None,
+    profile: str | None = None,
     outputs: Sequence[Destination] = (),
 ) -> int:
     """Measure every grid of `sources`, print what there is to tell and return the exit code.
@@ -74,6 +93,7 @@ def grade_grids(
     Parameters
     ----------
     other : grid file to compare with: its one grid with each, or its grids one by one.
+    profile : thresholds of `geometry.profiles` to judge by.
     outputs : figures and files of metrics to write of each grid.
     """
     for destination in outputs:
@@ -83,7 +103,7 @@ def grade_grids(
     others = _partners(other) if other else None
     for item in items(sources, lambda source: read_grids(source, fmt), session):
         with session.member(item.label, item.source):
-            grade = _graded(item, others)
+            grade = _graded(item, profile, others)
             for destination in outputs:
                 destination.check_only(item)
                 with grade.timed("write"):
@@ -91,14 +111,16 @@ def grade_grids(
             grade.finished(None)
             session.show(grade)
             session.gate(item.label, [told for gate in gates if (told := gate.broken(grade.quality))])
+            session.gate(item.label, problems(grade.judgement) if grade.judgement else [])
     return session.finish()
 
 
-def _graded(item: Item[Grid], others: Iterator[Grid] | None) -> Grade:
+def _graded(item: Item[Grid], profile: str | None, others: Iterator[Grid] | None) -> Grade:
     begun = time.perf_counter()
     quality = measure(item.what, percentiles=True)
     worst = worst_cells(item.what.nodes) if quality.folded else []
-    grade = Grade(item, item.what, quality, worst)
+    figures = Figures(item.what, quality, walls(item.what))
+    grade = Grade(item, item.what, quality, worst, figures, judge(figures, profile) if profile else None)
     grade.seconds["quality"] = time.perf_counter() - begun
     if others is not None:
         with grade.timed("compare"):

@@ -1,6 +1,6 @@
 """``meshonet quality``."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -9,6 +9,7 @@ from meshonet_cli import options as o
 EXAMPLES = (
     "meshonet quality grid.vts",
     "meshonet quality grid.vts --fail-on 'max_angle>179' --fail-on 'folded>0' --json",
+    "meshonet quality grid.vts --profile openfoam",
     "meshonet quality grid.vts --per-cell metrics.vts",
     "meshonet quality grid.vts --compare other.vts",
 )
@@ -18,6 +19,14 @@ EXAMPLES = (
 def quality(
     grid: o.Grids,
     fail_on: o.FailOn = None,
+    profile: Annotated[
+        Literal["openfoam", "pointwise", "verdict", "viscous"] | None,
+        typer.Option(
+            "--profile", metavar="openfoam|pointwise|verdict|viscous", show_default=False,
+            help="Judge by the thresholds of others: each one, the figure, and pass, warning or FAIL; "
+            "exit with 1 when one fails. See docs/quality.md.",
+        ),
+    ] = None,
     plot: Annotated[
         str | None,
         typer.Option("--plot", metavar="F.png", show_default=False, help="Draw it, coloured by max_angle."),
@@ -44,5 +53,8 @@ def quality(
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [metrics_file(per_cell)] if per_cell else []
-    return grade_grids(grid, session, parse_gates(fail_on), fmt=from_format, other=other, outputs=outputs)
+    return grade_grids(
+        grid, session, parse_gates(fail_on),
+        fmt=from_format, other=other, profile=profile, outputs=outputs,
+    )
 # fmt: on

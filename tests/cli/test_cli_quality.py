@@ -128,6 +128,7 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
         (("--per-cell", "cells.h5"), "only a .vts file holds metrics; name it FILE.vts"),
         (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
+        (("--profile", "gambit"), "'gambit' is not one of 'openfoam', 'pointwise', 'verdict', 'viscous'"),
         (("--plot", "-", "--json"), "standard output has the table; write to a file"),
     ],
 )

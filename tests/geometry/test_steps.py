@@ -1,0 +1,68 @@
+"""Growth along grid lines, against figures known by hand and plain loops."""
+
+import numpy as np
+import pytest
+from test_seams import c_grid
+
+from geometry import steps
+from geometry.grid import Grid
+from geometry.steps import LARGE, growth
+
+
+def product(x: list[float], y: list[float]) -> np.ndarray:
+    return np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1)
+
+
+def test_a_product_grid_grows_as_its_factors() -> None:
+    found = growth(Grid(product([0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 2.0, 5.0, 8.0])))
+    assert found.xi is not None
+    assert found.eta is not None
+    assert (found.xi.max, found.xi.mean, found.xi.at) == (2.0, 2.0, (1, 0))
+    assert (found.eta.max, found.eta.mean, found.eta.at) == (3.0, pytest.approx(5 / 3), (0, 2))
+
+
+def test_the_seam_is_a_place_like_any_other() -> None:
+    turn = -2 * np.pi * (np.geomspace(1, 2, 13) - 1)  # the last cell is nearly twice the first
+    nodes = np.stack([np.outer(np.cos(turn), [1.0, 2.0]), np.outer(np.sin(turn), [1.0, 2.0])], axis=-1)
+    nodes[-1] = nodes[0]
+    chord = 2 * np.sin(-np.diff(turn) / 2)
+    ring, strip = growth(Grid(nodes, "o")).xi, growth(Grid(nodes, "quad")).xi
+    assert ring is not None
+    assert strip is not None
+    assert ring.max == pytest.approx(chord[-1] / chord[0])
+    assert ring.at == (12, 0)
+    assert strip.max == pytest.approx((chord[1:] / chord[:-1]).max())
+
+
+def test_the_wake_is_crossed() -> None:
+    grid = c_grid(growth=1.001)
+    crossed, cut = growth(grid).eta, growth(Grid(grid.nodes, "quad")).eta
+    assert crossed is not None
+    assert cut is not None
+    assert crossed.max == pytest.approx(1.5)
+    assert crossed.at[0] < 5
+    assert crossed.at[1] == 0
+    assert cut.max == pytest.approx(1.001)
+
+
+def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    nodes = product(list(range(40)), list(range(9))) + np.random.default_rng(2).uniform(-0.3, 0.3, (40, 9, 2))
+    whole = growth(Grid(nodes))
+    monkeypatch.setattr(steps, "ROWS", 7)
+    parts = growth(Grid(nodes))
+    for one, other in ((whole.xi, parts.xi), (whole.eta, parts.eta)):
+        assert one is not None
+        assert other is not None
+        assert (one.max, one.at) == (other.max, other.at)
+        assert one.mean == pytest.approx(other.mean, rel=1e-13)
+    lengths = np.linalg.norm(np.diff(nodes, axis=0), axis=-1)
+    ratios = lengths[1:] / lengths[:-1]
+    assert whole.xi is not None
+    assert whole.xi.max == pytest.approx(np.maximum(ratios, 1 / ratios).max(), rel=1e-13)
+
+
+def test_steps_of_no_length_are_large_and_single_steps_have_no_growth() -> None:
+    found = growth(Grid(product([0.0, 1.0], [0.0, 0.0, 1.0])))
+    assert found.xi is None
+    assert found.eta is not None
+    assert found.eta.max == LARGE
