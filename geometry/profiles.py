@@ -144,8 +144,8 @@ class Figures:
     def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, int] | None] | None:
         """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
 
-        ``wall_growth`` is the growth along the lines that leave the walls, ``far_field`` the least distance of
-        the far field from the middle of the body in chords, which quads do not have.
+        ``wall_growth`` is the growth along the lines that leave the walls, ``far_field`` the least distance
+        of the far field from the middle of the body in chords, which quads do not have.
         """
         if name == "folded":
             return float(self.quality.folded), None
