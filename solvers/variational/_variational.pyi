@@ -7,6 +7,23 @@ def energy(
     shape: float,
     smoothness: float,
     epsilon: float,
+    periodic: bool,
     gradient: Floats,
     work: Floats,
 ) -> tuple[float, float]: ...
+
+class Minimiser:
+    def __init__(
+        self, ni: int, nj: int, periodic: bool, rows: Floats, columns: Floats, scale: Floats, rest: float
+    ) -> None: ...
+    def run(
+        self,
+        z: Floats,
+        aspect: float,
+        shape: float,
+        smoothness: float,
+        epsilon: float,
+        still: float,
+        reach: float,
+        most: int,
+    ) -> tuple[float, float, int]: ...

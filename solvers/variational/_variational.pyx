@@ -1,4 +1,4 @@
-"""Compiled value and gradient of the variational functional; the formula stands in ``variational_kernel.c``."""
+"""Compiled variational functional and its descent; formulas stand in ``functional.h``, ``spectral.h``."""
 
 import numpy as np
 
@@ -7,9 +7,41 @@ cdef extern from "variational_kernel.h":
         double aspect
         double shape
         double smoothness
+        double epsilon
+        int periodic
+    ctypedef struct Spectrum:
+        Py_ssize_t mi
+        Py_ssize_t mj
+        Py_ssize_t ki
+        Py_ssize_t kj
+        const float *q_i
+        const float *q_i_t
+        const float *q_j
+        const float *q_j_t
+        const float *scale
+        float rest
+    ctypedef struct Descent:
+        Py_ssize_t ni
+        Py_ssize_t nj
+        Py_ssize_t first
+        Weights weights
+        Spectrum spectrum
+        double *z
+        double value
+        double smallest
+        double reach
+        double still
+    int GOES_ON
     size_t variational_workspace(Py_ssize_t ni, Py_ssize_t nj) nogil
     double variational_energy(const double *x, const double *y, Py_ssize_t ni, Py_ssize_t nj, const Weights *weights,
-                              double epsilon, double *gx, double *gy, double *smallest, double *work) nogil
+                              double *gx, double *gy, double *smallest, double *work) nogil
+    void descent_sizes(const Descent *d, size_t *doubles, size_t *floats) nogil
+    void descent_place(Descent *d, double *doubles, float *floats) nogil
+    void descent_start(Descent *d) nogil
+    int descent_step(Descent *d) nogil
+
+cdef extern from "Python.h":
+    int PyErr_CheckSignals() except -1
 
 
 def workspace(Py_ssize_t ni, Py_ssize_t nj):
@@ -17,12 +49,13 @@ def workspace(Py_ssize_t ni, Py_ssize_t nj):
     return variational_workspace(ni, nj)
 
 
-def energy(const double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon,
+def energy(const double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, bint periodic,
            double[:, :, ::1] gradient, double[::1] work):
     """Return (value, smallest corner Jacobian) for the planes z (2, ni, nj); fill `gradient` likewise.
 
-    The gradient is zero at the fixed nodes of the rim. `epsilon` regularises; without it a folded grid has an
-    infinite value and no gradient.
+    The gradient is zero at fixed nodes: those of the rim, or with `periodic` rows (the last is the first) of the
+    first and the last column; the last row's is in the first then. `epsilon` regularises; without it a folded
+    grid has an infinite value and no gradient.
     """
     cdef Py_ssize_t ni = z.shape[1], nj = z.shape[2]
     cdef Weights weights
@@ -32,7 +65,72 @@ def energy(const double[:, :, ::1] z, double aspect, double shape, double smooth
     if <size_t>work.shape[0] < variational_workspace(ni, nj):
         raise ValueError("too little workspace")
     weights.aspect, weights.shape, weights.smoothness = aspect, shape, smoothness
+    weights.epsilon, weights.periodic = epsilon, periodic
     with nogil:
-        total = variational_energy(&z[0, 0, 0], &z[1, 0, 0], ni, nj, &weights, epsilon, &gradient[0, 0, 0],
+        total = variational_energy(&z[0, 0, 0], &z[1, 0, 0], ni, nj, &weights, &gradient[0, 0, 0],
                                    &gradient[1, 0, 0], &smallest, &work[0])
     return total, smallest
+
+
+cdef class Minimiser:
+    """Descents of the functional over nodes of one shape, (ni, nj).
+
+    `rows` is the transform along xi (mi, ki), `columns` (mj, kj) that along eta, `scale` (2, ki, kj) what divides by
+    the symbol of the Hessian for moves along xi and along eta, and `rest` what divides the modes that are left out.
+    """
+
+    cdef Descent state
+    cdef object held
+
+    def __init__(self, Py_ssize_t ni, Py_ssize_t nj, bint periodic, rows, columns, scale, float rest):
+        cdef float[:, ::1] q_i = np.ascontiguousarray(rows, np.float32), q_i_t = np.ascontiguousarray(rows.T, np.float32)
+        cdef float[:, ::1] q_j = _padded(columns), q_j_t = _padded(columns.T)
+        cdef float[:, :, ::1] factors = np.ascontiguousarray(scale, np.float32)
+        cdef size_t doubles = 0, floats = 0
+        cdef double[::1] room
+        cdef float[::1] small
+        cdef Spectrum *s = &self.state.spectrum
+        s.mi, s.ki, s.mj, s.kj = rows.shape[0], rows.shape[1], columns.shape[0], columns.shape[1]
+        if s.mi != (ni - 1 if periodic else ni - 2) or s.mj != nj - 2:
+            raise ValueError("transforms of another size")
+        if factors.shape[0] != 2 or factors.shape[1] != s.ki or factors.shape[2] != s.kj:
+            raise ValueError("a scale of another size")
+        s.q_i, s.q_i_t, s.q_j, s.q_j_t = &q_i[0, 0], &q_i_t[0, 0], &q_j[0, 0], &q_j_t[0, 0]
+        s.scale, s.rest = &factors[0, 0, 0], rest
+        self.state.ni, self.state.nj, self.state.first = ni, nj, 0 if periodic else 1
+        self.state.weights.periodic = periodic
+        descent_sizes(&self.state, &doubles, &floats)
+        room, small = np.empty(doubles), np.empty(floats, np.float32)
+        descent_place(&self.state, &room[0], &small[0])
+        self.held = (q_i, q_i_t, q_j, q_j_t, factors, room, small)
+
+    def run(self, double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, double still,
+            double reach, int most):
+        """Descend from the planes z (2, ni, nj), in place; return (value, smallest Jacobian, iterations).
+
+        It stops when no node moves by more than `still` of its cells in three iterations on end, or after `most`
+        of them. No node moves by more than `reach` cells in the first.
+        """
+        cdef int done = 0, state = GOES_ON
+        if z.shape[0] != 2 or z.shape[1] != self.state.ni or z.shape[2] != self.state.nj:
+            raise ValueError("planes of another shape")
+        self.state.z = &z[0, 0, 0]
+        self.state.weights.aspect, self.state.weights.shape = aspect, shape
+        self.state.weights.smoothness, self.state.weights.epsilon = smoothness, epsilon
+        self.state.still, self.state.reach = still, reach
+        with nogil:
+            descent_start(&self.state)
+        while done < most and state == GOES_ON:
+            PyErr_CheckSignals()
+            with nogil:
+                state = descent_step(&self.state)
+            done += 1
+        return self.state.value, self.state.smallest, done
+
+
+def _padded(matrix):
+    """Return `matrix` in single precision with zeros up to whole panels of columns."""
+    width = -(-matrix.shape[1] // 32) * 32
+    result = np.zeros((matrix.shape[0], width), np.float32)
+    result[:, : matrix.shape[1]] = matrix
+    return result

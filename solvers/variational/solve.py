@@ -1,7 +1,8 @@
 """Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
 
 Each level starts from the minimum of the next coarser one, evaluated by splines (`solvers.coarse`). A start
-with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians.
+with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. The
+descent itself, preconditioned L-BFGS, is compiled.
 """
 
 from __future__ import annotations
@@ -19,22 +20,18 @@ from geometry.quality import count_folded, measure
 from solvers.coarse import evaluate, sweep_kinks, thinned
 from solvers.repair import repair
 from solvers.solution import Solution
+from solvers.tfi import tfi
 from solvers.variational._variational import energy, workspace
 from solvers.variational.functional import Weights, aspect_of
-from solvers.variational.minimise import minimise
-from solvers.variational.preconditioner import Preconditioner
+from solvers.variational.preconditioner import minimiser
 
-COARSEST = 33
+COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
 
-DIRECT = 257
-"""Nodes along a direction up to which every node is an unknown, unless a tolerance asks for it; larger grids
-are evaluated from a copy of this size, which measures as good and takes a tenth of the time."""
+STILL = 1e-4
+"""Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
 
-STILL = 3e-5
-"""Change of a coordinate, in the square root of the domain's area, at which the finest level stops."""
-
-LOOSER = 5.0
+LOOSER = 3.0
 """How much earlier the coarser levels stop."""
 
 MOST = 1000
@@ -45,6 +42,9 @@ UNFOLDED = 129
 
 WEAKER = 3
 """How often the edge length term may be made weaker, to a fourth each time."""
+
+REACH = 0.25
+"""Cells that a node moves at the most in a first iteration."""
 
 
 def solve(
@@ -60,9 +60,8 @@ def solve(
     Parameters
     ----------
     boundary : quad.
-    tol : stop when an iteration changes no coordinate by more than this part of the square root of the
-        domain's area; None is 3e-5, and on large grids evaluates the minimum over fewer nodes, which
-        measures as good. With less than 3e-5 every node is an unknown whatever their number.
+    tol : stop when iterations move no node by more than this part of √cells steps, its own cells' steps; that
+        is about this part of the domain's size. None is 1e-4.
     max_cycles : iterations on the finest level at the most.
     initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
         nodes are replaced.
@@ -103,27 +102,22 @@ def _nested(
     while max(levels[-1].ni, levels[-1].nj) > COARSEST:
         counts = (n // 2 + 1 if n > COARSEST else n for n in (levels[-1].ni, levels[-1].nj))
         levels.append(thinned(levels[-1], *counts))
-    finest = 0 if still < STILL else next(k for k, b in enumerate(levels) if max(b.ni, b.nj) <= DIRECT)
     last = len(levels) - 1
-    nodes, weights, iterations, valid = _coarsest(
-        levels[-1], weights, still, most if last == finest else MOST
-    )
-    for k in range(last - 1, finest - 1, -1):
+    nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most if last == 0 else MOST)
+    for k in range(last - 1, -1, -1):
         nodes = _evaluated(nodes, levels[k])
-        limits = (still, most) if k == finest else (LOOSER * still, MOST)
+        limits = (still, most) if k == 0 else (LOOSER * still, MOST)
         iterations, valid = descend(nodes, weights, *limits)
-    if finest > 0:
-        nodes = _evaluated(nodes, boundary)
-        valid = count_folded(nodes) == 0 or repair(nodes, periodic=False) == 0
     return nodes, weights, iterations, valid
 
 
 def _evaluated(nodes: Floats, boundary: Boundary) -> Floats:
-    """Return the grid `nodes` at the counts of `boundary`, smooth at lines that leave kinks."""
-    counts = nodes.shape[0], nodes.shape[1]
+    """Return the grid `nodes` at the counts of `boundary`; swept at lines that leave kinks if it folds."""
     plain = evaluate(nodes, boundary)
+    if count_folded(plain) == 0:
+        return plain
     swept = plain.copy(order="K")
-    sweep_kinks(swept, boundary, counts)
+    sweep_kinks(swept, boundary, (nodes.shape[0], nodes.shape[1]))
     return plain if count_folded(swept) else swept
 
 
@@ -137,7 +131,7 @@ def _coarsest(
     """
     from solvers.elliptic.solve import solve as winslow
 
-    start = winslow(boundary).grid.nodes
+    start = winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
     limits = [value + 1e-9 for value in _angles(start)]
     nodes = start.copy(order="K")
     iterations, valid = descend(nodes, weights, still, most)
@@ -173,30 +167,21 @@ def descend(nodes: Floats, weights: Weights, still: float, most: int) -> tuple[i
         return 0, count_folded(nodes) == 0
     z = np.moveaxis(nodes, -1, 0)
     cells, aspect = (ni - 1) * (nj - 1), aspect_of(nodes)
-    area = _area(nodes)
-    precondition = Preconditioner(ni, nj, area / cells, aspect, weights)
-    work = np.empty(workspace(ni, nj))
-    reach = 0.25 * np.sqrt(area / cells)
-    epsilon = 0.0
-
-    def functional(at: Floats, gradient: Floats) -> tuple[float, float]:
-        return energy(at, aspect, weights.shape, weights.smoothness, epsilon, gradient, work)
-
+    descent = minimiser(ni, nj, False, aspect, weights)
+    terms = aspect, weights.shape, weights.smoothness
     if count_folded(nodes) and repair(nodes, periodic=False):
         if max(ni, nj) > UNFOLDED:
             return 0, False
-        smallest = functional(z, np.empty_like(z))[1]
-        epsilon = max(0.05 * area / cells, -0.5 * smallest)
+        cell = _area(nodes) / cells
+        smallest = energy(z, *terms, 0.0, False, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
+        epsilon = max(0.05 * cell, -0.5 * smallest)
         for _ in range(25):
-            loose = 1e-3 * np.sqrt(area / cells)
-            if minimise(functional, precondition, z, still=loose, most=40, reach=reach).smallest > 0:
+            if descent.run(z, *terms, epsilon, 1e-3, REACH, 40)[1] > 0:
                 break
             epsilon *= 0.4
         else:
             return 0, False
-        epsilon = 0.0
-    done = minimise(functional, precondition, z, still=still * np.sqrt(area), most=most, reach=reach)
-    return done.iterations, True
+    return descent.run(z, *terms, 0.0, still * np.sqrt(cells), REACH, most)[2], True
 
 
 def _inside(boundary: Boundary, initial: Grid) -> Floats:

@@ -1,179 +1,18 @@
-/* The functional, with u and v the edges along xi and eta that meet at a cell's corner, g = |u|², h = |v|²,
-   J = u × v, χ = J (or (J + √(J² + ε²)) / 2 when regularised):
+/* Descent of the variational functional: L-BFGS with the preconditioner of spectral.h.
 
-       E = mean over corners [ (1-w) (a g + h/a) / (2χ) + w (g h / χ²)² ]
-         + β mean over edges [ ((ni-1) Δ_i log l)² + ((nj-1) Δ_j log l)² ]
+   Steps s and preconditioned changes z = P y of the gradient are the rows of one table, read once for the products
+   with the gradient and once for the new direction; the two-loop recursion runs on the small tables of the products
+   s·y and y·z. Rows are in single precision: they steer the descent, they are not its result.
 
-   The second mean is taken over the edges along xi and over those along eta, and both are added; Δ_i and Δ_j are
-   the differences to the next edge of the same family in either direction. One row of cells, or of edges, at a time:
-   first the forces of each into row buffers, which vectorises, then onto the nodes. */
+   Nocedal and Wright, Numerical Optimization (2006), algorithm 7.4; the form in products: Chen, Wang and Zhou,
+   NIPS 27 (2014). */
 #include "variational_kernel.h"
-#include "clones.h"
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
+#include "functional.h"
+#include "spectral.h"
 
-typedef struct {
-    double du_x, du_y, dv_x, dv_y, energy, jacobian;
-} Corner;
-
-typedef struct {
-    double along, across, angle, eps2; /* (1-w) a / 2, (1-w) / (2a) and w over the number of corners; ε² */
-} Factors;
-
-MESHONET_INLINE Corner corner(double ux, double uy, double vx, double vy, const Factors *f, int regular)
-{
-    Corner c;
-    const double g = ux * ux + uy * uy, h = vx * vx + vy * vy;
-    c.jacobian = ux * vy - uy * vx;
-    const double root = regular ? sqrt(c.jacobian * c.jacobian + f->eps2) : c.jacobian;
-    const double inverse = regular ? 2.0 / (c.jacobian + root) : 1.0 / c.jacobian;
-    const double chain = regular ? 0.5 * (1.0 + c.jacobian / root) : 1.0; /* dχ/dJ */
-    const double harmonic = (f->along * g + f->across * h) * inverse;
-    const double squares = inverse * inverse, ratio = g * h * squares, angle = f->angle * ratio * ratio;
-    const double by_angle = 2.0 * f->angle * ratio * squares;
-    const double by_g = 2.0 * (f->along * inverse + by_angle * h), by_h = 2.0 * (f->across * inverse + by_angle * g);
-    const double by_j = -(harmonic + 4.0 * angle) * inverse * chain;
-    c.energy = harmonic + angle;
-    c.du_x = by_g * ux + by_j * vy, c.du_y = by_g * uy - by_j * vx;
-    c.dv_x = by_h * vx - by_j * uy, c.dv_y = by_h * vy + by_j * ux;
-    return c;
-}
-
-/* Forces on the four edges of each cell of a row, in x and y, and its smallest Jacobian. */
-typedef struct {
-    double *sx, *sy, *nx, *ny, *wx, *wy, *ex, *ey, *least;
-} CellRow;
-
-MESHONET_INLINE double cell_row(const double *restrict xa, const double *restrict ya, const double *restrict xb,
-                                const double *restrict yb, ptrdiff_t cells, const Factors *factors, int regular,
-                                const CellRow *row)
-{
-    double *restrict sx = row->sx, *restrict sy = row->sy, *restrict nx = row->nx, *restrict ny = row->ny;
-    double *restrict wx = row->wx, *restrict wy = row->wy, *restrict ex = row->ex, *restrict ey = row->ey;
-    double *restrict least = row->least;
-    const Factors f = *factors;
-    double energy = 0.0;
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t j = 0; j < cells; j++) {
-        const double south_x = xb[j] - xa[j], south_y = yb[j] - ya[j];
-        const double north_x = xb[j + 1] - xa[j + 1], north_y = yb[j + 1] - ya[j + 1];
-        const double west_x = xa[j + 1] - xa[j], west_y = ya[j + 1] - ya[j];
-        const double east_x = xb[j + 1] - xb[j], east_y = yb[j + 1] - yb[j];
-        const Corner a = corner(south_x, south_y, west_x, west_y, &f, regular);
-        const Corner b = corner(south_x, south_y, east_x, east_y, &f, regular);
-        const Corner c = corner(north_x, north_y, east_x, east_y, &f, regular);
-        const Corner d = corner(north_x, north_y, west_x, west_y, &f, regular);
-        energy += (a.energy + b.energy) + (c.energy + d.energy);
-        const double south = a.jacobian < b.jacobian ? a.jacobian : b.jacobian;
-        const double north = c.jacobian < d.jacobian ? c.jacobian : d.jacobian;
-        least[j] = south < north ? south : north;
-        sx[j] = a.du_x + b.du_x, sy[j] = a.du_y + b.du_y;
-        nx[j] = c.du_x + d.du_x, ny[j] = c.du_y + d.du_y;
-        wx[j] = a.dv_x + d.dv_x, wy[j] = a.dv_y + d.dv_y;
-        ex[j] = b.dv_x + c.dv_x, ey[j] = b.dv_y + c.dv_y;
-    }
-    return energy;
-}
-
-/* An edge force pushes its end node and pulls its start node; one coordinate of one row of cells. */
-MESHONET_INLINE void scatter(const double *restrict s, const double *restrict n, const double *restrict w,
-                             const double *restrict e, double *restrict ga, double *restrict gb, ptrdiff_t cells)
-{
-    for (ptrdiff_t j = 0; j < cells; j++)
-        ga[j] -= s[j] + w[j], gb[j] += s[j] - e[j];
-    for (ptrdiff_t j = 0; j < cells; j++)
-        ga[j + 1] += w[j] - n[j], gb[j + 1] += n[j] + e[j];
-}
-
-/* Natural logarithm of a positive normal number, to 2 units of the last place, without a branch:
-   x = 2^k m with m in [√½, √2), log m = 2 artanh s, s = (m - 1) / (m + 1). */
-MESHONET_INLINE double logarithm(double x)
-{
-    uint64_t bits, power;
-    double m, k;
-    memcpy(&bits, &x, sizeof bits);
-    power = (bits - 0x3fe6a09e667f3bcdULL + 0x3ff0000000000000ULL) >> 52; /* k + 1023 */
-    bits -= (power << 52) - 0x3ff0000000000000ULL;
-    memcpy(&m, &bits, sizeof m);
-    power |= 0x4330000000000000ULL; /* 2^52 + k + 1023 as a double */
-    memcpy(&k, &power, sizeof k);
-    k -= 4503599627371519.0;
-    const double s = (m - 1.0) / (m + 1.0), q = s * s;
-    double tail = 1.0 / 19.0;
-    tail = tail * q + 1.0 / 17.0, tail = tail * q + 1.0 / 15.0, tail = tail * q + 1.0 / 13.0;
-    tail = tail * q + 1.0 / 11.0, tail = tail * q + 1.0 / 9.0, tail = tail * q + 1.0 / 7.0;
-    tail = tail * q + 1.0 / 5.0, tail = tail * q + 1.0 / 3.0;
-    return k * 0.69314718055994530942 + 2.0 * s * (1.0 + q * tail);
-}
-
-/* Half the logarithm of |edge|² and its inverse, for one row of edges; `next` is the offset of an edge's end. */
-MESHONET_INLINE void measure_row(const double *restrict x, const double *restrict y, ptrdiff_t next, ptrdiff_t n,
-                                 double *restrict length, double *restrict inverse)
-{
-    MESHONET_INDEPENDENT
-    for (ptrdiff_t j = 0; j < n; j++) {
-        const double dx = x[j + next] - x[j], dy = y[j + next] - y[j], square = dx * dx + dy * dy;
-        length[j] = 0.5 * logarithm(square);
-        inverse[j] = 1.0 / square;
-    }
-}
-
-/* The edge length term of one family of edges: (rows, n) of them, the end of each `next` beyond its start.
-   `length` holds rows * n, `inverse` likewise, `force` n doubles. */
-MESHONET_INLINE double family(const double *x, const double *y, ptrdiff_t nj, ptrdiff_t rows, ptrdiff_t n,
-                              ptrdiff_t next, double across_i, double across_j, double *gx, double *gy,
-                              double *length, double *inverse, double *restrict force)
-{
-    double energy = 0.0;
-    for (ptrdiff_t i = 0; i < rows; i++)
-        measure_row(x + i * nj, y + i * nj, next, n, length + i * n, inverse + i * n);
-    for (ptrdiff_t i = 0; i < rows; i++) {
-        const double *restrict l = length + i * n, *restrict inv = inverse + i * n;
-        const double *restrict west = i > 0 ? l - n : l, *restrict east = i < rows - 1 ? l + n : l;
-        double sum_i = 0.0, sum_j = 0.0;
-        MESHONET_INDEPENDENT
-        for (ptrdiff_t j = 0; j < n; j++) {
-            const double d = east[j] - l[j];
-            sum_i += d * d;
-            force[j] = 2.0 * across_i * ((l[j] - west[j]) - d);
-        }
-        MESHONET_INDEPENDENT
-        for (ptrdiff_t j = 0; j < n - 1; j++) {
-            const double d = l[j + 1] - l[j];
-            sum_j += d * d;
-        }
-        MESHONET_INDEPENDENT
-        for (ptrdiff_t j = 1; j < n - 1; j++)
-            force[j] += 2.0 * across_j * (2.0 * l[j] - l[j - 1] - l[j + 1]);
-        if (n > 1) {
-            force[0] -= 2.0 * across_j * (l[1] - l[0]);
-            force[n - 1] += 2.0 * across_j * (l[n - 1] - l[n - 2]);
-        }
-        energy += across_i * sum_i + across_j * sum_j;
-        const double *restrict xi = x + i * nj, *restrict yi = y + i * nj;
-        double *restrict gxi = gx + i * nj, *restrict gyi = gy + i * nj;
-        MESHONET_INDEPENDENT
-        for (ptrdiff_t j = 0; j < n; j++) {
-            force[j] *= inv[j];
-            gxi[j] -= force[j] * (xi[j + next] - xi[j]);
-            gyi[j] -= force[j] * (yi[j + next] - yi[j]);
-        }
-        for (ptrdiff_t j = 0; j < n; j++) {
-            gxi[j + next] += force[j] * (xi[j + next] - xi[j]);
-            gyi[j + next] += force[j] * (yi[j + next] - yi[j]);
-        }
-    }
-    return energy;
-}
-
-static void clear_rim(double *g, ptrdiff_t ni, ptrdiff_t nj)
-{
-    memset(g, 0, (size_t)nj * sizeof(double));
-    memset(g + (ni - 1) * nj, 0, (size_t)nj * sizeof(double));
-    for (ptrdiff_t i = 0; i < ni; i++)
-        g[i * nj] = g[i * nj + nj - 1] = 0.0;
-}
+#define TRIES 25   /* lengths of a step that are tried */
+#define IDLE 3     /* small changes in a row that count as standing still; one may come from a short step */
+#define CHUNK 2048 /* values of every row of the table that are read together */
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj)
 {
@@ -182,10 +21,13 @@ size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj)
 
 MESHONET_CLONES
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
-                          double epsilon, double *gx, double *gy, double *smallest, double *work)
+                          double *gx, double *gy, double *smallest, double *work)
 {
-    const double corners = 4.0 * (double)(ni - 1) * (double)(nj - 1), rest = (1.0 - weights->shape) / (2.0 * corners);
-    const Factors f = {rest * weights->aspect, rest / weights->aspect, weights->shape / corners, epsilon * epsilon};
+    const double cells = (double)(ni - 1) * (double)(nj - 1), eps = weights->epsilon;
+    const double one = 1.0 / (12.0 * cells), two = 8.0 * one, rest = 0.5 * (1.0 - weights->shape);
+    const double along = rest * weights->aspect, across = rest / weights->aspect;
+    const Factors at_corner = {one * along, one * across, one * weights->shape, eps * eps};
+    const Factors at_centre = {two * along, two * across, two * weights->shape, 16.0 * eps * eps};
     double *rows = work + 2 * ni * nj;
     const CellRow r = {rows,          rows + nj,     rows + 2 * nj, rows + 3 * nj, rows + 4 * nj,
                        rows + 5 * nj, rows + 6 * nj, rows + 7 * nj, rows + 8 * nj};
@@ -194,26 +36,290 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
     memset(gy, 0, (size_t)(ni * nj) * sizeof(double));
     for (ptrdiff_t i = 0; i < ni - 1; i++) {
         const double *xa = x + i * nj, *ya = y + i * nj;
-        if (epsilon > 0.0)
-            energy += cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &f, 1, &r);
+        if (eps > 0.0)
+            energy += cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 1, &r);
         else
-            energy += cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &f, 0, &r);
+            energy += cell_row(xa, ya, xa + nj, ya + nj, nj - 1, &at_corner, &at_centre, 0, &r);
         for (ptrdiff_t j = 0; j < nj - 1; j++)
             low = r.least[j] < low ? r.least[j] : low;
         scatter(r.sx, r.nx, r.wx, r.ex, gx + i * nj, gx + (i + 1) * nj, nj - 1);
         scatter(r.sy, r.ny, r.wy, r.ey, gy + i * nj, gy + (i + 1) * nj, nj - 1);
     }
     *smallest = low;
-    if (!(epsilon > 0.0) && !(low > 0.0))
+    if (!(eps > 0.0) && !(low > 0.0))
         return INFINITY;
     if (weights->smoothness > 0.0) {
-        const double ci = (double)((ni - 1) * (ni - 1)), cj = (double)((nj - 1) * (nj - 1));
-        const double xi = weights->smoothness / (double)((ni - 1) * nj), eta = weights->smoothness / (double)(ni * (nj - 1));
+        const double by_i = weights->smoothness / cells * (double)((ni - 1) * (ni - 1));
+        const double by_j = weights->smoothness / cells * (double)((nj - 1) * (nj - 1));
         double *length = work, *inverse = work + ni * nj;
-        energy += family(x, y, nj, ni - 1, nj, nj, xi * ci, xi * cj, gx, gy, length, inverse, rows);
-        energy += family(x, y, nj, ni, nj - 1, 1, eta * ci, eta * cj, gx, gy, length, inverse, rows);
+        const int p = weights->periodic;
+        energy += family(x, y, nj, ni - 1, nj, nj, p, by_i, by_j, gx, gy, length, inverse, rows);
+        energy += family(x, y, nj, ni, nj - 1, 1, p, by_i, by_j, gx, gy, length, inverse, rows);
     }
-    clear_rim(gx, ni, nj);
-    clear_rim(gy, ni, nj);
+    clear_rim(gx, ni, nj, weights->periodic);
+    clear_rim(gy, ni, nj, weights->periodic);
     return isfinite(energy) ? energy : INFINITY;
+}
+
+void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
+{
+    const Spectrum *s = &d->spectrum;
+    const size_t free_nodes = (size_t)(s->mi * s->mj), widest = (size_t)padded(s->mj > s->kj ? s->mj : s->kj);
+    const size_t tallest = (size_t)(s->mi > s->ki ? s->mi : s->ki), deepest = (size_t)(s->mi + s->mj + PANEL);
+    *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj) + 4 * free_nodes;
+    *floats = (8 + 4 * PAIRS) * free_nodes + 6 * tallest * widest + PANEL * deepest;
+}
+
+void descent_place(Descent *d, double *doubles, float *floats)
+{
+    const ptrdiff_t nodes = d->ni * d->nj, n = 2 * d->spectrum.mi * d->spectrum.mj;
+    d->full = doubles, d->work = d->full + 4 * nodes;
+    d->gradient = d->work + variational_workspace(d->ni, d->nj), d->fresh = d->gradient + n;
+    d->frame = floats, d->direction = d->frame + n, d->steepest = d->direction + n, d->turned = d->steepest + n;
+    d->table = d->turned + n, d->transform = d->table + 2 * PAIRS * n;
+}
+
+/* Value at the planes `at`, and the gradient of the free nodes in `gradient`. */
+static double evaluate(Descent *d, const double *at, double *gradient, double *smallest)
+{
+    const ptrdiff_t nodes = d->ni * d->nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
+    double *g = d->full + 2 * nodes;
+    const double value =
+        variational_energy(at, at + nodes, d->ni, d->nj, &d->weights, g, g + nodes, smallest, d->work);
+    for (int c = 0; c < 2; c++)
+        for (ptrdiff_t i = 0; i < mi; i++)
+            memcpy(gradient + (c * mi + i) * mj, g + c * nodes + (d->first + i) * d->nj + 1, (size_t)mj * sizeof *g);
+    return value;
+}
+
+/* result = P gradient; return the largest part of it in local cell sizes. */
+MESHONET_CLONES
+void descent_precondition(Descent *d, const double *restrict gradient, float *restrict result)
+{
+    const ptrdiff_t mi = d->spectrum.mi, mj = d->spectrum.mj, n = mi * mj, row = padded(mj);
+    const float *restrict fx = d->frame, *restrict fy = d->frame + n;
+    float *restrict w = d->transform, *spare = w + 2 * mi * row;
+    const ptrdiff_t tallest = mi > d->spectrum.ki ? mi : d->spectrum.ki;
+    const ptrdiff_t widest = padded(mj > d->spectrum.kj ? mj : d->spectrum.kj);
+    for (ptrdiff_t i = 0; i < mi; i++) {
+        float *restrict wx = w + i * row, *restrict wy = w + (mi + i) * row;
+        const ptrdiff_t k = i * mj;
+        for (ptrdiff_t j = 0; j < mj; j++) {
+            const float gx = (float)gradient[k + j], gy = (float)gradient[n + k + j];
+            wx[j] = fx[k + j] * gx + fy[k + j] * gy, wy[j] = fx[k + j] * gy - fy[k + j] * gx;
+        }
+        for (ptrdiff_t j = mj; j < row; j++)
+            wx[j] = wy[j] = 0.0f;
+    }
+    divide(&d->spectrum, w, spare, w + 6 * tallest * widest);
+    for (ptrdiff_t i = 0; i < mi; i++) {
+        const float *restrict wx = w + i * row, *restrict wy = w + (mi + i) * row;
+        const ptrdiff_t k = i * mj;
+        for (ptrdiff_t j = 0; j < mj; j++) {
+            result[k + j] = fx[k + j] * wx[j] - fy[k + j] * wy[j];
+            result[n + k + j] = fx[k + j] * wy[j] + fy[k + j] * wx[j];
+        }
+    }
+}
+
+/* The step along xi at each free node, from both directions: (p + q) / 2 with p = √a x_ξ and q = -i x_η / √a by centred
+   differences, or the longer of the two where they oppose each other, in folded places. */
+static void set_frame(Descent *d)
+{
+    const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj, n = mi * mj;
+    const double *x = d->z, *y = d->z + nodes;
+    const double along = 0.5 * sqrt(d->weights.aspect), across = 0.5 / sqrt(d->weights.aspect);
+    for (ptrdiff_t i = 0; i < mi; i++) {
+        const ptrdiff_t at = d->first + i, west = at > 0 ? at - 1 : d->ni - 2;
+        for (ptrdiff_t j = 1; j <= mj; j++) {
+            const ptrdiff_t k = at * nj + j, w = west * nj + j, e = (at + 1) * nj + j;
+            const double px = along * (x[e] - x[w]), py = along * (y[e] - y[w]);
+            const double qx = across * (y[k + 1] - y[k - 1]), qy = -across * (x[k + 1] - x[k - 1]);
+            const double p = px * px + py * py, q = qx * qx + qy * qy;
+            double cx = 0.5 * (px + qx), cy = 0.5 * (py + qy);
+            if (cx * cx + cy * cy < 0.05 * (p + q))
+                cx = p > q ? px : qx, cy = p > q ? py : qy;
+            d->frame[i * mj + j - 1] = (float)cx, d->frame[n + i * mj + j - 1] = (float)cy;
+        }
+    }
+}
+
+void descent_start(Descent *d)
+{
+    set_frame(d);
+    d->count = d->idle = 0;
+    d->value = evaluate(d, d->z, d->gradient, &d->smallest);
+    descent_precondition(d, d->gradient, d->steepest);
+}
+
+/* Products of every row of the table (2 count, n) with v. */
+MESHONET_CLONES
+void descent_products(const float *table, int rows, const double *v, ptrdiff_t n, double *products)
+{
+    for (int r = 0; r < rows; r++)
+        products[r] = 0.0;
+    for (ptrdiff_t start = 0; start < n; start += CHUNK) {
+        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
+        for (int r = 0; r < rows; r++) {
+            const float *restrict row = table + r * n;
+            double sum = 0.0;
+            for (ptrdiff_t k = start; k < stop; k++)
+                sum += (double)row[k] * v[k];
+            products[r] += sum;
+        }
+    }
+}
+
+/* direction = Σ share[r] row r - scale steepest. */
+MESHONET_CLONES
+void descent_combine(const float *table, int rows, const float *share, const float *restrict steepest, float scale,
+                     ptrdiff_t n, float *restrict direction)
+{
+    for (ptrdiff_t start = 0; start < n; start += CHUNK) {
+        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
+        for (ptrdiff_t k = start; k < stop; k++)
+            direction[k] = -scale * steepest[k];
+        for (int r = 0; r < rows; r++) {
+            const float *restrict row = table + r * n, factor = share[r];
+            for (ptrdiff_t k = start; k < stop; k++)
+                direction[k] += factor * row[k];
+        }
+    }
+}
+
+/* The direction -H g from the gradient and P g, and its slope. */
+static double choose_direction(Descent *d)
+{
+    const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
+    const int count = d->count, *order = d->order;
+    double products[2 * PAIRS], alpha[PAIRS], rest[PAIRS], scale = 1.0, slope;
+    float share[2 * PAIRS];
+    descent_products(d->table, 2 * count, d->gradient, n, products);
+    if (count > 0)
+        scale = d->sy[order[count - 1]][order[count - 1]] / d->yz[order[count - 1]][order[count - 1]];
+    for (int k = count - 1; k >= 0; k--) {
+        double sum = products[2 * order[k]];
+        for (int l = k + 1; l < count; l++)
+            sum -= d->sy[order[k]][order[l]] * alpha[l];
+        alpha[k] = sum / d->sy[order[k]][order[k]];
+    }
+    for (int k = 0; k < count; k++) {
+        double sum = products[2 * order[k] + 1];
+        for (int l = 0; l < count; l++)
+            sum -= d->yz[order[k]][order[l]] * alpha[l];
+        sum *= scale;
+        for (int l = 0; l < k; l++)
+            sum += rest[l] * d->sy[order[l]][order[k]];
+        rest[k] = alpha[k] - sum / d->sy[order[k]][order[k]];
+    }
+    for (int k = 0; k < count; k++)
+        share[2 * order[k]] = (float)-rest[k], share[2 * order[k] + 1] = (float)(scale * alpha[k]);
+    descent_combine(d->table, 2 * count, share, d->steepest, (float)scale, n, d->direction);
+    descent_products(d->direction, 1, d->gradient, n, &slope);
+    return slope;
+}
+
+/* The largest move of `direction`, in cells. */
+MESHONET_CLONES
+double descent_largest(const Descent *d)
+{
+    const ptrdiff_t n = d->spectrum.mi * d->spectrum.mj;
+    const float *restrict fx = d->frame, *restrict fy = d->frame + n;
+    const float *restrict dx = d->direction, *restrict dy = d->direction + n;
+    float most = 0.0f;
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const float move = (dx[k] * dx[k] + dy[k] * dy[k]) / (fx[k] * fx[k] + fy[k] * fy[k] + 1e-36f);
+        most = move > most ? move : most;
+    }
+    return sqrt((double)most);
+}
+
+/* Planes of z moved by `factor` directions. */
+static void move(const Descent *d, double factor, double *restrict to)
+{
+    const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
+    memcpy(to, d->z, 2 * (size_t)nodes * sizeof *to);
+    for (int c = 0; c < 2; c++) {
+        for (ptrdiff_t i = 0; i < mi; i++) {
+            const float *restrict step = d->direction + (c * mi + i) * mj;
+            double *restrict row = to + c * nodes + (d->first + i) * nj + 1;
+            for (ptrdiff_t j = 0; j < mj; j++)
+                row[j] += factor * (double)step[j];
+        }
+        if (d->weights.periodic)
+            memcpy(to + c * nodes + (d->ni - 1) * nj, to + c * nodes, (size_t)nj * sizeof *to);
+    }
+}
+
+/* The factor to the minimum of the parabola through both values and the slope, .1 to .5. */
+static double shorter(double rise, double slope)
+{
+    if (!isfinite(rise))
+        return 0.5;
+    const double factor = -0.5 * slope / (rise - slope);
+    return factor < 0.1 ? 0.1 : factor > 0.5 ? 0.5 : factor;
+}
+
+/* Add the step, the gradient's change y and P y, unless the functional bends down along the step. */
+static void remember(Descent *d, double factor)
+{
+    const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
+    double *restrict change = d->gradient, products[2 * PAIRS], steps = 0.0, changes = 0.0, curvature = 0.0;
+    const float *restrict step = d->direction;
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const double s = factor * (double)step[k];
+        change[k] = d->fresh[k] - change[k];
+        steps += s * s, changes += change[k] * change[k], curvature += s * change[k];
+    }
+    if (!(curvature > 1e-12 * sqrt(steps * changes)))
+        return;
+    int slot = d->count;
+    if (d->count == PAIRS) {
+        slot = d->order[0];
+        memmove(d->order, d->order + 1, (PAIRS - 1) * sizeof *d->order);
+        d->count--;
+    }
+    d->order[d->count++] = slot;
+    float *restrict s = d->table + 2 * slot * n, *restrict z = s + n;
+    for (ptrdiff_t k = 0; k < n; k++)
+        s[k] = (float)factor * step[k], z[k] = d->turned[k] - d->steepest[k];
+    descent_products(d->table, 2 * d->count, change, n, products);
+    for (int k = 0; k < d->count; k++) {
+        const int other = d->order[k];
+        d->sy[slot][other] = 0.0;
+        d->sy[other][slot] = products[2 * other];
+        d->yz[slot][other] = d->yz[other][slot] = products[2 * other + 1];
+    }
+}
+
+int descent_step(Descent *d)
+{
+    const ptrdiff_t nodes = d->ni * d->nj, n = 2 * d->spectrum.mi * d->spectrum.mj;
+    double slope = choose_direction(d);
+    if (!(slope < 0.0) && d->count > 0) {
+        d->count = 0;
+        slope = choose_direction(d);
+    }
+    if (!(slope < 0.0))
+        return STUCK;
+    const double largest = descent_largest(d);
+    double factor = d->count == 0 && largest > d->reach ? d->reach / largest : 1.0, value = 0.0, low = 0.0;
+    int tries = 0;
+    for (; tries < TRIES; tries++) {
+        move(d, factor, d->full);
+        value = evaluate(d, d->full, d->fresh, &low);
+        if (value <= d->value + 1e-4 * factor * slope)
+            break;
+        factor *= shorter(value - d->value, factor * slope);
+    }
+    if (tries == TRIES)
+        return STUCK;
+    memcpy(d->z, d->full, 2 * (size_t)nodes * sizeof *d->z);
+    d->value = value, d->smallest = low;
+    descent_precondition(d, d->fresh, d->turned);
+    remember(d, factor);
+    memcpy(d->gradient, d->fresh, (size_t)n * sizeof *d->gradient);
+    memcpy(d->steepest, d->turned, (size_t)n * sizeof *d->steepest);
+    d->idle = factor * largest < d->still ? d->idle + 1 : 0;
+    return d->idle == IDLE ? SETTLED : GOES_ON;
 }

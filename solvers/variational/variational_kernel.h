@@ -1,4 +1,4 @@
-/* The variational functional of a grid and its gradient; see variational_kernel.c. */
+/* The variational functional of a grid, its gradient, and a descent of it; see variational_kernel.c. */
 #ifndef MESHONET_VARIATIONAL_KERNEL_H
 #define MESHONET_VARIATIONAL_KERNEL_H
 #include <stddef.h>
@@ -7,13 +7,46 @@ typedef struct {
     double aspect;     /* a: reference ratio of eta steps to xi steps */
     double shape;      /* w: weight of the angle term against the harmonic one, 0 to 1 */
     double smoothness; /* β: weight of the edge length term */
+    double epsilon;    /* an area: Jacobians are regularised by it; with 0 the value of a folded grid is infinite */
+    int periodic;      /* the last row of nodes is the first, and its nodes are free */
 } Weights;
 
-/* Doubles of workspace for ni x nj nodes. */
+/* Transforms that make the Hessian of a uniform grid diagonal: q_i (mi, ki), q_j (mj, kj), both transposed too; rows
+   of q_j and of q_j_t are padded with zeros to whole panels of 32. scale (2, ki, kj), for moves along xi and eta; `rest` for modes beyond. */
+typedef struct {
+    ptrdiff_t mi, mj, ki, kj;
+    const float *q_i, *q_i_t, *q_j, *q_j_t, *scale;
+    float rest;
+} Spectrum;
+
+enum { GOES_ON, SETTLED, STUCK };
+#define PAIRS 8 /* steps that are remembered */
+
+/* A descent under way. The free nodes are those of rows `first` to `first` + mi - 1, columns 1 to mj. */
+typedef struct {
+    ptrdiff_t ni, nj, first;
+    Weights weights;
+    Spectrum spectrum;
+    double *z, *full, *work;        /* planes (2, ni, nj); room for two such; for the functional */
+    double *gradient, *fresh;       /* (2, mi, mj), as all below */
+    float *frame, *direction, *steepest, *turned, *table, *transform;
+    double sy[PAIRS][PAIRS], yz[PAIRS][PAIRS];
+    int order[PAIRS], count, idle;
+    double value, smallest, reach, still;
+} Descent;
+
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj);
 
 /* Return the functional of the nodes x, y (ni, nj); its gradient in gx, gy, zero on the rim; the smallest corner
-   Jacobian. With epsilon (an area) Jacobians are regularised; with 0 the value of a folded grid is infinite. */
+   Jacobian. */
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
-                          double epsilon, double *gx, double *gy, double *smallest, double *work);
+                          double *gx, double *gy, double *smallest, double *work);
+
+/* Doubles and floats that a descent needs, and their places in it. */
+void descent_sizes(const Descent *d, size_t *doubles, size_t *floats);
+void descent_place(Descent *d, double *doubles, float *floats);
+
+/* Frames, value and gradient at z; then one iteration at a time. */
+void descent_start(Descent *d);
+int descent_step(Descent *d);
 #endif

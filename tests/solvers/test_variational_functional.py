@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from random_quads import random_quad
-from solver_shapes import bump, wrench
+from solver_shapes import bump, hole, wrench
 
 from geometry.arrays import Floats
 from solvers.tfi import tfi
@@ -16,11 +16,14 @@ def planes(nodes: Floats) -> Floats:
     return np.ascontiguousarray(np.moveaxis(nodes, -1, 0))
 
 
-def call(nodes: Floats, weights: Weights, epsilon: float) -> tuple[float, float, Floats]:
+def call(
+    nodes: Floats, weights: Weights, epsilon: float, periodic: bool = False
+) -> tuple[float, float, Floats]:
     z = planes(nodes)
     gradient = np.empty_like(z)
     work = np.empty(workspace(*nodes.shape[:2]))
-    value, low = compiled(z, aspect_of(nodes), weights.shape, weights.smoothness, epsilon, gradient, work)
+    terms = aspect_of(nodes, periodic), weights.shape, weights.smoothness
+    value, low = compiled(z, *terms, epsilon, periodic, gradient, work)
     return value, low, gradient
 
 
@@ -47,6 +50,23 @@ def test_the_gradient_is_the_limit_of_differences(make, ni, nj, epsilon) -> None
         h = 1e-6
         ahead, behind = (energy(nodes + k * h * move, aspect, weights, epsilon) for k in (1, -1))
         assert (gradient * planes(move)).sum() == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)
+
+
+@pytest.mark.parametrize("epsilon", [0.0, 0.01])
+def test_around_a_body_the_cut_is_like_any_other_line(epsilon: float) -> None:
+    nodes = tfi(hole(25, 13)).nodes
+    weights, aspect = Weights(), aspect_of(nodes, periodic=True)
+    value, _, gradient = call(nodes, weights, epsilon, periodic=True)
+    assert value == pytest.approx(energy(nodes, aspect, weights, epsilon, periodic=True), rel=1e-13)
+    turned = np.concatenate([nodes[7:-1], nodes[:8]])
+    assert call(turned, weights, epsilon, periodic=True)[0] == pytest.approx(value, rel=1e-12)
+    move = np.zeros_like(nodes)
+    move[:-1, 1:-1] = np.random.default_rng(1).normal(size=(24, 11, 2))
+    both = move.copy()
+    both[-1] = move[0]
+    h = 1e-6
+    ahead, behind = (energy(nodes + k * h * both, aspect, weights, epsilon, periodic=True) for k in (1, -1))
+    assert (gradient * planes(move)).sum() == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)
 
 
 def test_the_gradient_is_zero_on_the_rim() -> None:
