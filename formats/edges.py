@@ -8,7 +8,7 @@ from geometry.arrays import TOPOLOGIES, Floats, Topology
 from geometry.boundary import Boundary, polygon_area
 from geometry.errors import InputError
 from geometry.grid import Grid
-from geometry.parts import Part
+from geometry.parts import c_parts, wake_nodes
 
 LARGEST = 1e150
 """Coordinates must be below this, so that areas and their sums are finite."""
@@ -95,25 +95,6 @@ def right_handed(nodes: Floats) -> Floats:
     """
     outline = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]])
     return nodes[::-1] if polygon_area(outline) < 0 else nodes
-
-
-def wake_nodes(south: Floats) -> int:
-    """Return how many nodes at the start of `south` (ni, 2) are met again, in reverse, at its end."""
-    half = south[: len(south) // 2]
-    differs = (half != south[::-1][: len(half)]).any(axis=1)
-    return int(np.argmax(differs)) if differs.any() else 0
-
-
-def c_parts(ni: int, nj: int, wake: int) -> tuple[Part, ...]:
-    """Return the named parts of a C grid whose wake has `wake` nodes."""
-    return (
-        Part("wake", "south", 0, wake - 1),
-        Part("wall", "south", wake - 1, ni - wake),
-        Part("wake", "south", ni - wake, ni - 1),
-        Part("farfield", "north", 0, ni - 1),
-        Part("farfield", "east", 0, nj - 1),
-        Part("farfield", "west", 0, nj - 1),
-    )
 
 
 def known_topology(text: str) -> Topology:

@@ -7,10 +7,9 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from formats.edges import wake_nodes
 from geometry.arrays import SIDES
 from geometry.grid import Grid
-from geometry.parts import Part
+from geometry.parts import Part, wake_nodes
 
 Role: TypeAlias = Literal["wall", "farfield", "inflow", "outflow", "symmetry", "other"]
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
+from geometry.closing import REACH, wedged_base
 from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.rounding import rounded_base
@@ -18,12 +19,17 @@ from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 from geometry.section import SHARP_GAP, Section, clean_section
 from geometry.simple import Crossing, find_crossing, find_crossings
 from geometry.topology import o_boundary
+from geometry.wake import C_EDGE, Wake, c_boundary, wake_axis, wake_cells
 from geometry.wall import Stations, wall_arcs
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
+
+
+_WIDEST_WEDGE = 50.0
+"""Largest angle in degrees between surfaces whose edge a C grid takes by itself."""
 
 
 class CrossingError(InputError):
@@ -153,24 +159,88 @@ class Airfoil:
         )
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return the O boundary: this wall within a circle around mid-chord, `far_field` chords in radius."""
-        if sampling.topology not in ("auto", "o"):
-            raise InputError(f"topology {sampling.topology} is not made from an airfoil", "use o")
+        """Return this wall in a far field: a circle (o), or half of one and a wake behind the body (c).
+
+        ``auto`` is ``o``, unless wall cells are to be thin and the edge is sharp, with surfaces at most
+        50 degrees apart (once it is as `Sampling.te` wants it).
+
+        Raises
+        ------
+        InputError
+            four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
+        """
+        if sampling.topology == "quad":
+            raise InputError("topology quad is not made from an airfoil", "use o or c")
         if sampling.corners is not None:
             raise InputError("an airfoil has no corners to choose", "leave --corners out")
         body = self.normalised() if sampling.normalise else self
-        body = body.rounded() if sampling.te == "round" else body
-        ni = sampling.ni or DEFAULT_NI
         try:
-            wall = body.wall(ni, sampling)
+            return body._around(sampling)
         except CrossingError:
-            body = body.moved_apart()
-            body = body.rounded() if sampling.te == "round" else body
-            wall = body.wall(ni, sampling)
+            return body.moved_apart()._around(sampling)
+
+    def wedged(self) -> Airfoil:
+        """Return the same airfoil with its blunt base closed by a wedge (`geometry.closing`)."""
+        if not self.blunt:
+            return self
+        first, _, last = self._arcs
+        step = 1e-3 * self.chord
+        a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
+        ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
+        return Airfoil(wedged_base(self.curve.points[1:], ways), self.name)
+
+    def _around(self, sampling: Sampling) -> Boundary:
+        topology, te = sampling.topology, sampling.te
+        if te == "auto":
+            te = "wedge" if topology == "c" else "exact"
+        body = self.rounded() if te == "round" else self.wedged() if te == "wedge" else self
+        if topology == "auto":
+            sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
+            topology = "c" if sampling.viscous and sharp else "o"
+        notes: tuple[str, ...] = ()
+        if te == "wedge" and self.blunt:
+            notes = (
+                f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide, is closed by a "
+                f"wedge {REACH * self.gap / self.chord:.3g} chords long",
+            )
+        if topology == "c":
+            return body._c_boundary(sampling, self, notes)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
-        radius = sampling.far_field * body.chord
-        nj = sampling.nj or DEFAULT_NJ
-        return o_boundary(wall, nj, centre, radius, body.curve, self.name, body.unit)
+        wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
+        radius, nj = sampling.far_field * body.chord, sampling.nj or DEFAULT_NJ
+        found = o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit)
+        return replace(found, notes=notes) if notes else found
+
+    def _c_boundary(self, sampling: Sampling, given: Airfoil, notes: tuple[str, ...]) -> Boundary:
+        """Return the C boundary around this body, which was `given` once, with its units."""
+        if self.blunt or self._round:
+            raise InputError(
+                "a C grid needs a sharp trailing edge", "close it with --te wedge, or use topology o"
+            )
+        chord, ni = given.chord, sampling.ni or DEFAULT_NI
+        length = (sampling.wake or sampling.far_field) * chord
+        step = (sampling.te_spacing or C_EDGE / ni) * chord
+        cells = wake_cells(ni, sampling.wake_nodes, step, length)
+        law = "curvature" if sampling.spacing == "auto" else sampling.spacing
+        te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
+        wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
+        axis = wake_axis(given.leading_edge, given.trailing_edge)
+        line = Wake.behind(wall, axis, chord, length)
+        first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
+        wake = line.nodes(first, cells)
+        centre = 0.5 * (given.leading_edge + given.trailing_edge)
+        return c_boundary(
+            wall,
+            sampling.nj or DEFAULT_NJ,
+            wake,
+            centre,
+            sampling.far_field * chord,
+            axis=axis,
+            curve=self.curve,
+            name=given.name,
+            chord=given.unit,
+            notes=notes,
+        )
 
 
 def _fitted(section: Section, places: Sequence[str]) -> Curve:

@@ -7,6 +7,7 @@
             |              |        the four corners a, b, c, d are shared bitwise.
        west ^              ^ east   o: south is the body, north the far field, both closed;
             |              |           west equals east and is only the starting cut.
+            |              |        c: south is wake, body, wake; the two wakes coincide bitwise.
             a ----->------ b
                 south (ni nodes)
 """
@@ -21,7 +22,7 @@ import numpy as np
 from geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
 from geometry.curves import Curve, resample_like
 from geometry.errors import InputError
-from geometry.parts import Part, check_parts, default_parts
+from geometry.parts import Part, check_parts, known_parts
 from geometry.sampling import Sampling
 
 
@@ -41,6 +42,7 @@ class Boundary:
     chord : the length that spacings are given in: the chord of an airfoil, the largest extent of another
         body. 0 stands for the distance of the first node of `south` from the one farthest from it.
     sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
+    notes : sentences a user should read, such as that an outline was changed.
 
     Raises
     ------
@@ -59,6 +61,7 @@ class Boundary:
     wall: Curve | None = None
     chord: float = 0.0
     sensors: Floats | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.topology not in TOPOLOGIES:
@@ -75,7 +78,9 @@ class Boundary:
             farthest = np.hypot(*(self.south - self.south[0]).T).max()
             object.__setattr__(self, "chord", float(farthest))
         self._check_corners()
-        object.__setattr__(self, "parts", tuple(self.parts) or default_parts(self.topology, self.ni, self.nj))
+        object.__setattr__(
+            self, "parts", tuple(self.parts) or known_parts(self.topology, self.south, self.nj)
+        )
         check_parts(self.parts, self.ni, self.nj)
         self._check_orientation()
 
@@ -122,6 +127,10 @@ class Boundary:
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
         if (ni, nj) == (self.ni, self.nj):
             return self
+        if self.topology == "c":
+            from geometry.wake import resampled
+
+            return resampled(self, ni, nj)
         periodic = self.topology == "o"
         edges: dict[str, Any] = {
             side: resample_like(getattr(self, side), n, closed=periodic and side in ("south", "north"))
@@ -151,13 +160,13 @@ class Boundary:
                     raise InputError(f"{side} of an O grid is not closed", "repeat its first node at the end")
 
     def _check_orientation(self) -> None:
-        if self.topology == "quad":
+        if self.topology != "o":
             if polygon_area(self.outline()) <= 0:
                 raise InputError(
                     "the outline south, east, north, west runs clockwise or has no area",
                     "swap south and north or reverse the edges",
                 )
-        elif self.topology == "o":
+        else:
             inner, outer = polygon_area(self.south[:-1]), polygon_area(self.north[:-1])
             if inner >= 0 or outer >= 0:
                 raise InputError("an O grid's edges must run clockwise", "reverse south and north")

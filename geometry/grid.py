@@ -26,7 +26,7 @@ import numpy as np
 
 from geometry.arrays import TOPOLOGIES, Floats, Topology, as_planar
 from geometry.errors import InputError
-from geometry.parts import Part, check_parts, default_parts
+from geometry.parts import Part, check_parts, known_parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +37,7 @@ class Grid:
     ----------
     nodes : (ni, nj, 2) float64, any unit of length, kept in planar layout (see `geometry.arrays`).
     topology : ``quad``, ``o`` or ``c``.
-    parts : named parts; empty means those of `geometry.parts.default_parts`.
+    parts : named parts; empty means those of `geometry.parts.known_parts`.
     name : what the input called this shape.
     provenance : how the grid was made: method, settings, version.
 
@@ -74,7 +74,9 @@ class Grid:
                 f"column ni-1 differs from column 0 at j={j}", "close the O grid or call it quad"
             )
         object.__setattr__(self, "nodes", nodes)
-        object.__setattr__(self, "parts", tuple(self.parts) or default_parts(self.topology, self.ni, self.nj))
+        object.__setattr__(
+            self, "parts", tuple(self.parts) or known_parts(self.topology, nodes[:, 0], self.nj)
+        )
         check_parts(self.parts, self.ni, self.nj)
 
     @property

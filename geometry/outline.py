@@ -95,8 +95,10 @@ class Outline:
             )
         if sampling.le_spacing or sampling.te_spacing:
             raise InputError("le_spacing and te_spacing need an airfoil", "leave them out", source=self.name)
-        if sampling.te != "exact":
+        if sampling.te != "auto":
             raise InputError("only an airfoil has a trailing edge", "leave --te out", source=self.name)
+        if sampling.wake or sampling.wake_nodes:
+            raise InputError("only an airfoil has a wake", "leave --wake out", source=self.name)
         if sampling.normalise:
             raise InputError("only an airfoil can be normalised", "leave --normalise out", source=self.name)
         topology = self.topology if sampling.topology == "auto" else sampling.topology

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from geometry.arrays import SIDES, Side, Topology
+import numpy as np
+
+from geometry.arrays import SIDES, Floats, Side, Topology
 from geometry.errors import InputError
 
 
@@ -25,8 +27,8 @@ class Part:
 def default_parts(topology: Topology, ni: int, nj: int) -> tuple[Part, ...]:
     """Return the parts that a grid of `topology` has when nobody named them.
 
-    ``quad`` has its four sides, ``o`` a wall and a far field (its west and east are the seam). A ``c``
-    grid is named by who made it, since only they know where the wake ends: here it is all wall.
+    ``quad`` has its four sides, ``o`` a wall and a far field (its west and east are the seam). Where the wake
+    of a ``c`` ends its nodes tell (`known_parts`): here it is all wall.
 
     Examples
     --------
@@ -40,6 +42,31 @@ def default_parts(topology: Topology, ni: int, nj: int) -> tuple[Part, ...]:
     if topology == "o":
         return parts
     return (*parts, Part("farfield", "east", 0, nj - 1), Part("farfield", "west", 0, nj - 1))
+
+
+def wake_nodes(south: Floats) -> int:
+    """Return how many nodes at the start of `south` (ni, 2) are met again, in reverse, at its end."""
+    half = south[: len(south) // 2]
+    differs = (half != south[::-1][: len(half)]).any(axis=1)
+    return int(np.argmax(differs)) if differs.any() else 0
+
+
+def c_parts(ni: int, nj: int, wake: int) -> tuple[Part, ...]:
+    """Return the named parts of a C grid whose wake has `wake` nodes."""
+    return (
+        Part("wake", "south", 0, wake - 1),
+        Part("wall", "south", wake - 1, ni - wake),
+        Part("wake", "south", ni - wake, ni - 1),
+        Part("farfield", "north", 0, ni - 1),
+        Part("farfield", "east", 0, nj - 1),
+        Part("farfield", "west", 0, nj - 1),
+    )
+
+
+def known_parts(topology: Topology, south: Floats, nj: int) -> tuple[Part, ...]:
+    """Return the parts of a grid whose south side is `south` (ni, 2) when nobody named them."""
+    wake = wake_nodes(south) if topology == "c" else 0
+    return c_parts(len(south), nj, wake) if wake > 1 else default_parts(topology, len(south), nj)
 
 
 def check_parts(parts: Iterable[Part], ni: int, nj: int) -> None:

@@ -14,7 +14,7 @@ from geometry.errors import InputError
 Spacing: TypeAlias = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 SPACINGS: tuple[Spacing, ...] = get_args(Spacing)
 
-TrailingEdge: TypeAlias = Literal["exact", "round"]
+TrailingEdge: TypeAlias = Literal["auto", "exact", "round", "wedge"]
 TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
 
 DEFAULT_NI = 200
@@ -36,7 +36,12 @@ class Sampling:
     le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
     far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent.
     corners : the points, counted from 0, that become the corners of a quad domain.
-    te : blunt trailing edges of airfoils as they are (``exact``) or with their corners rounded (``round``).
+    te : blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
+        closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
+        edge, and ``exact`` otherwise.
+    wake : length of a C boundary's wake in chords; None is as long as the far field is away.
+    wake_nodes : nodes of it, the trailing edge included; None leaves the number to `geometry.wake`.
+    viscous : the cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
     Raises
@@ -54,7 +59,10 @@ class Sampling:
     far_field: float = 15.0
     corners: tuple[int, int, int, int] | None = None
     normalise: bool = False
-    te: TrailingEdge = "exact"
+    te: TrailingEdge = "auto"
+    wake: float | None = None
+    wake_nodes: int | None = None
+    viscous: bool = False
 
     def __post_init__(self) -> None:
         for name, count in (("ni", self.ni), ("nj", self.nj)):
@@ -71,6 +79,10 @@ class Sampling:
             raise InputError(
                 f"the far field is at {self.far_field:g} chords", "use more than 1 and at most 1e6"
             )
+        if self.wake is not None and not 0.5 <= self.wake <= 1e6:
+            raise InputError(f"the wake is {self.wake:g} chords long", "use 0.5 to 1e6")
+        if self.wake_nodes is not None and not 3 <= self.wake_nodes <= MOST_NODES:
+            raise InputError(f"the wake has {self.wake_nodes} nodes", f"use 3 to {MOST_NODES}")
         if self.te not in TRAILING_EDGES:
             raise InputError(f"trailing edge {self.te!r} is not known", "use " + "/".join(TRAILING_EDGES))
         if self.corners is not None and len(set(self.corners)) != 4:

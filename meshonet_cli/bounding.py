@@ -30,12 +30,15 @@ class Sampled(Timed):
         edges = self.boundary
         parts = [part.name for part in edges.parts]
         facts = {"ni": edges.ni, "nj": edges.nj, "topology": edges.topology, "parts": parts}
-        return {**self.member_json(), **facts, "seconds": self.times_json()}
+        told = {"notes": list(edges.notes)} if edges.notes else {}
+        return {**self.member_json(), **facts, **told, "seconds": self.times_json()}
 
     def line(self) -> str:
         """Return it for people."""
         size = f"{self.boundary.ni} x {self.boundary.nj} nodes, {self.boundary.topology}"
-        return f"{self.item.label} -> {self.output}: {size}, {self.times()}"
+        return "\n  ".join(
+            [f"{self.item.label} -> {self.output}: {size}, {self.times()}", *self.boundary.notes]
+        )
 
     lines = line
 

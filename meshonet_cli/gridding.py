@@ -81,7 +81,7 @@ class Recipe:
             path=(*solution.path, *path),
             residual=solution.residual,
             cycles=solution.cycles,
-            notes=(*solution.notes, *told),
+            notes=(*boundary.notes, *solution.notes, *told),
         )
         report.seconds |= clock.seconds
         return grid.with_provenance(**provenance(), **self.facts), report

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
@@ -48,14 +48,6 @@ Growth = Annotated[
         "--growth", metavar="G", show_default=False,
         help="Largest ratio of neighbouring cells away from the wall, e.g. 1.15; without --res there are as "
         "many rows as it needs. [default: what the rows need]",
-    ),
-]
-TrailingEdge = Annotated[
-    Literal["exact", "round"],
-    typer.Option(
-        "--te", metavar="exact|round",
-        help="Blunt trailing edges as they are, or with their two corners rounded, which brings the angles "
-        "there from 45 to within 10 degrees of a right one.",
     ),
 ]
 # fmt: on

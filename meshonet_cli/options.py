@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from geometry.sampling import Sampling
 
 # the library's own choices, repeated here because its modules load numpy; a test holds them equal
-TopologyName = Literal["auto", "quad", "o"]
+TopologyName = Literal["auto", "quad", "o", "c"]
 SpacingName = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 
 # fmt: off
@@ -58,7 +58,9 @@ Resolution = Annotated[
 TopologyOption = Annotated[
     TopologyName,
     typer.Option(
-        "--topology", metavar="auto|quad|o", help="Kind of grid: four-sided (quad), or O around a body."
+        "--topology", metavar="auto|quad|o|c",
+        help="Kind of grid: four-sided (quad), O around a body, or C around an airfoil and its wake, NI "
+        "counting both sides of the wake. auto takes C when a first cell is given and the edge is sharp.",
     ),
 ]
 SpacingOption = Annotated[
@@ -83,6 +85,30 @@ TeSpacing = Annotated[
 ]
 FarField = Annotated[
     float, typer.Option("--far-field", metavar="R", help="Distance of the far field, in chords.")
+]
+Wake = Annotated[
+    float | None,
+    typer.Option(
+        "--wake", metavar="L", show_default=False,
+        help="Length of a C grid's wake, in chords. [default: as far as the far field]",
+    ),
+]
+WakeNodes = Annotated[
+    int | None,
+    typer.Option(
+        "--wake-nodes", metavar="N", show_default=False,
+        help="Nodes of a C grid's wake, the trailing edge included; its cells grow by one ratio from that "
+        "at the edge. [default: so many that they grow by about 13 %]",
+    ),
+]
+TrailingEdge = Annotated[
+    Literal["auto", "exact", "round", "wedge"],
+    typer.Option(
+        "--te", metavar="auto|exact|round|wedge",
+        help="Blunt trailing edges as they are (exact), with their two corners rounded (round), which brings "
+        "the angles there from 45 to within 10 degrees of a right one, or closed by a wedge three bases long "
+        "(wedge). auto is wedge for a C grid, and exact otherwise.",
+    ),
 ]
 Corners = Annotated[
     str,

@@ -11,4 +11,6 @@ def march(
     sweeps: int,
     rise: int,
     scratch: Floats,
+    ends: Floats | None = None,
+    widening: Floats | None = None,
 ) -> None: ...

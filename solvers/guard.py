@@ -66,7 +66,7 @@ def _ways(grid: Grid, boundary: Boundary) -> Iterator[tuple[tuple[str, ...], Flo
     repair(repaired, periodic)
     yield ("repair",), repaired
     starts: list[Stage] = [("tfi", partial(_interpolated, boundary))]
-    if grid.topology != "c" and grid.provenance.get("method") != "winslow":
+    if grid.provenance.get("method") != "winslow":
         starts.insert(0, ("winslow", partial(_solved, boundary, repaired)))
     for name, make in starts:
         try:

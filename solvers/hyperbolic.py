@@ -6,26 +6,28 @@
               ^                    |                                                     |
               +-- other distance --+<--------------- more dissipation ------------------+
 
-The equations stand in ``hyperbolic_kernel.c``. The far field is where the march ends, a circle but for the
-shape of the body; its area is that of the far field asked for.
+The equations stand in ``hyperbolic_kernel.c``. The far field is where the march ends, a circle or a C but for
+the shape of the body; its area is that of the far field asked for.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
-from geometry.boundary import Boundary, polygon_area
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
 from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
 from geometry.growth import cells_for_growth, growing_steps, growth_ratio
+from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from solvers._hyperbolic import march, scratch_size
 from solvers._redistribute import redistribute
+from solvers.front import Front
 from solvers.solution import Solution
 
 _FADE = 12.0
@@ -59,17 +61,24 @@ ATTEMPTS = (
     MarchSettings(2.0, 2.0, 40),
 )
 """Settings tried in turn while cells are folded."""
+OPEN_ATTEMPTS = (
+    MarchSettings(0.3, 0.5, 4),
+    MarchSettings(0.5, 0.5, 10),
+    MarchSettings(1.0, 0.5, 20),
+    MarchSettings(2.0, 2.0, 40),
+)
+"""The same for C grids, whose lines spread less."""
 
 
 def hyperbolic(
     boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False
 ) -> Solution:
-    """Return an O grid marched from the wall of `boundary`.
+    """Return an O or C grid marched from the wall of `boundary`.
 
     Parameters
     ----------
-    boundary : ``o``; its wall is met bitwise, its far field says how far to march, and its `nj` how many rows
-        to take.
+    boundary : ``o`` or ``c``; its south is met bitwise, its far field says how far to march, and its `nj` how
+        many rows to take. The ends of a C's rows move along its west and east, taken as straight.
     wall_spacing : distance of the first node from the wall in chords (`Boundary.chord`), met to 1e-8 of it.
     growth : the largest ratio of neighbouring cells from the wall outwards; None takes what the rows need.
     free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
@@ -83,17 +92,17 @@ def hyperbolic(
     Raises
     ------
     InputError
-        a topology other than ``o``; a spacing or growth out of range; rows that do not suffice.
+        a four-sided boundary; a spacing or growth out of range; rows that do not suffice.
     SolverError
         no attempt gave finite nodes.
     """
     begun = time.perf_counter()
     first = _first_cell(boundary, wall_spacing, growth)
-    inner, outer = _radius(boundary.south[:-1]), _radius(boundary.north[:-1])
-    cells = _rows(boundary.nj - 1, first, outer - inner, growth, free_rows)
+    front = Front(boundary)
+    cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows)
     best, least = None, 0
-    for settings in ATTEMPTS:
-        nodes = _marched(boundary.south, cells, first, outer, settings)
+    for settings in OPEN_ATTEMPTS if boundary.topology == "c" else ATTEMPTS:
+        nodes = _marched(front, cells, first, settings)
         if nodes is None:
             continue
         folded = count_folded(nodes)
@@ -109,10 +118,10 @@ def hyperbolic(
 def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -> float:
     """Return the height of the first cell in the unit of the boundary, once all is checked."""
     check_layers(wall_spacing, growth)
-    if boundary.topology != "o":
+    if boundary.topology == "quad":
         raise InputError(
             f"hyperbolic marching cannot make a {boundary.topology} grid",
-            "use it around a body (topology o), or another method without a wall spacing",
+            "use it around a body (topology o or c), or another method without a wall spacing",
         )
     return wall_spacing * boundary.chord
 
@@ -143,38 +152,32 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
     return cells
 
 
-def _marched(wall: Floats, cells: int, first: float, outer: float, settings: MarchSettings) -> Floats | None:
-    """Return nodes (ni, cells + 1, 2) whose far field is as large as a circle of radius `outer`, or None.
+def _marched(front: Front, cells: int, first: float, settings: MarchSettings) -> Floats | None:
+    """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
 
     Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
-    circle of the wall's area, and is corrected by marching again.
+    circle of the body's size, and is corrected by marching again.
     """
-    n = len(wall) - 1
+    start = front.start()
+    n = len(start)
     levels = np.empty((2, cells + 1, n))
-    levels[:, 0] = wall[:-1].T
+    levels[:, 0] = start.T
     scratch = np.empty(scratch_size(n))
     knobs = settings.dissipation, 1.0 + settings.theta, 0.16, settings.sweeps, round(0.75 * cells)
-    inner = _radius(wall[:-1])
-    distance = _distance_to_march(inner, outer, first, cells, knobs[1])
+    distance = _distance_to_march(front.inner, front.outer, first, cells, knobs[1])
     for _ in range(4):
         steps = growing_steps(first, distance, cells)
-        march(levels[0], levels[1], steps, *knobs, scratch)
-        reached = _radius(levels[:, -1].T)
+        march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
+        reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
-        if abs(reached / outer - 1.0) < _REACHED:
+        if abs(reached / front.outer - 1.0) < _REACHED:
             break
-        distance *= outer / reached
-    nodes = planar_nodes(n + 1, cells + 1)
-    nodes[:-1] = levels.T
-    _snap(nodes, first, steps)
-    nodes[-1] = nodes[0]
+        distance *= front.outer / reached
+    nodes = front.nodes(levels)
+    _snap(nodes, front.heights(first), steps)
+    front.close(nodes)
     return nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None
-
-
-def _radius(ring: Floats) -> float:
-    """Return the radius of the circle with the area of a closed polygon (n, 2)."""
-    return math.sqrt(abs(polygon_area(ring)) / math.pi)
 
 
 def _distance_to_march(inner: float, outer: float, first: float, cells: int, implicit: float) -> float:
@@ -193,8 +196,8 @@ def _distance_to_march(inner: float, outer: float, first: float, cells: int, imp
     return distance
 
 
-def _snap(nodes: Floats, first: float, steps: Floats) -> None:
-    """Make every first cell `first` high, moving nodes along their lines less and less away from the wall.
+def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
+    """Make first cells as high as `heights` (ni,), moving nodes along their lines, less away from the wall.
 
     The correction of row j fades like exp(-(j - 1)/m), slower than cells grow, so that rows keep their order.
     """
@@ -202,32 +205,34 @@ def _snap(nodes: Floats, first: float, steps: Floats) -> None:
     rate = math.log(steps[1] / steps[0]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(_FADE, 1.5 / max(rate, 1e-3)))
     if rows > 2:
-        redistribute(nodes[..., 0], nodes[..., 1], first, fade, np.empty(5 * rows))
+        redistribute(nodes[..., 0], nodes[..., 1], heights, fade, np.empty(5 * rows))
 
 
 def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:
-    edges = Boundary(
-        boundary.south,
-        nodes[:, -1],
-        nodes[0],
-        nodes[-1],
-        topology="o",
-        name=boundary.name,
-        wall=boundary.wall,
-        chord=boundary.chord,
+    parts = tuple(
+        replace(part, stop=nodes.shape[1] - 1) if part.side in ("west", "east") else part
+        for part in boundary.parts
     )
-    growth = growth_ratio(
-        first, float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).mean()), len(nodes[0]) - 1
+    edges = replace(
+        boundary, north=nodes[:, -1], west=nodes[0], east=nodes[-1], parts=parts, sensors=None, notes=()
     )
-    note = f"first cell {first:.6g} at every wall node, growing by {growth:.3f} a row on average"
-    heights = np.hypot(*(nodes[:, 1] - nodes[:, 0]).T)
-    if np.abs(heights / first - 1.0).max() > 1e-6:
-        note = f"first cells are {heights.min():.3g} to {heights.max():.3g} instead of {first:.6g}"
-    grid = Grid(nodes, "o", boundary.parts, boundary.name, {"method": "hyperbolic", "wall_spacing": first})
+    facts = {"method": "hyperbolic", "wall_spacing": first}
     return Solution(
-        grid,
+        Grid(nodes, boundary.topology, parts, boundary.name, facts),
         "hyperbolic",
         seconds={"grid": time.perf_counter() - begun},
-        notes=(note,),
+        notes=(_told(boundary, nodes, first),),
         boundary=edges,
     )
+
+
+def _told(boundary: Boundary, nodes: Floats, first: float) -> str:
+    """Return what there is to say of the rows from the wall outwards."""
+    behind = max(wake_nodes(boundary.south) - 1, 0) if boundary.topology == "c" else 0
+    wall = nodes[behind : len(nodes) - behind]
+    heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)
+    if np.abs(heights / first - 1.0).max() > 1e-6:
+        return f"first cells are {heights.min():.3g} to {heights.max():.3g} instead of {first:.6g}"
+    length = float(np.hypot(*np.diff(wall, axis=1).T).sum(axis=0).mean())
+    growth = growth_ratio(first, length, nodes.shape[1] - 1)
+    return f"first cell {first:.6g} at every wall node, growing by {growth:.3f} a row on average"

@@ -1,4 +1,4 @@
-/* Implicit hyperbolic marching from a closed wall, one level after another.
+/* Implicit hyperbolic marching, one level after another, from a closed wall or from wake, wall and wake.
 
    A new level r + dr solves, with the edges e- and e+ at a node, t the unit vector along their directions' sum,
    w their mean length, n = i t the normal (vectors as complex numbers), s the step and V = s w the cell's area,
@@ -8,7 +8,8 @@
    and dissipation that grows with the level, where lines converge and at concave nodes: Chan and Steger, Appl.
    Math. Comput. 51 (1992) 181. d_xi is the central, D2 the second difference; C is a symmetric 2x2 matrix
    without trace. The periodic block-tridiagonal system is solved by elimination without the last node, whose
-   equation then closes it. */
+   equation then closes it. Levels that do not close have ends that move along straight lines d:
+   dr = d (d . dr of the neighbour). */
 #include "hyperbolic_kernel.h"
 #include "clones.h"
 #include <math.h>
@@ -63,30 +64,39 @@ static March parts(double *scratch, ptrdiff_t n)
     return m;
 }
 
-MESHONET_INLINE void wrap(double *values, ptrdiff_t n)
+MESHONET_INLINE void wrap(double *values, ptrdiff_t n, int closed)
 {
-    values[-1] = values[n - 1], values[n] = values[0];
+    values[-1] = values[closed ? n - 1 : 0], values[n] = values[closed ? 0 : n - 1];
 }
 
-/* Unit edges, their lengths, and the smoothed areas of the cells between this level and the next. */
+/* Unit edges, their lengths, and the smoothed areas of the cells between this level and the next, whose step is
+   `widening` to the power of `part` longer. */
 MESHONET_INLINE void measure_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                   double step, const MarchSettings *settings)
+                                   double step, const double *widening, double part, int closed,
+                                   const MarchSettings *settings)
 {
     double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length;
     for (ptrdiff_t i = 0; i < n - 1; i++)
         ex[i] = x[i + 1] - x[i], ey[i] = y[i + 1] - y[i];
-    ex[n - 1] = x[0] - x[n - 1], ey[n - 1] = y[0] - y[n - 1];
+    if (closed)
+        ex[n - 1] = x[0] - x[n - 1], ey[n - 1] = y[0] - y[n - 1];
+    else
+        ex[n - 1] = x[n - 1] - x[n - 2], ey[n - 1] = y[n - 1] - y[n - 2];
     for (ptrdiff_t i = 0; i < n; i++) {
         length[i] = sqrt(ex[i] * ex[i] + ey[i] * ey[i]);
         ex[i] /= length[i], ey[i] /= length[i];
     }
-    wrap(ex, n), wrap(ey, n), wrap(length, n);
+    wrap(ex, n, closed), wrap(ey, n, closed), wrap(length, n, closed);
     double *from = m->volume, *to = m->smoothed;
     for (ptrdiff_t i = 0; i < n; i++)
         from[i] = 0.5 * step * (length[i] + length[i - 1]);
+    if (part > 0.0)
+        for (ptrdiff_t i = 0; i < n; i++)
+            if (widening[i] != 1.0)
+                from[i] *= pow(widening[i], part);
     const double keep = 1.0 - settings->volume, give = 0.5 * settings->volume;
     for (ptrdiff_t k = 0; k < settings->sweeps; k++) {
-        wrap(from, n);
+        wrap(from, n, closed);
         MESHONET_INDEPENDENT
         for (ptrdiff_t i = 0; i < n; i++)
             to[i] = keep * from[i] + give * (from[i - 1] + from[i + 1]);
@@ -125,8 +135,8 @@ MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double gro
     }
 }
 
-/* Solve for dr and add it to the level (x, y), giving (to_x, to_y). */
-MESHONET_INLINE void solve_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
+/* Solve for dr of a closed level and add it to (x, y), giving (to_x, to_y). */
+MESHONET_INLINE void solve_closed(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
                                  double *restrict to_x, double *restrict to_y)
 {
     const ptrdiff_t k = n - 1; /* the bordering node */
@@ -175,16 +185,52 @@ MESHONET_INLINE void solve_level(const March *m, const double *restrict x, const
     to_x[k] = x[k] + dx, to_y[k] = y[k] + dy;
 }
 
+/* The same for a level with two ends. */
+MESHONET_INLINE void solve_open(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
+                                const MarchEnds *ends, double *restrict to_x, double *restrict to_y)
+{
+    double *restrict bx = m->bx, *restrict by = m->by;
+    const double fx = ends->first_x, fy = ends->first_y, lx = ends->last_x, ly = ends->last_y;
+    Matrix next = {-fx * fx, -fx * fy, -fx * fy, -fy * fy};
+    double gx = 0, gy = 0;
+    m->next[0] = next, bx[0] = by[0] = 0;
+    for (ptrdiff_t i = 1; i < n - 1; i++) {
+        const double p = m->p[i], s = m->s[i], e = 2.0 * m->eps[i];
+        const Matrix below = {-p - e, -s, -s, p - e}, above = {p - e, s, s, -p - e};
+        const Matrix centre = {1.0 + 2.0 * e, 0, 0, 1.0 + 2.0 * e};
+        const Matrix over = inverse(difference(centre, product(below, next)));
+        const double rx = m->rx[i] - below.a * gx - below.b * gy, ry = m->ry[i] - below.c * gx - below.d * gy;
+        next = product(over, above);
+        gx = over.a * rx + over.b * ry, gy = over.c * rx + over.d * ry;
+        m->next[i] = next, bx[i] = gx, by[i] = gy;
+    }
+    /* d (d . dr) of the node before, which is g - next dr of the last one: along d that is one equation */
+    const double along = lx * gx + ly * gy;
+    const double share = lx * (next.a * lx + next.b * ly) + ly * (next.c * lx + next.d * ly);
+    gx = lx * along / (1.0 + share), gy = ly * along / (1.0 + share);
+    to_x[n - 1] = x[n - 1] + gx, to_y[n - 1] = y[n - 1] + gy;
+    for (ptrdiff_t i = n - 2; i >= 0; i--) {
+        next = m->next[i];
+        const double dx = bx[i] - (next.a * gx + next.b * gy), dy = by[i] - (next.c * gx + next.d * gy);
+        to_x[i] = x[i] + dx, to_y[i] = y[i] + dy;
+        gx = dx, gy = dy;
+    }
+}
+
 MESHONET_CLONES
-void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps,
-                      const MarchSettings *settings, double *scratch)
+void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
+                      const MarchEnds *ends, const MarchSettings *settings, double *scratch)
 {
     const March m = parts(scratch, n);
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
-        measure_level(&m, x, y, n, steps[level], settings);
+        const double part = ends ? 1.0 - (double)level / (0.8 * (double)levels) : 0.0;
+        measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL, settings);
         assemble(&m, n, level == 0, growth, settings);
-        solve_level(&m, x, y, n, x + n, y + n);
+        if (ends)
+            solve_open(&m, x, y, n, ends, x + n, y + n);
+        else
+            solve_closed(&m, x, y, n, x + n, y + n);
     }
 }

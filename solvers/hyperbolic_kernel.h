@@ -10,10 +10,16 @@ typedef struct {
     ptrdiff_t rise;     /* levels over which the dissipation grows */
 } MarchSettings;
 
+/* Ends of levels that do not close: each moves along a straight line as far as its neighbour does along it. */
+typedef struct {
+    double first_x, first_y, last_x, last_y; /* unit directions of the lines */
+} MarchEnds;
+
 /* Doubles of scratch that a march over n nodes a level needs. */
 size_t hyperbolic_scratch(ptrdiff_t n);
 
-/* March levels 1 .. levels of the planes x and y (levels + 1, n) from level 0; see hyperbolic_kernel.c. */
-void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps,
-                      const MarchSettings *settings, double *scratch);
+/* March levels 1 .. levels of the planes x and y (levels + 1, n) from level 0; see hyperbolic_kernel.c.
+   `widening` (n) multiplies the steps of the first levels, `ends` is NULL for closed levels. */
+void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
+                      const MarchEnds *ends, const MarchSettings *settings, double *scratch);
 #endif

@@ -3,6 +3,6 @@
 #include <stddef.h>
 
 /* Move the nodes of every line of the planes x and y (ni, nj) along it; see redistribute_kernel.c. */
-void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, double first, const double *fade,
+void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
                         double *scratch);
 #endif

@@ -44,8 +44,10 @@ def infer(
     reynolds: layer.Reynolds = None,
     chord_fraction: layer.ChordFraction = 0.5,
     growth: layer.Growth = None,
-    te: layer.TrailingEdge = "exact",
+    te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
+    wake: o.Wake = None,
+    wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
     allow_invalid: o.AllowInvalid = False,
@@ -71,6 +73,7 @@ def infer(
     unused = {"--model": model, "--polish": None if polish == "auto" else polish}
     marched = layer.marching("auto", layers, unused)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
+    lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths

@@ -61,7 +61,10 @@ def sample_boundary(
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
     te_spacing: o.TeSpacing = None,
+    te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
+    wake: o.Wake = None,
+    wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
     from_format: o.From = None,
@@ -77,7 +80,8 @@ def sample_boundary(
     from meshonet_cli.session import Session
 
     o.either(source, family)
-    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
+    lengths |= {"wake": wake, "wake_nodes": wake_nodes}
     sampling = o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths)
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     if family is not None:

@@ -74,8 +74,10 @@ def solve_pde(
     reynolds: layer.Reynolds = None,
     chord_fraction: layer.ChordFraction = 0.5,
     growth: layer.Growth = None,
-    te: layer.TrailingEdge = "exact",
+    te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
+    wake: o.Wake = None,
+    wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
     allow_invalid: o.AllowInvalid = False,
@@ -103,6 +105,7 @@ def solve_pde(
     marched = layer.marching(method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse})
     elliptic = {"auto": solve, "winslow": solve, "thomas-middlecoff": solve_thomas_middlecoff}
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
+    lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
     settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
     recipe = Recipe(
         o.sampling(

@@ -25,7 +25,10 @@ def tfi(
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
     te_spacing: o.TeSpacing = None,
+    te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
+    wake: o.Wake = None,
+    wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
     repair: Annotated[
@@ -49,7 +52,8 @@ def tfi(
     from meshonet_cli.gridding import Recipe, interpolated, make_grids
     from meshonet_cli.session import Session
 
-    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field}
+    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
+    lengths |= {"wake": wake, "wake_nodes": wake_nodes}
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
         partial(interpolated, blending=blending),

@@ -51,7 +51,7 @@ def solve(
 
     Parameters
     ----------
-    boundary : quad or o.
+    boundary : quad, o or c; the nodes of a C boundary's wake stay where they are.
     tol : stop when the residual is this fraction of that of the transfinite interpolation; None stops at
         discretisation level, when more cycles would change the grid by less than refining it would.
     max_cycles : cycles on the finest level at the most.
@@ -69,7 +69,7 @@ def solve(
     Raises
     ------
     InputError
-        a C boundary; `initial` of other node counts; `tol` or `max_cycles` not positive.
+        `initial` of other node counts; `tol` or `max_cycles` not positive.
     SolverError
         the iteration diverged from every start tried.
     """
@@ -189,8 +189,6 @@ def _at_discretisation_level(corrections: list[float]) -> bool:
 
 
 def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    if boundary.topology == "c":
-        raise InputError("a C boundary cannot be solved yet", "use topology quad or o")
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-8")
     if max_cycles < 1:

@@ -9,6 +9,7 @@ says so.
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -40,7 +41,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
 
     Parameters
     ----------
-    boundary : ``o`` goes to the operator, ``quad`` to the elliptic solver at discretisation level.
+    boundary : ``o`` goes to the operator, others to the elliptic solver at discretisation level.
     model : name of a shipped model or path to a ``.safetensors`` file; None takes the shipped one;
         ``base`` is the harmonic base with no network.
     polish : Picard steps after the network: a number, ``off`` for none, ``auto`` until they change nothing.
@@ -53,14 +54,16 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     Raises
     ------
     InputError
-        a model that does not exist or cannot be read; a C boundary.
+        a model that does not exist or cannot be read.
     """
     if boundary.topology != "o":
         from solvers.elliptic.solve import solve
 
         if model is not None:
             raise InputError(f"no shipped model makes {boundary.topology} grids", "leave --model out")
-        return solve(boundary)
+        found = solve(boundary)
+        note = f"no shipped model makes {boundary.topology} grids: made by the elliptic solver"
+        return replace(found, notes=(note, *found.notes))
     network = None if model == "base" else load_model(model)
     across()  # like the model, made once a process: neither is part of a grid's time
     begun = time.perf_counter()
@@ -131,8 +134,6 @@ def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple
 
 
 def _elliptic(boundary: Boundary, why: str, begun: float) -> Solution:
-    from dataclasses import replace
-
     from solvers.elliptic.solve import solve
 
     found = solve(boundary)

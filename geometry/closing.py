@@ -1,0 +1,40 @@
+"""Blunt trailing edges closed by a wedge behind them.
+
+::
+
+    upper surface ----.__          Both surfaces go on as cubics, leaving along their own directions, to a tip
+                     |   `--.._    `REACH` bases behind the middle of the base, where the mean of the two
+    base             |     __..--  directions points. The given points stay; those on the base are dropped.
+    lower surface ---+--``
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Floats
+
+REACH = 3.0
+"""Length of the wedge in widths of the base: the tip opens by about 19 degrees between parallel surfaces."""
+_POINTS = 9
+
+
+def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
+    """Return the ring (m, 2) of a blunt section, closed by a wedge; it starts at the tip.
+
+    Parameters
+    ----------
+    points : (n, 2) clockwise, from the lower corner of the base to the upper one.
+    tangents : unit directions (2,) in which the lower and the upper surface arrive at the base.
+    """
+    lower, upper = tangents
+    gap = float(np.hypot(*(points[0] - points[-1])))
+    along = lower + upper
+    tip = 0.5 * (points[0] + points[-1]) + REACH * gap * along / np.hypot(*along)
+    u = np.linspace(0.0, 1.0, _POINTS)[1:, None]
+    sides = []
+    for corner, leaving in ((points[0], lower), (points[-1], upper)):
+        way = tip - corner
+        bend = u * (1 - u) ** 2 * float(np.hypot(*way)) * leaving - u * u * (1 - u) * way
+        sides.append(corner + u * u * (3 - 2 * u) * way + bend)
+    return np.concatenate([[tip], sides[0][-2::-1], points, sides[1][:-1]])
