@@ -42,6 +42,23 @@ def test_far_field_is_in_chords(meshonet: Meshonet, command: str) -> None:
 
 
 @pytest.mark.parametrize("command", BOUNDARY_COMMANDS)
+def test_c_boundaries_have_the_wake_asked_for_and_tell_of_the_closed_edge(
+    meshonet: Meshonet, command: str
+) -> None:
+    words = ("--topology", "c", "--res", "120x20", "--wake", "9", "--wake-nodes", "31")
+    done = meshonet(command, SECTION, *words, "-o", "made.h5")
+    assert done.code == 0
+    assert "the outline is changed: its base" in done.err
+    with h5py.File("made.h5") as file:
+        south = np.array(file["south"][0])
+        assert file.attrs["topology"] == "c"
+    np.testing.assert_array_equal(south[:31], south[-31:][::-1])
+    assert south[0, 0] - south[30, 0] == pytest.approx(9.0, rel=1e-3)
+    assert meshonet(command, SECTION, *words, "--te", "exact", "-o", "none.h5").code == 2
+    assert not Path("none.h5").exists()
+
+
+@pytest.mark.parametrize("command", BOUNDARY_COMMANDS)
 def test_normalise_puts_the_chord_on_the_axis(meshonet: Meshonet, command: str) -> None:
     section = wall(meshonet, "sample-boundary", "naca:0012", "--res", "81x5") * 40 + [3, 5]
     Path("big.csv").write_text("\n".join(f"{x},{y}" for x, y in section))
