@@ -6,8 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from geometry.arrays import Floats
 from geometry.errors import InputError
 from geometry.grid import Grid
+
+NEAR = 0.1
+"""Part of the rows that counts as near the wall."""
 
 
 @dataclass(frozen=True)
@@ -18,14 +22,19 @@ class Difference:
     ----------
     max, mean : greatest and mean distance, in the grids' unit of length.
     at : node (i, j) of the greatest.
-    relative_l2 : root of the sum of squared distances over that of the other grid's coordinates, taken from
+    relative_l2 : root of the mean squared distance over that of the other grid's coordinates, taken from
         the mean of its nodes so that it does not depend on where the origin is.
+    near_wall : the same with the distances of the rows next to the wall only, the tenth of all rows from
+        j = 0 on.
+    boundary : greatest distance on the four sides.
     """
 
     max: float
     mean: float
     at: tuple[int, int]
     relative_l2: float
+    near_wall: float
+    boundary: float
 
 
 def compare(grid: Grid, other: Grid) -> Difference:
@@ -47,6 +56,19 @@ def compare(grid: Grid, other: Grid) -> Difference:
         raise InputError(counts, "compare grids of one size")
     away = np.hypot(grid.x - other.x, grid.y - other.y)
     i, j = np.unravel_index(int(away.argmax()), away.shape)
-    extent = np.hypot(other.x - other.x.mean(), other.y - other.y.mean())
-    relative = float(np.linalg.norm(away) / np.linalg.norm(extent))
-    return Difference(float(away.max()), float(away.mean()), (int(i), int(j)), relative)
+    spread = _root_mean_square(np.hypot(other.x - other.x.mean(), other.y - other.y.mean()))
+    extent = max(spread, float(np.finfo(float).tiny))  # all nodes in one place
+    rows = max(1, round(NEAR * grid.nj))
+    sides = (away[0], away[-1], away[:, 0], away[:, -1])
+    return Difference(
+        max=float(away.max()),
+        mean=float(away.mean()),
+        at=(int(i), int(j)),
+        relative_l2=_root_mean_square(away) / extent,
+        near_wall=_root_mean_square(away[:, :rows]) / extent,
+        boundary=max(float(side.max()) for side in sides),
+    )
+
+
+def _root_mean_square(values: Floats) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,8 +24,10 @@ from meshonet_cli.judging import (
     walls_table,
 )
 from meshonet_cli.member import Item
+from meshonet_cli.pairing import Pairing, Partners
 from meshonet_cli.report import Timed, figure, quality_json, quality_table
 from meshonet_cli.session import Session
+from meshonet_cli.summing import Total
 
 
 @dataclass
@@ -37,7 +39,7 @@ class Grade(Timed):
     worst: Sequence[BadCell]
     figures: Figures
     judgement: Judgement | None = None
-    difference: Difference | None = None
+    comparison: Comparison | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
@@ -54,8 +56,8 @@ class Grade(Timed):
         }
         if self.judgement:
             told |= judgement_json(self.figures, self.judgement)
-        if self.difference:
-            told["compare"] = vars(self.difference) | {"at": list(self.difference.at)}
+        if self.comparison:
+            told["compare"] = self.comparison.as_json()
         return told | {"seconds": self.times_json()}
 
     def lines(self) -> str:
@@ -69,13 +71,54 @@ class Grade(Timed):
         if self.judgement:
             rows.append(judgement_table(self.figures, self.judgement))
         rows += [f"folded at i={c.i}, j={c.j}: x={c.x:.6g}, y={c.y:.6g}" for c in self.worst]
-        if self.difference:
-            d = self.difference
-            rows.append(
-                f"distance to the other grid: max {figure(d.max)} at i={d.at[0]}, j={d.at[1]}, "
-                f"mean {figure(d.mean)}, relative L2 {figure(d.relative_l2)}"
-            )
+        if self.comparison:
+            rows.append(self.comparison.lines())
         return "\n".join(rows)
+
+    def figures_of_row(self) -> dict[str, float]:
+        """Return the figures that a summary of many grids shows."""
+        angle = self.quality["max_angle"]
+        row = {"folded": self.quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
+        return row | (self.comparison.figures() if self.comparison else {})
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How far a grid is from another one, and how its angles compare."""
+
+    difference: Difference
+    folded: int
+    max_angle_ratio: float
+    mean_angle_ratio: float
+
+    def figures(self) -> dict[str, float]:
+        """Return the figures by name."""
+        d = self.difference
+        return {
+            "relative_l2": d.relative_l2,
+            "near_wall": d.near_wall,
+            "max": d.max,
+            "boundary": d.boundary,
+            "folded_other": self.folded,
+            "max_angle_ratio": self.max_angle_ratio,
+            "mean_angle_ratio": self.mean_angle_ratio,
+        }
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        d = self.difference
+        return {"max": d.max, "mean": d.mean, "at": list(d.at), **self.figures()}
+
+    def lines(self) -> str:
+        """Return it for people."""
+        d = self.difference
+        return (
+            f"distance to the other grid: max {figure(d.max)} at i={d.at[0]}, j={d.at[1]}, "
+            f"mean {figure(d.mean)}, relative L2 {figure(d.relative_l2)}, "
+            f"near the wall {figure(d.near_wall)}, boundary {figure(d.boundary)}\n"
+            f"beside the other grid: {self.folded} folded there, max angle {self.max_angle_ratio:.4f} and "
+            f"mean angle {self.mean_angle_ratio:.4f} times as large"
+        )
 
 
 def grade_grids(
@@ -85,14 +128,18 @@ def grade_grids(
     *,
     fmt: str | None = None,
     other: str | None = None,
+    pairing: Pairing = "auto",
     profile: str | None = None,
+    summary: bool = False,
     outputs: Sequence[Destination] = (),
 ) -> int:
     """Measure every grid of `sources`, print what there is to tell and return the exit code.
 
     Parameters
     ----------
-    other : grid file to compare with: its one grid with each, or its grids one by one.
+    other : file of grids to compare with.
+    pairing : which of them goes with which, see `meshonet_cli.pairing`.
+    summary : print one table over all grids in place of one for each.
     profile : thresholds of `geometry.profiles` to judge by.
     outputs : figures and files of metrics to write of each grid.
     """
@@ -100,7 +147,8 @@ def grade_grids(
         destination.check_room(sources)
         if destination.text == "-":
             raise InputError("standard output has the table", "write to a file", source="-")
-    others = _partners(other) if other else None
+    others = Partners(read_grids(other), pairing) if other else None
+    rows: list[tuple[str, Mapping[str, float]]] = []
     for item in items(sources, lambda source: read_grids(source, fmt), session):
         with session.member(item.label, item.source):
             grade = _graded(item, profile, others)
@@ -109,13 +157,19 @@ def grade_grids(
                 with grade.timed("write"):
                     destination.write(destination.path(item), [item.what])
             grade.finished(None)
-            session.show(grade)
+            rows.append((item.label, grade.figures_of_row()))
+            if summary:
+                session.done += 1
+            else:
+                session.show(grade)
             session.gate(item.label, [told for gate in gates if (told := gate.broken(grade.quality))])
             session.gate(item.label, problems(grade.judgement) if grade.judgement else [])
+    if rows and summary:
+        session.conclude(Total(rows))
     return session.finish()
 
 
-def _graded(item: Item[Grid], profile: str | None, others: Iterator[Grid] | None) -> Grade:
+def _graded(item: Item[Grid], profile: str | None, others: Partners | None) -> Grade:
     begun = time.perf_counter()
     quality = measure(item.what, percentiles=True)
     worst = worst_cells(item.what.nodes) if quality.folded else []
@@ -124,21 +178,12 @@ def _graded(item: Item[Grid], profile: str | None, others: Iterator[Grid] | None
     grade.seconds["quality"] = time.perf_counter() - begun
     if others is not None:
         with grade.timed("compare"):
-            other = next(others, None)
-            if other is None:
-                raise InputError(
-                    "there is no grid to compare it with", "compare with one grid, or with as many"
-                )
-            grade.difference = compare(item.what, other)
+            grade.comparison = _compared(item.what, quality, others.of(item.what.name))
     return grade
 
 
-def _partners(text: str) -> Iterator[Grid]:
-    """Yield the grids of `text` one by one, or its only one again and again."""
-    found = read_grids(text)
-    grid, following = next(found), next(found, None)
-    yield grid
-    while following is None:
-        yield grid
-    yield following
-    yield from found
+def _compared(grid: Grid, quality: Quality, other: Grid) -> Comparison:
+    difference = compare(grid, other)
+    own, theirs = quality["max_angle"], measure(other)
+    angle = theirs["max_angle"]
+    return Comparison(difference, theirs.folded, own.max / angle.max, own.mean / angle.mean)

@@ -111,6 +111,13 @@ class Session:
         else:
             self.print(report.lines())
 
+    def conclude(self, total: Told) -> None:
+        """Print what is said of all members together: on standard output, even when quiet."""
+        if self.as_json:
+            self.result(total.as_json())
+        else:
+            self.print(total.lines())
+
     def note(self, text: str) -> None:
         """Tell what happened, unless quiet or speaking JSON."""
         if not (self.quiet or self.as_json):

@@ -12,6 +12,7 @@ EXAMPLES = (
     "meshonet quality grid.vts --profile openfoam",
     "meshonet quality grid.vts --per-cell metrics.vts",
     "meshonet quality grid.vts --compare other.vts",
+    "meshonet quality grids/*.vts --compare grid.vts --summary",
 )
 
 
@@ -37,8 +38,23 @@ def quality(
     ] = None,
     other: Annotated[
         str | None,
-        typer.Option("--compare", metavar="OTHER", show_default=False, help="Measure the distance to it."),
+        typer.Option(
+            "--compare", metavar="OTHER", show_default=False,
+            help="Reference grids of the same sizes: relative L2, near-wall, largest and boundary distance, "
+            "folds, ratios of angles.",
+        ),
     ] = None,
+    pair: Annotated[
+        Literal["auto", "name", "order"],
+        typer.Option(
+            "--pair", metavar="auto|name|order",
+            help="Which grid of OTHER goes with which: auto takes the only one for each, goes by names where "
+            "they are known, else by order.",
+        ),
+    ] = "auto",
+    summary: Annotated[
+        bool, typer.Option("--summary", help="One table (or JSON object) over all grids, a row each.")
+    ] = False,
     from_format: o.From = None,
     as_json: o.AsJson = False,
     quiet: o.Quiet = False,
@@ -55,6 +71,6 @@ def quality(
     outputs += [metrics_file(per_cell)] if per_cell else []
     return grade_grids(
         grid, session, parse_gates(fail_on),
-        fmt=from_format, other=other, profile=profile, outputs=outputs,
+        fmt=from_format, other=other, pairing=pair, profile=profile, summary=summary, outputs=outputs,
     )
 # fmt: on

@@ -128,6 +128,7 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
         (("--per-cell", "cells.h5"), "only a .vts file holds metrics; name it FILE.vts"),
         (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
+        (("--compare", "grid.vts", "--pair", "luck"), "'luck' is not one of 'auto', 'name', 'order'"),
         (("--profile", "gambit"), "'gambit' is not one of 'openfoam', 'pointwise', 'verdict', 'viscous'"),
         (("--plot", "-", "--json"), "standard output has the table; write to a file"),
     ],
@@ -150,6 +151,8 @@ def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> No
     told = meshonet("quality", "moved.vts", "--compare", grid_vts, "--json").only["compare"]
     assert told["max"] == pytest.approx(0.05)
     assert told["at"] == [3, 4]
+    assert (told["near_wall"], told["boundary"], told["folded_other"]) == (0, 0, 0)
+    assert told["max_angle_ratio"] > 1
     assert (
         "distance to the other grid: max 0.05 at i=3, j=4"
         in meshonet("quality", "moved.vts", "--compare", grid_vts).out
@@ -165,6 +168,51 @@ def test_compare_pairs_grids_one_by_one(meshonet: Meshonet, three_h5: Path, grid
     too_few = meshonet("quality", "three-grids.h5", grid_vts, "--compare", "three-grids.h5")
     assert too_few.code == 2
     assert "grid.vts: there is no grid to compare it with; compare with one" in too_few.err
+
+
+def test_pair_says_which_goes_with_which(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "one.h5")
+    meshonet("tfi", three_h5, "-o", "{name}.vts")
+    turned = ("quality", "high.vts", "flat.vts", "low.vts", "--compare", "one.h5", "--json")
+    assert [told["compare"]["max"] for told in meshonet(*turned).objects] == [0, 0, 0]
+    assert [told["compare"]["max"] for told in meshonet(*turned, "--pair", "name").objects] == [0, 0, 0]
+    by_order = meshonet(*turned, "--pair", "order").objects
+    assert all(told["compare"]["max"] > 0.01 for told in by_order)
+
+
+def test_summary_is_one_table_over_all(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "t.h5")
+    meshonet("solve-pde", three_h5, "-o", "s.h5")
+    words = ("quality", "t.h5", "--compare", "s.h5")
+    each = [told["compare"] for told in meshonet(*words, "--json").objects]
+    done = meshonet(*words, "--summary", "--json")
+    told = done.only["summary"]
+    assert told["members"] == 3
+    for figure in ("relative_l2", "near_wall", "max", "max_angle_ratio"):
+        values = [member[figure] for member in each]
+        assert told[figure]["median"] == pytest.approx(np.median(values), rel=1e-12)
+        assert told[figure]["mean"] == pytest.approx(np.mean(values), rel=1e-12)
+        assert (told[figure]["min"], told[figure]["max"]) == (min(values), max(values))
+    assert told["relative_l2"]["worst"] == "t.h5[high]"
+    assert (told["folded"]["sum"], told["folded_other"]["members"]) == (0, 0)
+    table = meshonet(*words, "--summary").out.splitlines()
+    assert [line.split("  ")[0] for line in table] == [
+        "grid", "t.h5[flat]", "t.h5[low]", "t.h5[high]", "median of 3", "mean of 3", "p90 of 3", "worst of 3",
+    ]  # fmt: skip
+    assert "rel L2" in table[0]
+    alone = meshonet("quality", "t.h5", "--summary").out
+    assert "max angle" in alone
+    assert "rel L2" not in alone
+
+
+def test_a_summary_leaves_out_what_failed_and_keeps_gates(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "t.h5")
+    done = meshonet("quality", "t.h5", "missing.vts", "--summary", "--fail-on", "max_angle>100")
+    assert done.code == 2
+    assert "worst of 3" in done.out
+    assert "gate not met: t.h5[high]" in done.err
+    nothing = meshonet("quality", "missing.vts", "--summary")
+    assert (nothing.code, nothing.out) == (2, "")
 
 
 def test_compare_refuses_other_sizes(meshonet: Meshonet, tmp_path: Path, grid_vts: Path) -> None:

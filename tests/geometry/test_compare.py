@@ -17,6 +17,7 @@ def lattice(ni: int, nj: int) -> np.ndarray:
 def test_a_grid_does_not_differ_from_itself() -> None:
     difference = compare(Grid(lattice(4, 5)), Grid(lattice(4, 5)))
     assert (difference.max, difference.mean, difference.relative_l2) == (0, 0, 0)
+    assert (difference.near_wall, difference.boundary) == (0, 0)
 
 
 def test_one_moved_node_is_found() -> None:
@@ -40,3 +41,23 @@ def test_the_relative_difference_does_not_depend_on_place_or_unit() -> None:
 def test_grids_of_other_sizes_are_refused() -> None:
     with pytest.raises(InputError, match="3x3 nodes are not comparable with 3x4; compare grids of one size"):
         compare(Grid(lattice(3, 3)), Grid(lattice(3, 4)))
+
+
+def test_near_the_wall_is_the_first_tenth_of_the_rows() -> None:
+    moved = lattice(5, 30)
+    moved[:, :3] += [0.3, 0.4]
+    difference = compare(Grid(moved), Grid(lattice(5, 30)))
+    spread = np.sqrt((np.arange(5.0).var()) + np.arange(30.0).var())
+    assert difference.near_wall == pytest.approx(0.5 / spread)
+    assert difference.relative_l2 == pytest.approx(0.5 / spread / np.sqrt(10))
+    further = lattice(5, 30)
+    further[:, 3:] += [0.3, 0.4]
+    assert compare(Grid(further), Grid(lattice(5, 30))).near_wall == 0
+    assert compare(Grid(lattice(5, 4) + 1), Grid(lattice(5, 4))).near_wall > 0  # one row at least
+
+
+@pytest.mark.parametrize(("node", "on_it"), [((0, 2), True), ((4, 1), True), ((2, 0), True), ((1, 1), False)])
+def test_the_boundary_has_a_distance_of_its_own(node: tuple[int, int], on_it: bool) -> None:
+    moved = lattice(5, 4)
+    moved[node] += [0.03, 0.04]
+    assert compare(Grid(moved), Grid(lattice(5, 4))).boundary == pytest.approx(0.05 if on_it else 0.0)

@@ -1,0 +1,56 @@
+"""Which grid of a reference set goes with which."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from geometry.grid import Grid
+from meshonet_cli.pairing import Partners
+
+SQUARE = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
+
+
+def grids(*names: str) -> Iterator[Grid]:
+    return (Grid(SQUARE + k, name=name) for k, name in enumerate(names))
+
+
+def places(partners: Partners, *names: str) -> list[int]:
+    return [int(partners.of(name).nodes[0, 0, 0]) for name in names]
+
+
+def test_the_only_grid_goes_with_each() -> None:
+    assert places(Partners(grids("a")), "x", "y", "a") == [0, 0, 0]
+
+
+def test_names_pair_in_any_order() -> None:
+    assert places(Partners(grids("a", "b", "c")), "c", "a", "b") == [2, 0, 1]
+    assert places(Partners(grids("a", "b", "c"), "name"), "b", "a") == [1, 0]
+
+
+def test_order_pairs_what_has_no_names_in_common() -> None:
+    assert places(Partners(grids("a", "b", "c")), "x", "b", "a") == [0, 1, 2]
+    assert places(Partners(grids("", "", "")), "x", "y") == [0, 1]
+    assert places(Partners(grids("same", "same")), "same", "same") == [0, 1]
+    assert places(Partners(grids("a", "b"), "order"), "b", "a") == [0, 1]
+
+
+def test_sets_in_the_same_order_are_not_kept() -> None:
+    partners = Partners(grids(*map(str, range(9))))
+    for k in range(9):
+        partners.of(str(k))
+        assert len(partners._passed) <= 1
+
+
+def test_who_has_no_partner_is_told_what_to_do() -> None:
+    with pytest.raises(
+        InputError, match="no grid to compare it with; compare with one that is called 'x', or use"
+    ):
+        Partners(grids("a"), "name").of("x")
+    partners = Partners(grids("", ""))
+    places(partners, "a", "b")
+    with pytest.raises(
+        InputError, match="no grid to compare it with; compare with one grid, or with as many"
+    ):
+        partners.of("c")
