@@ -75,7 +75,7 @@ train: $(VENV)/.developing
 	@mkdir -p train
 	test -f train/airfoils.h5 || \
 	  $(BIN)/meshonet sample-boundary --family procedural --count 6000 --seed 1 --res 257x5 -o train/airfoils.h5
-	$(BIN)/meshonet train train/airfoils.h5 -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume
+	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume
 	cp train/airfoil-o.safetensors $(MODEL)
 
 bench: $(VENV)/.developing

@@ -32,6 +32,7 @@ def boundary_of(grid: Grid) -> Boundary:
         topology=grid.topology,
         parts=grid.parts,
         name=grid.name,
+        origin=grid.origin,
     )
 
 

@@ -33,6 +33,7 @@ from geometry.arrays import SIDES, Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
+from geometry.origin import Origin
 from geometry.parts import Part
 
 if TYPE_CHECKING:
@@ -66,14 +67,7 @@ class Writer:
         self._count = 0
         self._first: tuple[int, int, str] | None = None
         if parameter_names:
-            self._data["parameters"] = self._file.create_dataset(
-                "parameters",
-                (0, len(parameter_names)),
-                "f8",
-                maxshape=(None, len(parameter_names)),
-                chunks=True,
-            )
-            self._data["parameters"].attrs["names"] = list(parameter_names)
+            self._name_parameters(parameter_names)
 
     def __enter__(self) -> Writer:
         return self
@@ -89,8 +83,8 @@ class Writer:
         Parameters
         ----------
         sample : a grid for a file of grids, else a boundary.
-        parameters : (p,) numbers that made it.
-        split : ``train``, ``test`` or nothing.
+        parameters : (p,) numbers that made it; None for those of its origin.
+        split : ``train``, ``test`` or nothing; that of its origin when empty.
         """
         shape = (sample.ni, sample.nj, sample.topology)
         if self._first is None:
@@ -106,6 +100,8 @@ class Writer:
         if isinstance(sample, Grid):
             arrays["nodes"] = sample.nodes
             self._provenance(sample.provenance)
+        if parameters is None and sample.origin.parameters:
+            parameters = self._parameters(sample.origin)
         if parameters is not None:
             arrays["parameters"] = parameters
         if isinstance(sample, Boundary) and sample.sensors is not None:
@@ -113,9 +109,21 @@ class Writer:
         for name, values in arrays.items():
             self._row(name, values)[self._count] = values
         self._text("names", sample.name)
-        self._text("split", split)
+        self._text("split", split or sample.origin.split)
         self._text("parts", json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.parts]))
         self._count += 1
+
+    def _parameters(self, origin: Origin) -> Floats:
+        """Return the numbers of a sample; the first one's names are those of the dataset."""
+        if "parameters" not in self._data and self._count == 0:
+            self._name_parameters([name for name, _ in origin.parameters])
+        return np.array([value for _, value in origin.parameters])
+
+    def _name_parameters(self, names: Sequence[str]) -> None:
+        shape = (0, len(names))
+        data = self._file.create_dataset("parameters", shape, "f8", maxshape=(None, len(names)), chunks=True)
+        data.attrs["names"] = list(names)
+        self._data["parameters"] = data
 
     def _row(self, name: str, values: Floats) -> h5py.Dataset:
         if name not in self._data:
@@ -169,13 +177,14 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 def read_shapes(source: Source) -> Iterator[Boundary]:
     """Yield the boundaries; of a grid dataset, the grids' outer edges as they were stored."""
     with checked(source) as data:
-        for k in range(data.count):
+        for k in data.kept(source.split):
             with data.place(k):
                 south, north, west, east = (
                     data.sample(side, k) for side in ("south", "north", "west", "east")
                 )
                 name = data.text("names", k)
-                yield Boundary(south, north, west, east, data.topology, _parts(data, k), name)
+                parts, origin = _parts(data, k), _origin(data, k)
+                yield Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -191,7 +200,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
             raise InputError(
                 "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
             )
-        for k in range(data.count):
+        for k in data.kept(source.split):
             with data.place(k):
                 facts = json.loads(data.text("provenance", k) or "{}")
                 if not isinstance(facts, dict):
@@ -202,6 +211,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
                     _parts(data, k),
                     data.text("names", k),
                     facts,
+                    _origin(data, k),
                 )
 
 
@@ -228,6 +238,15 @@ def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
             empty = False
     if empty:
         raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
+
+
+def _origin(data: Checked, k: int) -> Origin:
+    if "parameters" not in data:
+        return Origin(split=data.text("split", k))
+    row = data.sample("parameters", k)
+    names = data.parameter_names() or tuple(f"parameter {m}" for m in range(len(row)))
+    pairs = tuple((name, float(value)) for name, value in zip(names, row, strict=False))
+    return Origin(pairs, data.text("split", k))
 
 
 def _parts(data: Checked, k: int) -> tuple[Part, ...]:

@@ -68,6 +68,22 @@ class Checked:
     def __contains__(self, name: str) -> bool:
         return name in self._file
 
+    def kept(self, split: str) -> list[int]:
+        """Return the samples of a split, or all of them.
+
+        Raises
+        ------
+        InputError
+            the dataset has none of that split.
+        """
+        found = [k for k in range(self.count) if not split or self.text("split", k) == split]
+        if not found:
+            raise InputError(
+                f"no sample is marked {split!r}",
+                "split it when it is made: meshonet sample-boundary --family NAME --split interpolation",
+            )
+        return found
+
     def sample(self, name: str, k: int) -> Floats:
         """Return row `k` of a checked numeric dataset as float64."""
         return np.asarray(self._file[name][k], dtype=np.float64)

@@ -146,7 +146,7 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
         yield naca(text[len(_DESIGNATION) :])
         return
     source = open_source(text)
-    found = format_of(source, fmt)
+    found = _selectable(source, format_of(source, fmt))
     with _blamed(source):
         if found.read_shapes is not None:
             yield from found.read_shapes(source)
@@ -166,7 +166,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
         as `read_shapes`; also a file that holds boundaries only.
     """
     source = open_source(text)
-    found = format_of(source, fmt)
+    found = _selectable(source, format_of(source, fmt))
     with _blamed(source):
         if found.read_grids is not None:
             yield from found.read_grids(source)
@@ -194,6 +194,16 @@ class _blamed:  # noqa: N801  (a context manager; contextlib's form would swallo
         elif isinstance(error, (OSError, MemoryError)) and not isinstance(error, MeshonetError):
             told = getattr(error, "strerror", None) or str(error) or type(error).__name__
             raise InputError(f"cannot be read ({told})", "check the file", source=self.source.name) from error
+
+
+def _selectable(source: Source, found: Format) -> Format:
+    if source.split and found.name != "hdf5":
+        raise InputError(
+            f"{found.name} files do not say which samples are to {source.split}",
+            f"leave #{source.split} out",
+            source=source.name,
+        )
+    return found
 
 
 def _record(name: str, row: Row) -> Format:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import io
 import stat
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
 from geometry.errors import InputError
 
+SPLITS = ("train", "test")
 HEAD_BYTES = 65536
 """How much of a file a format sees when it is asked whether the file is one of its own."""
 
@@ -24,11 +25,13 @@ class Source:
     name : what to call it in messages, printable.
     path : a regular file.
     data : the bytes themselves, for standard input, pipes and tests.
+    split : the samples meant, ``train`` or ``test``, of a dataset that says which are; nothing for all.
     """
 
     name: str
     path: Path | None = None
     data: bytes | None = None
+    split: str = ""
 
     @property
     def stem(self) -> str:
@@ -69,6 +72,8 @@ class Source:
 def open_source(text: str) -> Source:
     """Return the source that a user named: a path, or ``-`` for standard input.
 
+    ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, unless there is a file of that name.
+
     Standard input and pipes are read to their end, since formats need to look back and forth.
 
     Raises
@@ -76,8 +81,9 @@ def open_source(text: str) -> Source:
     InputError
         no such file, a folder, a file that may not be read, nothing in it.
     """
+    text, kept = _selected(text)
     try:
-        source = _opened(text)
+        source = replace(_opened(text), split=kept)
     except FileNotFoundError:
         raise InputError("no such file", "check the path", source=printable(text)) from None
     except PermissionError:
@@ -101,6 +107,11 @@ def printable(text: str) -> str:
     a\x1b[31m.dat
     """
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def _selected(text: str) -> tuple[str, str]:
+    name, mark, kept = text.rpartition("#")
+    return (name, kept) if mark and name and kept in SPLITS and not Path(text).exists() else (text, "")
 
 
 def _opened(text: str) -> Source:

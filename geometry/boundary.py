@@ -22,6 +22,7 @@ import numpy as np
 from geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
 from geometry.curves import Curve, resample_like
 from geometry.errors import InputError
+from geometry.origin import UNKNOWN, Origin
 from geometry.parts import Part, check_parts, known_parts
 from geometry.sampling import Sampling
 
@@ -43,6 +44,7 @@ class Boundary:
         body. 0 stands for the distance of the first node of `south` from the one farthest from it.
     sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
     notes : sentences a user should read, such as that an outline was changed.
+    origin : the numbers that made it and what it is kept for, of a sample of a dataset.
 
     Raises
     ------
@@ -62,6 +64,7 @@ class Boundary:
     chord: float = 0.0
     sensors: Floats | None = None
     notes: tuple[str, ...] = ()
+    origin: Origin = UNKNOWN
 
     def __post_init__(self) -> None:
         if self.topology not in TOPOLOGIES:

@@ -26,6 +26,7 @@ import numpy as np
 
 from geometry.arrays import TOPOLOGIES, Floats, Topology, as_planar
 from geometry.errors import InputError
+from geometry.origin import UNKNOWN, Origin
 from geometry.parts import Part, check_parts, known_parts
 
 
@@ -40,6 +41,7 @@ class Grid:
     parts : named parts; empty means those of `geometry.parts.known_parts`.
     name : what the input called this shape.
     provenance : how the grid was made: method, settings, version.
+    origin : that of its boundary.
 
     Raises
     ------
@@ -52,6 +54,7 @@ class Grid:
     parts: tuple[Part, ...] = ()
     name: str = ""
     provenance: Mapping[str, Any] = field(default_factory=dict)
+    origin: Origin = UNKNOWN
 
     def __post_init__(self) -> None:
         nodes = np.asarray(self.nodes)

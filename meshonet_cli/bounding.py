@@ -71,18 +71,18 @@ def from_files(
 
 
 def from_family(
-    drawn: tuple[str, int, str | None, int], output: str, to_format: str | None, session: Session
+    drawn: tuple[str, int, str | None, int, str | None], output: str, to_format: str | None, session: Session
 ) -> tuple[Iterator[Item[Any]], Destination]:
     """Return members of a family and where they go.
 
     Parameters
     ----------
-    drawn : family, count, range and seed, as `meshonet_cli.drawn.draws` takes them.
+    drawn : family, count, range, seed and split, as `meshonet_cli.drawn.draws` takes them.
     """
-    from meshonet_cli.drawn import draws, family_file
+    from meshonet_cli.drawn import draws
 
     found = draws(*drawn, session)
-    destination = family_file(output, to_format, drawn[0])
+    destination = Destination(output, to_format, "boundaries")
     prepare([drawn[0]], destination, session)
     return found, destination
 

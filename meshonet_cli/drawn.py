@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, fields
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from formats.hdf5 import Writer
-from formats.registry import format_for_output
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.families.family import FAMILIES, Family, family
+from geometry.families.split import split
+from geometry.origin import Origin
 from geometry.sampling import Sampling
-from meshonet_cli.batch import Destination
 from meshonet_cli.member import Item
 from meshonet_cli.session import Session
 
@@ -24,13 +21,6 @@ NODES = 101
 """Nodes along xi and eta when nobody says, as in the paper."""
 
 PROCEDURAL = "procedural"
-
-
-@dataclass(frozen=True, eq=False)
-class FamilyBoundary(Boundary):
-    """A boundary that knows the parameter it was made with."""
-
-    parameter: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -42,6 +32,7 @@ class Draw:
     family : one of the paper's six, or None for random airfoils.
     low, high : range of the parameter.
     seed, index : make the random numbers of this member, whichever others are drawn.
+    split : what it is kept for.
     """
 
     family: Family | None
@@ -49,38 +40,45 @@ class Draw:
     high: float
     seed: int
     index: int
+    split: str = ""
 
     @property
     def name(self) -> str:
         """Family and number."""
         return f"{self.family.name if self.family else PROCEDURAL}-{self.index}"
 
+    @property
+    def parameter(self) -> float:
+        """Of the family's member."""
+        rng = np.random.default_rng([self.seed, self.index])
+        return self.low + (self.high - self.low) * float(rng.random())
+
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary with the node counts of `sampling`."""
-        rng = np.random.default_rng([self.seed, self.index])
         ni, nj = sampling.ni or NODES, sampling.nj or NODES
         if self.family is None:
             from geometry.families.procedural import boundary
 
-            return boundary(rng, ni, nj)
-        parameter = self.low + (self.high - self.low) * float(rng.random())
-        made = self.family.boundary(parameter, ni, nj)
-        given: dict[str, Any] = {field.name: getattr(made, field.name) for field in fields(made)}
-        return FamilyBoundary(**given, parameter=parameter)
+            return boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
+        origin = Origin((("parameter", self.parameter),), self.split)
+        return replace(self.family.boundary(self.parameter, ni, nj), origin=origin)
 
 
-def draws(name: str, count: int, spread: str | None, seed: int, session: Session) -> Iterator[Item[Draw]]:
+def draws(
+    name: str, count: int, spread: str | None, seed: int, way: str | None, session: Session
+) -> Iterator[Item[Draw]]:
     """Yield `count` members of the family `name`.
 
     Parameters
     ----------
     spread : ``A:B``, the range of the parameter, or None for that of the family.
     seed : of all random numbers.
+    way : how members are split into those to train on and those to test on, or None for neither.
 
     Raises
     ------
     InputError
-        no such family, a range that is none or leaves the family's, fewer than one member.
+        no such family, a range that is none or leaves the family's, members that cannot be split.
     """
     if name not in (*FAMILIES, PROCEDURAL):
         known = "use one of " + ", ".join((*FAMILIES, PROCEDURAL))
@@ -88,27 +86,27 @@ def draws(name: str, count: int, spread: str | None, seed: int, session: Session
     kind = None if name == PROCEDURAL else family(name)
     low, high = _range(spread, kind)
     session.batch = count > 1
+    every = [Draw(kind, low, high, seed, index) for index in range(count)]
+    kept = _kept(every, kind, way, seed)
 
     def members() -> Iterator[Item[Draw]]:
-        for index in range(count):
+        for draw, use in zip(every, kept, strict=True):
             session.begin(name, count if count > 1 else None)
-            yield Item(index, name, Draw(kind, low, high, seed, index), 0.0, count == 1)
+            yield Item(draw.index, name, replace(draw, split=use), 0.0, count == 1)
 
     return members()
 
 
-def family_file(output: str, to_format: str | None, name: str) -> Destination:
-    """Return the destination of a family's boundaries, with their parameters where the format holds them."""
-    found = format_for_output(output, to_format, "boundaries")
-    if found.name != "hdf5" or name == PROCEDURAL:
-        return Destination(output, to_format, "boundaries")
-    return Destination(output, to_format, "boundaries", put=_write)
-
-
-def _write(path: Path, boundaries: Iterable[FamilyBoundary]) -> None:
-    with Writer(path, "meshonet-boundary", ["parameter"]) as writer:
-        for boundary in boundaries:
-            writer.append(boundary, parameters=np.array([boundary.parameter]))
+def _kept(every: Sequence[Draw], kind: Family | None, way: str | None, seed: int) -> Sequence[str]:
+    if way is None:
+        return [""] * len(every)
+    if kind is None:
+        raise InputError("random airfoils have no parameter to split by", "leave it out", source="--split")
+    try:
+        return split([draw.parameter for draw in every], way, seed=seed, low=kind.to_low)
+    except InputError as error:
+        error.source = "--split"
+        raise
 
 
 def _range(text: str | None, kind: Family | None) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -84,6 +84,7 @@ class Recipe:
             notes=(*boundary.notes, *solution.notes, *told),
         )
         report.seconds |= clock.seconds
+        grid = replace(grid, origin=boundary.origin)
         return grid.with_provenance(**provenance(), **self.facts), report
 
     def _guarded(self, solution: Solution, boundary: Boundary) -> tuple[Grid, tuple[str, ...]]:

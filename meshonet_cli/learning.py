@@ -1,82 +1,212 @@
-"""What `train` does: datasets to strips, strips to a model, told epoch by epoch."""
+"""What `train` does: datasets to a model, told as it goes."""
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from formats.registry import read_shapes
+from formats.registry import read_grids, read_shapes
 from geometry.boundary import Boundary
 from geometry.errors import InputError
+from geometry.families.split import WAYS, split
 from geometry.sampling import Sampling
+from meshonet_cli.learning_log import Log
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
-    from solvers.neural.training import Report
+    from solvers.neural.fit.plan import Plan
+    from solvers.neural.fit.team import Team
+    from solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)
 class Run:
-    """Settings of a training run: output file, sizes for `solvers.neural.training.Settings`, and the rest."""
+    """What is asked of a training run.
+
+    Parameters
+    ----------
+    output : model file.
+    model : name in `solvers.neural.registry.MODELS`, or None to go by what the dataset holds.
+    plan : settings of `solvers.neural.fit.plan.Plan` that are given; None stands for the model's own.
+    settings : of the model, ``name=value`` each.
+    split : way or file that says which grids are trained on; None for what the dataset says.
+    held_out : shapes kept out to watch the loss, None for the model's own.
+    """
 
     output: str
-    sizes: Mapping[str, Any]
-    threads: int
-    resume: bool
-    checkpoint_every: int
-    log_csv: str | None
+    model: str | None
+    plan: Mapping[str, Any]
+    settings: Sequence[str] = ()
+    split: str | None = None
+    held_out: int | None = None
+    threads: int = 1
+    resume: bool = False
+    log_csv: str | None = None
 
 
 def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None = None) -> int:
-    """Fit a model to the boundaries of `sources` and return the exit code.
+    """Fit a model to the datasets `sources` and return the exit code.
 
     Raises
     ------
     InputError
-        torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad sizes or
-        boundaries.
+        torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad settings
+        or datasets.
     """
-    output = _checked_output(run.output)
+    _check_output(run.output)
     try:
         import torch
     except ImportError:
         raise InputError("training needs torch", "install it: pip install 'meshonet[train]'") from None
-    from solvers.neural.dataset import solve_strips
-    from solvers.neural.training import Settings, train
+    from solvers.neural.fit.team import team
 
-    if not 0 < run.sizes["rate"] < 1:
-        raise InputError(f"--rate {run.sizes['rate']:g}", "use a rate between 0 and 1, e.g. 0.002")
     torch.set_num_threads(run.threads)
-    strips = solve_strips(_boundaries(sources, fmt), _Progress(session))
-    session.note(f"{len(strips)} shapes lifted and solved")
-    figures = train(
-        strips,
-        output,
-        Settings(**run.sizes),
-        name=output.stem,
-        recipe={"command": "meshonet train", "datasets": [Path(s).name for s in sources]},
-        resume=run.resume,
-        checkpoint_every=run.checkpoint_every,
-        report=_Log(session, run),
-    )
+    name = run.model or _suited(sources, fmt)
+    fellows = team(run.plan.get("device") or "auto")
+    if not fellows.leads:
+        session = Session(quiet=True, debug=session.debug)
+    try:
+        told = _trained(name, sources, run, session, fellows, fmt)
+    finally:
+        fellows.close()
     if session.as_json:
-        session.result({"output": run.output, "shapes": len(strips), "figures": figures})
-    else:
-        network, base = figures["network"]["median"], figures["base"]["median"]
-        session.note(f"{run.output}: held-out error {network:.1e}, without the network {base:.1e} (medians)")
+        session.result({"output": run.output, "model": name, **told})
     return session.finish()
 
 
-def _checked_output(text: str) -> Path:
+def _trained(
+    name: str, sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None
+) -> dict[str, Any]:
+    from solvers.neural.registry import STRIP, operator
+
+    recipe = {"command": "meshonet train", "datasets": [Path(s).name for s in sources]}
+    rest: dict[str, Any] = {"recipe": recipe, "resume": run.resume}
+    output = Path(run.output)
+    if name == STRIP:
+        return _train_strip(sources, run, session, fellows, fmt, rest)
+    from solvers.neural.fit.operators import PLAN, train_operator
+
+    samples = _samples(sources, run, fmt)
+    model = operator(name, samples.topology, _settings(run.settings))
+    plan = _planned(PLAN, run.plan, long=True)
+    log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
+    figures = train_operator(
+        samples, output, name, model, plan, fellows, held_out=run.held_out or 0, report=log, **rest
+    )
+    for kind in ("train", "test"):
+        if kind in figures:
+            told = figures[kind]
+            session.note(
+                f"{run.output}: relative L2 error of {told['grids']} {kind} grids "
+                f"{told['median']:.1e} (median), {told['worst']:.1e} (worst); "
+                f"boundary off by {told['boundary']:.1e}"
+            )
+    return {"shapes": len(samples), "figures": figures}
+
+
+def _train_strip(
+    sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
+) -> dict[str, Any]:
+    from solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
+    from solvers.neural.strips import solve_strips
+
+    if run.settings or run.split or run.plan.get("points"):
+        told = "the strip operator takes no --set, --split or --points"
+        raise InputError(told, "leave them out, or choose another --model")
+    plan = _planned(PLAN, run.plan, long=False)
+    strips = solve_strips(_boundaries(sources, fmt), _counted(session))
+    session.note(f"{len(strips)} shapes lifted and solved")
+    held_out = HELD_OUT if run.held_out is None else run.held_out
+    log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
+    figures = train_strip(strips, Path(run.output), plan, fellows, held_out=held_out, report=log, **rest)
+    network, base = figures["network"]["median"], figures["base"]["median"]
+    session.note(f"{run.output}: held-out error {network:.1e}, without the network {base:.1e} (medians)")
+    return {"shapes": len(strips), "figures": figures}
+
+
+def _planned(standard: Plan, given: Mapping[str, Any], *, long: bool) -> Plan:
+    """Return the model's plan with what is given; a `long` one reports two hundred times."""
+    words = {key: value for key, value in given.items() if value is not None}
+    if "points" in words:
+        words["points"] = _points(words["points"])
+    plan = replace(standard, **words)
+    if not long:
+        return plan
+    every = max(1, plan.epochs // 200)
+    extra: dict[str, Any] = {"log_every": every, "validate_every": every}
+    extra["decay_every"] = max(1, plan.epochs // 15)
+    if given.get("checkpoint_every") is None:
+        extra["checkpoint_every"] = every
+    return replace(plan, **extra)
+
+
+def _points(text: str) -> tuple[int, int] | None:
+    """Return the places inside and on the boundary of ``N`` or ``all``."""
+    if text == "all":
+        return None
+    if not (text.isascii() and text.isdigit() and 6 <= int(text) <= 10**7):
+        raise InputError(f"{text!r} is not a number of places", "use all or e.g. 1200", source="--points")
+    boundary = int(text) // 6
+    return int(text) - boundary, boundary
+
+
+def _check_output(text: str) -> None:
     path = Path(text)
     if path.suffix != ".safetensors":
         raise InputError("a model file ends in .safetensors", "rename the output", source=text)
     if not path.parent.is_dir():
         raise InputError(f"no folder {path.parent}", "make it first", source=text)
-    return path
+
+
+def _suited(sources: Sequence[str], fmt: str | None) -> str:
+    """Return the model for what the first dataset holds: boundaries are for the strip, grids for MeshONet."""
+    try:
+        next(read_grids(sources[0], fmt))
+    except InputError as error:
+        if "not grids" in error.problem or "not a grid" in error.problem:
+            return "strip"
+        raise
+    return "meshonet"
+
+
+def _samples(sources: Sequence[str], run: Run, fmt: str | None) -> Samples:
+    from solvers.neural.samples import gathered
+
+    samples = gathered(grid for source in sources for grid in read_grids(source, fmt))
+    if run.split is None:
+        return samples
+    if run.split in WAYS:
+        try:
+            return replace(samples, splits=split(samples.parameters.tolist(), run.split))
+        except InputError as error:
+            error.source = "--split"
+            raise
+    try:
+        words = tuple(Path(run.split).read_text(encoding="utf-8").split())
+    except (OSError, ValueError):
+        told = f"{run.split!r} is neither a way to split nor a file"
+        raise InputError(told, "use a file or one of " + ", ".join(WAYS), source="--split") from None
+    if len(words) != len(samples) or set(words) - {"train", "test"}:
+        told = f"{run.split} has {len(words)} words for {len(samples)} grids"
+        raise InputError(told, "write train or test for each", source="--split")
+    return replace(samples, splits=words)
+
+
+def _settings(words: Sequence[str]) -> dict[str, Any]:
+    """Return settings of ``name=value`` words, the value as JSON where it is that."""
+    found: dict[str, Any] = {}
+    for word in words:
+        name, mark, text = word.partition("=")
+        if not mark:
+            raise InputError(f"{word!r} is not NAME=VALUE", "use e.g. sensors=80", source="--set")
+        try:
+            found[name] = json.loads(text)
+        except ValueError:
+            found[name] = text
+    return found
 
 
 def _boundaries(sources: Sequence[str], fmt: str | None) -> Iterator[Boundary]:
@@ -85,32 +215,9 @@ def _boundaries(sources: Sequence[str], fmt: str | None) -> Iterator[Boundary]:
             yield shape.boundary(Sampling(topology="o"))
 
 
-class _Progress:
-    """Every five hundred shapes, a line."""
-
-    def __init__(self, session: Session) -> None:
-        self.session = session
-
-    def __call__(self, done: int, left_out: int) -> None:
+def _counted(session: Session) -> Callable[[int, int], None]:
+    def told(done: int, left_out: int) -> None:
         if done and done % 500 == 0:
-            self.session.note(f"{done} shapes lifted and solved, {left_out} left out")
+            session.note(f"{done} shapes lifted and solved, {left_out} left out")
 
-
-class _Log:
-    """A line an epoch to the terminal, and to a CSV file when one is asked for."""
-
-    def __init__(self, session: Session, run: Run) -> None:
-        self.session, self.epochs = session, run.sizes["epochs"]
-        self.path = Path(run.log_csv) if run.log_csv else None
-
-    def __call__(self, report: Report) -> None:
-        left = (self.epochs - report.epoch) * report.seconds
-        self.session.note(
-            f"epoch {report.epoch}/{self.epochs}  loss {report.loss:.5f}  held-out error "
-            f"{report.median:.1e} (p90 {report.p90:.1e})  {report.seconds:.1f} s, {left / 60:.0f} min left"
-        )
-        if self.path is not None:
-            row = dataclasses.asdict(report)
-            head = "" if self.path.exists() else ",".join(row) + "\n"
-            with self.path.open("a", encoding="utf-8") as file:
-                file.write(head + ",".join(repr(value) for value in row.values()) + "\n")
+    return told

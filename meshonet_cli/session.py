@@ -159,6 +159,18 @@ class Session:
         sys.stderr.flush()
         self._bar_shown = True
 
+    def progress(self, done: int, count: int, text: str) -> bool:
+        """Show on a terminal how far one long task is; say whether there is one."""
+        if not self._bar:
+            return False
+        filled = _BAR * done // count
+        width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
+        self._clear()
+        sys.stderr.write(f"[{'#' * filled}{'-' * (_BAR - filled)}] {printable(text)}"[:width])
+        sys.stderr.flush()
+        self._bar_shown = True
+        return True
+
     def skip(self, name: str, path: str) -> None:
         """Tell of a member whose result is there already."""
         self.skipped += 1

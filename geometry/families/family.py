@@ -26,6 +26,7 @@ class Family:
     least, most : outside these there is no such shape.
     topology : of the boundaries.
     make : parameter, ni, nj to a boundary.
+    to_low : extrapolation goes from high values of the parameter to low ones.
     """
 
     name: str
@@ -36,6 +37,7 @@ class Family:
     most: float
     topology: Topology
     make: Callable[[float, int, int], Boundary]
+    to_low: bool = False
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
         """Return the member at `parameter` with ni by nj nodes, called after both.

@@ -27,4 +27,5 @@ def boundary(angle: float, ni: int, nj: int) -> Boundary:
     return Boundary(south, north, west, east, name=f"hexagon-{angle:.6g}")
 
 
-FAMILY = Family("hexagon", "angle of the kinks in degrees", 90.0, 150.0, 45.0, 260.0, "quad", boundary)
+_ANGLE = "angle of the kinks in degrees"
+FAMILY = Family("hexagon", _ANGLE, 90.0, 150.0, 45.0, 260.0, "quad", boundary, to_low=True)

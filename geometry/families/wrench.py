@@ -28,4 +28,4 @@ def boundary(opening: float, ni: int, nj: int) -> Boundary:
     return Boundary(south, north, west, east, name=f"wrench-{opening:.6g}")
 
 
-FAMILY = Family("wrench", "opening of the jaw", 0.15, 0.45, 0.02, 0.85, "quad", boundary)
+FAMILY = Family("wrench", "opening of the jaw", 0.15, 0.45, 0.02, 0.85, "quad", boundary, to_low=True)

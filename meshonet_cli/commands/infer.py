@@ -1,6 +1,6 @@
 """``meshonet infer``."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -26,6 +26,14 @@ ModelName = Annotated[
 Polish = Annotated[
     str, typer.Option("--polish", metavar="auto|off|N", help="Elliptic steps after the operator.")
 ]
+Answer = Annotated[
+    Literal["valid", "pasted", "raw"],
+    typer.Option(
+        "--answer", metavar="valid|pasted|raw",
+        help="What becomes of the answer of a model that does not meet the boundary exactly: raw leaves it, "
+        "pasted puts the true boundary on its edges, valid unfolds cells after that.",
+    ),
+]
 # fmt: on
 
 
@@ -35,6 +43,7 @@ def infer(
     res: o.Resolution = None,
     model: ModelName = None,
     polish: Polish = "auto",
+    answer: Answer = "valid",
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -67,7 +76,7 @@ def infer(
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids
     from meshonet_cli.session import Session
-    from solvers.neural.operator import infer as operate
+    from solvers.neural.inference import infer as operate
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     unused = {"--model": model, "--polish": None if polish == "auto" else polish}
@@ -78,9 +87,10 @@ def infer(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
         ),
-        marched or partial(operate, model=model, polish=o.polish_steps(polish)),
+        marched or partial(operate, model=model, polish=o.polish_steps(polish), answer=answer),
         allow_invalid,
         parse_gates(fail_on),
+        repair=answer == "valid",
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

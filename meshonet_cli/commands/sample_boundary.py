@@ -44,6 +44,14 @@ Sensors = Annotated[
         help="Also keep M boundary nodes as sensors (dataset sensors of an .h5 file).",
     ),
 ]
+Split = Annotated[
+    str | None,
+    typer.Option(
+        "--split", metavar="HOW", show_default=False,
+        help="Keep a sixth of the family for tests: interpolation (the middle of the range), extrapolation "
+        "(one end of it) or random. Kept in an .h5 file: train honours it, and FILE.h5#test reads it.",
+    ),
+]
 Seed = Annotated[int, typer.Option("--seed", metavar="S", min=0, help="Seed of the draw.")]
 # fmt: on
 
@@ -56,6 +64,7 @@ def sample_boundary(
     count: Count = 1,
     spread: Range = None,
     seed: Seed = 0,
+    split: Split = None,
     sensors: Sensors = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
@@ -85,7 +94,7 @@ def sample_boundary(
     sampling = o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths)
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     if family is not None:
-        found, destination = from_family((family, count, spread, seed), output, to_format, session)
+        found, destination = from_family((family, count, spread, seed, split), output, to_format, session)
     else:
         found, destination = from_files(source or [], output, to_format, session, from_format)
     return sample(

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Complexes, Floats
-from solvers.neural.dataset import Strips
 from solvers.neural.encoding import VERSION
 from solvers.neural.strip import across, harmonic, picard
+from solvers.neural.strips import Strips
 from solvers.neural.weights import HEADER, KIND
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}

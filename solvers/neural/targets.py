@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats
-from solvers.neural.dataset import Strips
 from solvers.neural.encoding import encode
 from solvers.neural.strip import across, to_columns
+from solvers.neural.strips import Strips
 
 HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
 

@@ -96,6 +96,17 @@ def _load(path: str) -> Model:
     return Model(header.get("name", Path(path).stem), StripNetwork(weights), basis, scale, header)
 
 
+def kind_of(path: Path) -> str:
+    """Return what the header of a model file says it is; nothing when it says nothing or cannot be read."""
+    try:
+        with path.open("rb") as file:
+            length = int.from_bytes(file.read(8), "little")
+            head = json.loads(file.read(min(length, LARGEST)))
+        return str(json.loads(head["__metadata__"][HEADER])["kind"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
+
+
 def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, Floats]]:
     """Return the header and the arrays of a model file, size and finiteness checked."""
     from safetensors import SafetensorError, safe_open

@@ -158,3 +158,39 @@ def test_sensors_need_hdf5(meshonet: Meshonet) -> None:
     done = meshonet("sample-boundary", "naca:0012", "--sensors", "20", "-o", "b.csv")
     assert done.code == 2
     assert not Path("b.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("family", "way"), [("arch", "extrapolation"), ("wrench", "extrapolation"), ("hole", "random")]
+)
+def test_a_split_is_kept_and_goes_on_to_grids(meshonet: Meshonet, family: str, way: str) -> None:
+    words = ("--family", family, "--count", "12", "--res", "21", "--split", way)
+    assert meshonet("sample-boundary", *words, "-o", "b.h5").code == 0
+    assert meshonet("tfi", "b.h5", "--allow-invalid", "-o", "g.h5").code == 0
+    for path in ("b.h5", "g.h5"):
+        with h5py.File(path) as file:
+            values, kept = file["parameters"][:, 0], file["split"].asstr()[:]
+            assert list(file["parameters"].attrs["names"]) == ["parameter"]
+        assert sorted(set(kept)) == ["test", "train"]
+        assert (kept == "test").sum() == 2
+        if way == "extrapolation":
+            ends = np.sort(values)[:2] if family == "wrench" else np.sort(values)[-2:]
+            np.testing.assert_array_equal(np.sort(values[kept == "test"]), ends)
+    assert len(meshonet("quality", "g.h5#test", "--json").objects) == 2
+    assert len(meshonet("quality", "g.h5#train", "--json").objects) == 10
+
+
+def test_splits_that_cannot_be_are_refused(meshonet: Meshonet) -> None:
+    for words, told in (
+        (("--family", "arch", "--count", "2", "--split", "random"), "--split: 2 members cannot be split"),
+        (("--family", "arch", "--count", "9", "--split", "x"), "--split: split 'x' is not known; use interp"),
+        (("--family", "procedural", "--count", "9", "--split", "random"), "--split: random airfoils have no"),
+    ):
+        done = meshonet("sample-boundary", *words, "-o", "b.h5")
+        assert done.code == 2
+        assert told in done.err
+    meshonet("sample-boundary", "--family", "arch", "--count", "2", "--res", "9", "-o", "b.h5")
+    assert "b.h5: no sample is marked 'test'; split it" in meshonet("tfi", "b.h5#test", "-o", "g.h5").err
+    meshonet("tfi", "naca:0012", "--res", "40x20", "-o", "g.vts")
+    told = meshonet("quality", "g.vts#test").err
+    assert "g.vts: vts files do not say which samples are to test; leave #test out" in told

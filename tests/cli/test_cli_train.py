@@ -26,9 +26,12 @@ def strips_h5(meshonet: Meshonet) -> str:
         (("-o", "nowhere/m.safetensors"), "no folder nowhere; make it first"),
         (("-o", "m.safetensors", "--epochs", "0"), "epochs"),
         (("-o", "m.safetensors", "--batch", "0"), "batch"),
-        (("-o", "m.safetensors", "--held-out", "0"), "held-out"),
+        (("-o", "m.safetensors", "--held-out", "-1"), "held-out"),
         (("-o", "m.safetensors", "--checkpoint-every", "0"), "checkpoint-every"),
         (("-o", "m.safetensors", "--threads", "0"), "threads"),
+        (("-o", "m.safetensors", "--patience", "0"), "patience"),
+        (("-o", "m.safetensors", "--schedule", "linear"), "schedule"),
+        (("-o", "m.safetensors", "--device", "tpu"), "device"),
     ],
 )
 def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], told: str) -> None:
@@ -62,7 +65,7 @@ def test_the_log_has_a_line_an_epoch(meshonet: Meshonet, strips_h5: str) -> None
     words = ("--log-csv", "train.csv", "--checkpoint-every", "1", "--resume")
     done = meshonet("train", strips_h5, "-o", "one.safetensors", *SMALL, *words)
     assert done.code == 0
-    assert "epoch 2/2" in done.err
+    assert "epoch 2/2: loss " in done.err
     rows = Path("train.csv").read_text().splitlines()
     assert rows[0].startswith("epoch,")
     assert len(rows) == 3
@@ -81,6 +84,105 @@ def test_too_few_shapes_are_refused(meshonet: Meshonet, strips_h5: str) -> None:
     done = meshonet("train", strips_h5, "-o", "m.safetensors", "--held-out", "20")
     assert done.code == 2
     assert done.err.splitlines()[-1].startswith("error: ")
+
+
+@pytest.fixture
+def arches_h5(meshonet: Meshonet) -> str:
+    """Eight solved arches, split."""
+    words = ("--family", "arch", "--count", "8", "--res", "17", "--split", "interpolation", "--quiet")
+    assert meshonet("sample-boundary", *words, "-o", "edges.h5").code == 0
+    assert meshonet("solve-pde", "edges.h5", "-o", "arches.h5", "--quiet").code == 0
+    return "arches.h5"
+
+
+BRIEF = ("--epochs", "4", "--points", "60", "--batch", "4")
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_from_a_family_to_an_error(meshonet: Meshonet, arches_h5: str) -> None:
+    words = ("--model", "meshonet-hard", *BRIEF, "--set", "sensors=20", "--set", "hidden=[16]")
+    told = meshonet("train", arches_h5, "-o", "m.safetensors", *words, "--json").only
+    assert (told["model"], told["shapes"]) == ("meshonet-hard", 8)
+    assert (told["figures"]["train"]["grids"], told["figures"]["test"]["grids"]) == (7, 1)
+    assert told["figures"]["test"]["boundary"] <= 1e-12
+    answer = (
+        "infer",
+        "edges.h5#test",
+        "--model",
+        "m.safetensors",
+        "--answer",
+        "raw",
+        "-o",
+        "own.h5",
+        "--json",
+    )
+    made = meshonet(*answer).only
+    assert (made["method"], made["model"]) == ("operator", "m")
+    graded = meshonet("quality", "own.h5", "--compare", "arches.h5#test", "--json").only
+    assert graded["compare"]["relative_l2"] == pytest.approx(told["figures"]["test"]["median"], rel=1e-5)
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, arches_h5: str) -> None:
+    meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, "--quiet")
+    done = meshonet("infer", "naca:2412", "--model", "m.safetensors", "-o", "g.vts")
+    assert done.code == 2
+    assert "model m makes quad grids, and this boundary is o; use another model" in done.err
+    assert not Path("g.vts").exists()
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--model", "perceptron"), "model 'perceptron' is not known; use one of strip, meshonet"),
+        (("--split", "halves"), "--split: 'halves' is neither a way to split nor a file"),
+        (
+            ("--split", "words.txt"),
+            "--split: words.txt has 2 words for 8 grids; write train or test for each",
+        ),
+        (("--points", "few"), "--points: 'few' is not a number of places; use all or e.g. 1200"),
+        (("--set", "sensors"), "--set: 'sensors' is not NAME=VALUE"),
+        (("--set", "colour=1"), "meshonet has no setting 'colour'; use one of sensors"),
+        (("--rate", "7"), "--rate: 7 is no learning rate"),
+        (("--patience", "3"), "--patience: stopping early needs shapes held out; use --held-out"),
+        (("--held-out", "9"), "grids to train on; give at least 2, or hold fewer out"),
+        (("--model", "strip"), "the strip operator takes no --set, --split or --points; leave them out"),
+    ],
+)
+def test_mistakes_about_grids_get_a_line(
+    meshonet: Meshonet, arches_h5: str, words: tuple[str, ...], told: str
+) -> None:
+    Path("words.txt").write_text("train test")
+    done = meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, *words)
+    assert done.code == 2
+    assert told in done.err.splitlines()[-1]
+    assert not Path("m.safetensors").exists()
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_boundaries_are_not_grids(meshonet: Meshonet, arches_h5: str) -> None:
+    done = meshonet("train", "edges.h5", "--model", "meshonet", "-o", "m.safetensors")
+    assert done.code == 2
+    assert "holds boundaries, not grids; make grids of them first: meshonet solve-pde" in done.err
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_the_log_of_a_resumed_run_is_that_of_a_whole_one(meshonet: Meshonet, arches_h5: str) -> None:
+    words = ("train", arches_h5, *BRIEF, "--checkpoint-every", "1", "--held-out", "1", "--schedule", "cosine")
+    meshonet(*words, "-o", "a.safetensors", "--log-csv", "a.csv")
+    rows = Path("a.csv").read_text().splitlines()
+    assert rows[0] == "epoch,seen,loss,interior,boundary,held_out_loss,held_out_mean_square,rate,seconds"
+    Path("b.csv").write_text("\n".join([*rows, "5,1,1,1,1,1,1,1,1"]) + "\n")
+    meshonet(*words, "-o", "b.safetensors", "--log-csv", "b.csv", "--resume", "--amp", "--device", "cpu")
+    assert [row.split(",")[0] for row in Path("b.csv").read_text().splitlines()] == ["epoch", *"1234"]
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_a_split_file_decides(meshonet: Meshonet, arches_h5: str) -> None:
+    Path("words.txt").write_text("test train " * 4)
+    told = meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, "--split", "words.txt", "--json").only
+    assert told["figures"]["test"]["grids"] == 4
 
 
 def arrays(path: str) -> dict[str, np.ndarray]:

@@ -1,1 +1,5 @@
-"""Architectures in torch, one a file; nothing outside training imports them."""
+"""Models, one a file.
+
+Those of `solvers.neural.registry` are written once for numpy and torch; `strip_fno` is in torch, its twin in
+numpy is `solvers.neural.network`.
+"""

@@ -1,0 +1,68 @@
+"""Which members of a family an operator is trained on, and which it is tested on.
+
+::
+
+    interpolation      train train train | test | train train train     parameter ->
+    extrapolation      train train train train train train | test       by default towards high values
+    random             train test train train train test train          cases 4 and 6 of the paper
+
+Xiao et al., arXiv 2501.11937, section IV.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, get_args
+
+import numpy as np
+
+from geometry.errors import InputError
+
+Way = Literal["interpolation", "extrapolation", "random"]
+WAYS: tuple[str, ...] = get_args(Way)
+SHARE = 1 / 6
+"""Of the members that are tested: 6 of 36 in the authors' settings."""
+
+
+def split(
+    parameters: Sequence[float], way: str, *, seed: int = 0, share: float = SHARE, low: bool = False
+) -> tuple[str, ...]:
+    """Return ``train`` or ``test`` for each member.
+
+    Parameters
+    ----------
+    parameters : of the members.
+    way : one of `WAYS`.
+    seed : of ``random``.
+    share : of the members that are tested; at least one is, and at least two are trained on.
+    low : extrapolate to low values of the parameter.
+
+    Raises
+    ------
+    InputError
+        an unknown way, fewer than three members, or all with the same parameter.
+
+    Examples
+    --------
+    >>> split([0.3, 0.1, 0.2], "interpolation")
+    ('train', 'train', 'test')
+    >>> split([0.3, 0.1, 0.2], "extrapolation")
+    ('test', 'train', 'train')
+    """
+    if way not in WAYS:
+        raise InputError(f"split {way!r} is not known", "use " + ", ".join(WAYS))
+    n = len(parameters)
+    values = np.asarray(parameters, dtype=np.float64)
+    if n < 3 or np.ptp(values) == 0 or not np.isfinite(values).all():
+        raise InputError(f"{n} members cannot be split", "give at least 3, of different parameters")
+    count = min(max(1, round(share * n)), n - 2)
+    order = np.argsort(values, kind="stable")
+    if way == "random":
+        tested = np.random.default_rng(seed).choice(n, count, replace=False)
+    elif way == "interpolation":
+        first = (n - count + 1) // 2
+        tested = order[first : first + count]
+    else:
+        tested = order[:count] if low else order[n - count :]
+    chosen = set(tested.tolist())
+    return tuple("test" if k in chosen else "train" for k in range(n))

@@ -1,0 +1,131 @@
+"""Training of operator models: batches over geometries and over places drawn at random."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from solvers.neural.fit.task import Task
+from solvers.neural.layers import Arrays, initial
+from solvers.neural.models.model import Frame, Operator
+from solvers.neural.places import rim, square
+from solvers.neural.samples import Samples
+from solvers.tfi import tfi
+
+
+class OperatorTask(Task):
+    """An operator model on solved grids.
+
+    ::
+
+        loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
+
+    over the places of a step, in squares of the unit of length; error = answer - (grid - base). Where there
+    is a base, both are divided by the mean square of grid - base, so that the loss is of the order of 1.
+
+    Parameters
+    ----------
+    model : what is trained.
+    training, held_out : its shapes.
+    points : places drawn for a step, inside and on the boundary; None takes all.
+    seed : of the first weights and of the places.
+    """
+
+    parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
+
+    def __init__(
+        self, model: Operator, training: Samples, held_out: Samples | None,
+        points: tuple[int, int] | None, seed: int, device: torch.device,
+    ) -> None:  # fmt: skip
+        super().__init__()
+        self.model, self.points, self.seed, self.count = model, points, seed, len(training)
+        frame = Frame(training.topology, training.ni, training.nj)
+        targets = differences(model, training)
+        rng = np.random.default_rng([seed, 0])
+        for name, value in initial(model.shapes(frame), rng).items():
+            self.register_parameter(name, nn.Parameter(_tensor(value)))
+        self.fixed = _tensors(model.fixed(training, targets), device)
+        self.inputs = _tensors(model.encode(training.boundaries()), device)
+        # places first: those of a step are then whole rows
+        self.targets = _tensor(targets.reshape(len(training), -1, 2).swapaxes(0, 1)).to(device)
+        size = float((targets**2).mean()) if model.base != "none" else 1.0
+        self.weights = model.interior / size, model.boundary / size
+        self.places = _tensor(square(training.ni, training.nj)).to(device)
+        on = rim(training.ni, training.nj, training.topology)
+        self.inside, self.outside = np.flatnonzero(~on), np.flatnonzero(on)
+        self.held_out: tuple[dict[str, Tensor], Tensor] | None = None
+        if held_out is not None and len(held_out):
+            goal = _tensor(differences(model, held_out).reshape(len(held_out), -1, 2)).to(device)
+            self.held_out = _tensors(model.encode(held_out.boundaries()), device), goal
+        self.to(device)
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the interior and the boundary part of the loss over the shapes `rows`."""
+        index, inner = self._drawn(step)
+        place = torch.from_numpy(index).to(self.places.device)
+        inputs = {name: value[rows] for name, value in self.inputs.items()}
+        found = self._answer(inputs, self.places[place], place)
+        goal = self.targets.index_select(0, place)[:, rows].transpose(0, 1)
+        return self._weighted(((found.float() - goal) ** 2).sum(-1), inner)
+
+    def validate(self) -> dict[str, float]:
+        """Return the loss over the held-out shapes and the median of their relative L2 error."""
+        if self.held_out is None:
+            return {}
+        inputs, goal = self.held_out
+        index = np.concatenate([self.inside, self.outside])
+        place = torch.from_numpy(index).to(self.places.device)
+        with torch.no_grad():
+            error = ((self._answer(inputs, self.places[place], place) - goal[:, place]) ** 2).sum(-1)
+            loss = self._weighted(error, len(self.inside)).sum()
+        return {"loss": float(loss), "mean_square": float(error.mean())}
+
+    def arrays(self) -> Arrays:
+        """Return what is trained and what is fixed, by name."""
+        trained = {name: value.detach().cpu().numpy() for name, value in self.named_parameters()}
+        return {**trained, **{name: value.cpu().numpy() for name, value in self.fixed.items()}}
+
+    def _answer(self, inputs: Mapping[str, Tensor], points: Tensor, place: Tensor) -> Tensor:
+        weights: dict[str, Any] = {**dict(self.named_parameters()), **self.fixed}
+        return self.model.answer(torch, weights, inputs, points, place)
+
+    def _drawn(self, step: int) -> tuple[np.ndarray[Any, np.dtype[np.intp]], int]:
+        """Return numbers of nodes, those inside first, and how many are inside."""
+        if self.points is None:
+            return np.concatenate([self.inside, self.outside]), len(self.inside)
+        rng = np.random.default_rng([self.seed, 1, step])
+        groups = zip((self.inside, self.outside), self.points, strict=True)
+        drawn = [group[rng.integers(0, len(group), n)] for group, n in groups]
+        return np.concatenate(drawn), self.points[0]
+
+    def _weighted(self, error: Tensor, inner: int) -> Tensor:
+        inside, outside = self.weights
+        return torch.stack([inside * error[:, :inner].mean(), outside * error[:, inner:].mean()])
+
+
+def differences(model: Operator, samples: Samples) -> Floats:
+    """Return the grids less the model's base (n, ni, nj, 2)."""
+    if model.base == "none":
+        return samples.nodes
+    return samples.nodes - np.array([base_of(model, one) for one in samples.boundaries()])
+
+
+def base_of(model: Operator, boundary: Boundary) -> Floats:
+    """Return what the model's answer is added to (ni, nj, 2)."""
+    if model.base == "none":
+        return np.zeros((boundary.ni, boundary.nj, 2))
+    return tfi(boundary).nodes
+
+
+def _tensor(array: Floats | Sequence[float]) -> Tensor:
+    return torch.tensor(np.asarray(array), dtype=torch.float32)
+
+
+def _tensors(arrays: Arrays, device: torch.device) -> dict[str, Tensor]:
+    return {name: _tensor(value).to(device) for name, value in arrays.items()}

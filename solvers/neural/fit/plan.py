@@ -1,0 +1,63 @@
+"""What a training run is made of: the same plan, data and machine give the same weights."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+from geometry.errors import InputError
+
+Schedule = Literal["cosine", "step"]
+Device = Literal["auto", "cpu", "cuda"]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Settings of the loop.
+
+    Parameters
+    ----------
+    epochs : passes over the training shapes.
+    batch : shapes a step.
+    rate : largest learning rate.
+    schedule : ``cosine`` to zero after `warm_up` steps; ``step``: times `decay` each `decay_every` epochs.
+    weight_decay : of AdamW; Adam when zero.
+    clip : largest norm of the gradient, or None.
+    points : places of the grid drawn at random for each step, inside and on the boundary; None takes all.
+    patience : stop when the held-out loss has not improved over so many epochs; None never stops.
+    log_every, validate_every : epochs between reports, and between evaluations of the held-out shapes.
+    checkpoint_every : epochs between checkpoints.
+    device, amp, compiled : where and how a step is computed.
+    """
+
+    epochs: int
+    batch: int = 30
+    rate: float = 1e-3
+    schedule: Schedule = "step"
+    warm_up: int = 0
+    decay: float = 0.9
+    decay_every: int = 1000
+    weight_decay: float = 0.0
+    clip: float | None = None
+    points: tuple[int, int] | None = None
+    seed: int = 0
+    patience: int | None = None
+    log_every: int = 1
+    validate_every: int = 1
+    checkpoint_every: int = 1
+    device: Device = "auto"
+    amp: bool = False
+    compiled: bool = False
+
+    def __post_init__(self) -> None:
+        if not 0 < self.rate < 1:
+            raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", source="--rate")
+
+    def rate_at(self, done: int, steps: int) -> float:
+        """Return the learning rate of step `done` (counted from 1) with `steps` an epoch."""
+        warm = min(1.0, done / self.warm_up) if self.warm_up else 1.0
+        if self.schedule == "cosine":
+            fade = 0.5 * (1.0 + math.cos(math.pi * done / (self.epochs * steps)))
+            return self.rate * warm * fade + 1e-6
+        return self.rate * warm * self.decay ** ((done - 1) // steps // self.decay_every)

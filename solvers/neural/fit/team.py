@@ -1,0 +1,78 @@
+"""The processes that train together: one, or those that torchrun started."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+from torch import distributed as dist
+
+from geometry.errors import InputError
+from solvers.neural.fit.plan import Device
+
+
+@dataclass(frozen=True)
+class Team:
+    """A process among its fellows.
+
+    Parameters
+    ----------
+    device : of this process.
+    rank, size : its number, and how many there are.
+    """
+
+    device: torch.device
+    rank: int = 0
+    size: int = 1
+
+    @property
+    def leads(self) -> bool:
+        """Whether this process writes files and reports."""
+        return self.rank == 0
+
+    def share(self, rows: Tensor) -> tuple[Tensor, float]:
+        """Return this process's part of a batch, and the weight that makes the mean of all parts the batch's.
+
+        A process without a part gets the first row at weight 0, since every process must take part in a step.
+        """
+        own = rows[self.rank :: self.size]
+        if len(own) == 0:
+            return rows[:1], 0.0
+        return own, len(own) * self.size / len(rows)
+
+    def mean(self, value: Tensor) -> Tensor:
+        """Return the mean of `value` over the processes."""
+        if self.size == 1:
+            return value
+        value = value.clone()
+        dist.all_reduce(value)
+        return value / self.size
+
+    def close(self) -> None:
+        """Leave the group."""
+        if self.size > 1 and dist.is_initialized():
+            dist.destroy_process_group()
+
+
+def team(device: Device) -> Team:
+    """Return this process's place, joining the others under torchrun.
+
+    Raises
+    ------
+    InputError
+        ``cuda`` is asked for and there is none.
+    """
+    if device == "cuda" and not torch.cuda.is_available():
+        raise InputError("torch sees no CUDA device", "use --device cpu or auto", source="--device")
+    cuda = device != "cpu" and torch.cuda.is_available()
+    size = int(os.environ.get("WORLD_SIZE", "1"))
+    local = int(os.environ.get("LOCAL_RANK", "0"))
+    place = torch.device("cuda", local) if cuda else torch.device("cpu")
+    if size == 1:
+        return Team(place)
+    if cuda:
+        torch.cuda.set_device(place)
+    dist.init_process_group("nccl" if cuda else "gloo")
+    return Team(place, dist.get_rank(), size)

@@ -1,0 +1,80 @@
+"""From a boundary to a grid by whatever model is named."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from geometry.arrays import Floats, as_planar
+from geometry.boundary import Boundary
+from geometry.grid import Grid
+from solvers.neural.operator import Polish
+from solvers.neural.operator import infer as infer_strip
+from solvers.neural.weights import KIND, kind_of, model_path
+from solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from solvers.neural.trained import Trained
+
+Answer = Literal["valid", "pasted", "raw"]
+"""What becomes of a network's answer: ``raw`` nothing; ``pasted`` the boundary's own nodes are put on its
+edges, as the paper does; ``valid`` folded cells are repaired as well (by the caller's guard)."""
+
+
+def infer(
+    boundary: Boundary, model: str | None = None, polish: Polish = "auto", answer: Answer = "valid"
+) -> Solution:
+    """Return the grid inside `boundary` by a shipped model, or by one that `meshonet train` made.
+
+    Parameters
+    ----------
+    model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for the shipped one.
+    polish : of the strip operator (`solvers.neural.operator.infer`).
+    answer : what becomes of the answer of a model that does not meet the boundary exactly.
+
+    Raises
+    ------
+    InputError
+        a model that does not exist, cannot be read or does not suit the boundary.
+    """
+    if model is None or model == "base" or kind_of(model_path(model)) in ("", KIND):
+        return infer_strip(boundary, model, polish)
+    from solvers.neural.trained import load_trained
+
+    trained = load_trained(model_path(model))
+    begun = time.perf_counter()
+    nodes, away = answered(trained, boundary, paste=answer != "raw")
+    spent = time.perf_counter() - begun
+    facts = {"method": "operator", "model": trained.name, "boundary_error": away}
+    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    told = f"the network's own boundary was off by {away:.1e} at most, and was {_DONE[answer != 'raw']}"
+    notes = (told,) if away > 0.0 else ()
+    return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)
+
+
+_DONE = {True: "replaced by the true one", False: "left so"}
+
+
+def answered(trained: Trained, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
+    """Return the nodes (ni, nj, 2), and how far their edges were from `boundary` at most before any pasting.
+
+    The nodes of an O grid's cut are made one either way.
+    """
+    found = trained.difference(boundary)
+    if trained.model.base == "tfi":
+        from solvers.tfi import tfi
+
+        found += tfi(boundary).nodes
+    nodes = as_planar(found)
+    edges = [(nodes[:, 0], boundary.south), (nodes[:, -1], boundary.north)]
+    if boundary.topology == "o":
+        nodes[-1] = nodes[0]
+    else:
+        edges += [(nodes[0], boundary.west), (nodes[-1], boundary.east)]
+    away = max(float(np.hypot(*(own - true).T).max()) for own, true in edges)
+    if paste:
+        for own, true in edges:
+            own[:] = true
+    return nodes, away

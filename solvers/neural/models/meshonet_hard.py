@@ -1,0 +1,94 @@
+"""MeshONet with the boundary met exactly by construction.
+
+::
+
+    (x, y) = TFI + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
+
+B is zero on the boundary, so the answer is the boundary's own nodes there, whatever the weights. The branch
+sees both coordinates, since Winslow's equations couple them; the network learns the difference from the
+transfinite interpolation, whose size is s. Of an O grid the lift is periodic in xi, and so is the answer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from geometry.arrays import Floats
+from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
+from solvers.neural.models.model import Frame, Operator
+from solvers.neural.places import sensors
+from solvers.neural.samples import Samples
+
+
+@dataclass(frozen=True)
+class MeshONetHard(Operator):
+    """One branch that sees everything, a trunk that vanishes on the boundary.
+
+    Parameters
+    ----------
+    hidden : widths of the branch's hidden layers.
+    features : functions of the trunk, shared by x and y.
+    width, depth : of the trunk's hidden layers.
+    waves : frequencies of xi and eta that the trunk sees.
+    periodic : in xi (an O grid).
+    """
+
+    base: ClassVar[Literal["none", "tfi"]] = "tfi"
+    boundary: ClassVar[float] = 0.0
+
+    hidden: tuple[int, ...] = (64, 128, 64)
+    features: int = 50
+    width: int = 64
+    depth: int = 3
+    waves: int = 6
+    periodic: bool = False
+
+    def shapes(self, frame: Frame) -> Shapes:
+        """Return the shapes of what is trained."""
+        seen = 4 * self.waves + (1 if self.periodic else 2)
+        return {
+            **dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * self.features)),
+            **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features)),
+        }
+
+    def fixed(self, samples: Samples, targets: Floats) -> Arrays:
+        """Return mean and spread of the sensors, and the size of the differences."""
+        seen = np.array([sensors(one, self.sensors) for one in samples.boundaries()])
+        spread = seen.std(axis=0)
+        size = np.sqrt((targets**2).mean())
+        return {
+            "fixed/mean": seen.mean(axis=0),
+            "fixed/spread": np.maximum(spread, 0.02 * spread.max() + 1e-9),
+            "fixed/size": np.array([size or 1.0]),
+        }
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+        """Return coordinates (batch, p, 2) less the base."""
+        seen = (inputs["sensors"] - w["fixed/mean"]) / w["fixed/spread"]
+        c = dense(xp, w, "branch", seen.reshape(len(seen), -1))
+        trunk = dense(xp, w, "trunk", self._lifted(xp, points)) * self._bubble(points)
+        k = self.features
+        return xp.stack([c[:, :k] @ trunk.T, c[:, k:] @ trunk.T], -1) * w["fixed/size"]
+
+    def _lifted(self, xp: Any, points: Any) -> Any:
+        turn = 2.0 if self.periodic else 1.0
+        angles = [np.pi * k * points for k in range(1, self.waves + 1)]
+        waves = [f(xp, turn * a[:, :1], a[:, 1:]) for a in angles for f in (_sines, _cosines)]
+        linear = points[:, 1:] if self.periodic else points
+        return xp.concatenate([linear, *waves], -1)
+
+    def _bubble(self, points: Any) -> Any:
+        xi, eta = points[:, :1], points[:, 1:]
+        across = 4.0 * eta * (1.0 - eta)
+        return across if self.periodic else across * (4.0 * xi * (1.0 - xi))
+
+
+def _sines(xp: Any, a: Any, b: Any) -> Any:
+    return xp.concatenate([xp.sin(a), xp.sin(b)], -1)
+
+
+def _cosines(xp: Any, a: Any, b: Any) -> Any:
+    return xp.concatenate([xp.cos(a), xp.cos(b)], -1)

@@ -1,0 +1,75 @@
+"""What every operator model answers to: the one interface that training and inference know."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from geometry.arrays import Floats, Topology
+from geometry.boundary import Boundary
+from solvers.neural.layers import Arrays, Shapes, Weights
+from solvers.neural.places import sensors
+from solvers.neural.samples import Samples
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What a model is built for: topology and the node counts of its training grids."""
+
+    topology: Topology
+    ni: int
+    nj: int
+
+
+@dataclass(frozen=True)
+class Operator:
+    """An operator from boundaries to grids; its fields are its settings, kept in the header of its file.
+
+    Parameters
+    ----------
+    sensors : points of the boundary that the branches read, m in the paper.
+
+    Attributes
+    ----------
+    base : what the network's answer is added to: nothing, or the transfinite interpolation.
+    native : it answers on the nodes of its training grids only; other grids are splined from those.
+    interior, boundary : weights of the two parts of its loss.
+    """
+
+    base: ClassVar[Literal["none", "tfi"]] = "none"
+    native: ClassVar[bool] = False
+    interior: ClassVar[float] = 1.0
+    boundary: ClassVar[float] = 1.0
+
+    sensors: int = 50
+
+    def shapes(self, frame: Frame) -> Shapes:
+        """Return the shapes of what is trained."""
+        raise NotImplementedError
+
+    def fixed(self, samples: Samples, targets: Floats) -> Arrays:
+        """Return arrays that are computed from the training set once, and not trained.
+
+        `targets` (n, ni, nj, 2) are the grids less the base.
+        """
+        return {}
+
+    def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
+        """Return the inputs of a batch of boundaries, each array with the batch first."""
+        return {"sensors": np.array([sensors(one, self.sensors) for one in boundaries])}
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+        """Return coordinates (batch, p, 2) less the base.
+
+        Parameters
+        ----------
+        xp : numpy or torch.
+        w : trained and fixed arrays by name.
+        inputs : of `encode`.
+        points : (p, 2) places (xi, eta).
+        index : (p,) their numbers among the nodes of the training grids; only native models use it.
+        """
+        raise NotImplementedError

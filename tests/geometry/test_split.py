@@ -1,0 +1,50 @@
+"""Splits of a family: what is trained on, what is tested on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geometry.errors import InputError
+from geometry.families.family import FAMILIES, family
+from geometry.families.split import split
+
+SHUFFLED = np.random.default_rng(1).permutation(np.linspace(-1.0, 2.0, 36)).tolist()
+
+
+def chosen(way: str, **rest: object) -> list[float]:
+    kept = split(SHUFFLED, way, **rest)  # type: ignore[arg-type]
+    assert set(kept) == {"train", "test"}
+    return sorted(value for value, use in zip(SHUFFLED, kept, strict=True) if use == "test")
+
+
+def test_interpolation_trains_on_both_ends_and_tests_between() -> None:
+    np.testing.assert_allclose(chosen("interpolation"), np.linspace(-1.0, 2.0, 36)[15:21])
+
+
+def test_extrapolation_tests_one_end() -> None:
+    np.testing.assert_allclose(chosen("extrapolation"), np.linspace(-1.0, 2.0, 36)[30:])
+    np.testing.assert_allclose(chosen("extrapolation", low=True), np.linspace(-1.0, 2.0, 36)[:6])
+
+
+def test_random_positions_depend_on_the_seed_alone() -> None:
+    assert chosen("random") == chosen("random")
+    assert chosen("random") != chosen("random", seed=1)
+    assert len(chosen("random")) == 6
+
+
+@pytest.mark.parametrize("way", ["interpolation", "extrapolation", "random"])
+def test_three_members_leave_two_to_train_on(way: str) -> None:
+    assert sorted(split([0.1, 0.2, 0.3], way)) == ["test", "train", "train"]
+
+
+def test_what_cannot_be_split_is_refused() -> None:
+    with pytest.raises(InputError, match="split 'halves' is not known; use interpolation, extrapolation"):
+        split(SHUFFLED, "halves")
+    for members in ([0.1, 0.2], [0.3, 0.3, 0.3], [0.1, np.nan, 0.2]):
+        with pytest.raises(InputError, match="cannot be split; give at least 3, of different parameters"):
+            split(members, "random")
+
+
+def test_the_paper_extrapolates_two_families_to_low_values() -> None:
+    assert [name for name in FAMILIES if family(name).to_low] == ["hexagon", "wrench"]

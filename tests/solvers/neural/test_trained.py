@@ -1,0 +1,163 @@
+"""A trained operator answers alike in numpy and torch, keeps its promises, and its file is untrusted."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from families import arches, rings
+from safetensors.numpy import load_file, save_file
+
+from geometry.errors import InputError
+from solvers.neural.inference import answered, infer
+from solvers.neural.layers import initial
+from solvers.neural.models.model import Frame
+from solvers.neural.places import lift, rim, sensors, square
+from solvers.neural.registry import OPERATORS, operator
+from solvers.neural.samples import Samples
+from solvers.neural.trained import Trained, load_trained, write_trained
+from solvers.neural.weights import HEADER
+
+FAMILIES = {"quad": arches(), "o": rings()}
+
+
+def random(kind: str, samples: Samples, **settings: object) -> Trained:
+    """A model with random weights."""
+    model = operator(kind, samples.topology, settings)
+    frame = Frame(samples.topology, samples.ni, samples.nj)
+    arrays = initial(model.shapes(frame), np.random.default_rng(3)) | model.fixed(samples, samples.nodes)
+    return Trained("random", model, frame, {k: v.astype(np.float32) for k, v in arrays.items()}, {})
+
+
+@pytest.mark.parametrize("topology", FAMILIES)
+@pytest.mark.parametrize("kind", OPERATORS)
+def test_numpy_and_torch_agree(kind: str, topology: str) -> None:
+    samples = FAMILIES[topology]
+    trained = random(kind, samples)
+    inputs = trained.model.encode(samples.boundaries())
+    where, index = square(samples.ni, samples.nj), np.arange(samples.ni * samples.nj)
+    answer = trained.model.answer
+    found = answer(
+        np, trained.weights, {k: v.astype(np.float32) for k, v in inputs.items()}, where.astype("f4"), index
+    )
+    tensors = (
+        {k: torch.tensor(v, dtype=torch.float32) for k, v in a.items()} for a in (trained.weights, inputs)
+    )
+    goal = answer(torch, *tensors, torch.tensor(where, dtype=torch.float32), torch.tensor(index))
+    assert found.shape == (len(samples), samples.ni * samples.nj, 2)
+    np.testing.assert_allclose(found, goal.numpy(), atol=2e-5 * float(goal.abs().max()))
+
+
+def test_the_paper_counts_as_many_parameters() -> None:
+    model = operator("meshonet", "quad")
+    assert sum(np.prod(shape) for shape in model.shapes(Frame("quad", 101, 101)).values()) == 54_482
+
+
+@pytest.mark.parametrize("topology", FAMILIES)
+@pytest.mark.parametrize("size", [None, 40, 150])
+def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int | None) -> None:
+    from geometry.sampling import Sampling
+
+    samples = FAMILIES[topology]
+    trained = random("meshonet-hard", samples)
+    for edges in samples.boundaries()[:2]:
+        boundary = edges.boundary(Sampling(size, size)) if size else edges
+        nodes, away = answered(trained, boundary, paste=False)
+        assert away <= 1e-12
+        assert np.abs(nodes[3, 1:-1] - samples.nodes[0, 3, :1]).max() > 0
+        if topology == "o":
+            np.testing.assert_array_equal(nodes[0], nodes[-1])
+
+
+def test_a_batch_answers_like_its_members() -> None:
+    samples = FAMILIES["quad"]
+    trained = random("meshonet", samples)
+    inputs, where = trained.model.encode(samples.boundaries()), square(5, 7)
+    together = trained.model.answer(np, trained.weights, inputs, where, None)
+    for k in range(len(samples)):
+        alone = trained.model.answer(
+            np, trained.weights, {"sensors": inputs["sensors"][k : k + 1]}, where, None
+        )
+        np.testing.assert_allclose(together[k], alone[0], atol=1e-6)
+
+
+def test_large_grids_agree_with_small_ones() -> None:
+    """281 nodes are every second of 561: the interpolated table against the network's own values."""
+    from geometry.sampling import Sampling
+
+    samples = FAMILIES["quad"]
+    trained = random("meshonet", samples)
+    small, large = (samples.boundaries()[1].boundary(Sampling(n, n)) for n in (71, 281))
+    direct, table = trained.difference(small), trained.difference(large)
+    assert np.abs(table[::4, ::4] - direct).max() < 3e-5
+
+
+def test_sensors_are_nodes_of_the_outline_of_a_grid_that_has_them() -> None:
+    samples = arches(3, n=26)
+    boundary = samples.boundaries()[2]
+    np.testing.assert_allclose(sensors(boundary, 50), boundary.with_sensors(50).sensors, atol=1e-14)
+    ring = rings(3, n=17).boundaries()[0]
+    np.testing.assert_allclose(sensors(ring, 16), ring.with_sensors(16).sensors, atol=1e-14)
+
+
+def test_the_lift_is_the_papers() -> None:
+    lifted = lift(np, np.array([[0.3, 0.7]]), 3)[0]
+    wanted = [np.sin(0.3), np.sin(0.7), np.cos(0.3), np.cos(0.7), 0.3, 0.7, 0.09, 0.49, 0.027, 0.343]
+    np.testing.assert_allclose(lifted, wanted)
+
+
+def test_the_rim_of_an_o_grid_has_two_sides() -> None:
+    assert rim(5, 4, "quad").sum() == 14
+    assert rim(5, 4, "o").sum() == 10
+
+
+def test_answers_are_pasted_or_not(tmp_path: Path) -> None:
+    samples, path = FAMILIES["quad"], tmp_path / "m.safetensors"
+    trained = random("meshonet", samples)
+    write_trained(path, "m", trained.model, "meshonet", trained.frame, dict(trained.weights))
+    boundary = samples.boundaries()[0]
+    raw, pasted = (infer(boundary, str(path), answer=how) for how in ("raw", "pasted"))  # type: ignore[arg-type]
+    assert raw.grid.provenance["boundary_error"] > 1e-3
+    assert np.abs(raw.grid.nodes[:, 0] - boundary.south).max() > 1e-3
+    np.testing.assert_array_equal(pasted.grid.nodes[:, 0], boundary.south)
+    np.testing.assert_array_equal(pasted.grid.nodes[1:-1, 1:-1], raw.grid.nodes[1:-1, 1:-1])
+    assert "replaced by the true one" in pasted.notes[0]
+    assert "left so" in raw.notes[0]
+
+
+def test_another_topology_is_refused() -> None:
+    with pytest.raises(
+        InputError, match="model random makes quad grids, and this boundary is o; use another"
+    ):
+        random("meshonet", FAMILIES["quad"]).difference(rings().boundaries()[0])
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"kind": "meshonet strip"}, "it holds 'meshonet strip'"),
+        ({"version": 9}, "version 9"),
+        ({"model": "perceptron"}, "it holds 'meshonet operator' perceptron"),
+        ({"topology": "x"}, "do not fit"),
+        ({"ni": 10**9}, "do not fit"),
+        ({"settings": {"sensors": 60}}, "do not fit"),
+        ({"settings": {"sensors": "many"}}, "sensors='many' does not suit meshonet"),
+        ({"settings": {"depth": 10**6}}, "does not suit"),
+        ({"settings": {"colour": 1}}, "meshonet has no setting 'colour'; use one of"),
+        ({"settings": 5}, "do not fit"),
+    ],
+)
+def test_foreign_headers_are_refused(tmp_path: Path, change: dict[str, object], told: str) -> None:
+    path, trained = tmp_path / "m.safetensors", random("meshonet", FAMILIES["quad"])
+    write_trained(path, "m", trained.model, "meshonet", trained.frame, dict(trained.weights))
+    from safetensors import safe_open
+
+    with safe_open(path, framework="numpy") as file:
+        header = json.loads(file.metadata()[HEADER])
+    save_file(load_file(path), path, metadata={HEADER: json.dumps(header | change)})
+    with pytest.raises(InputError, match=told) as caught:
+        load_trained(path)
+    assert str(path) in str(caught.value)
