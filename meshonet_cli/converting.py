@@ -14,6 +14,7 @@ from formats.source import open_source
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
+from geometry.nested import coarser_grid
 from geometry.normalised import normalised
 from geometry.sampling import Sampling
 from geometry.turn import turned
@@ -59,12 +60,14 @@ class Change:
     planes : planes of nodes in z; None stands for two.
     swap : have xi run along the sides that eta ran along.
     normalise : scale to unit chord or unit length.
+    coarsen : keep every so many-th node.
     """
 
     extrude: float | None = None
     planes: int | None = None
     swap: bool = False
     normalise: bool = False
+    coarsen: int = 1
 
     def heights(self) -> Heights:
         """Return z of each plane, none for a flat grid.
@@ -84,7 +87,8 @@ class Change:
         return tuple(self.extrude * k / (planes - 1) for k in range(planes))
 
     def __call__(self, grid: Grid) -> Grid:
-        """Return `grid` swapped and normalised as asked."""
+        """Return `grid` coarsened, swapped and normalised as asked."""
+        grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid
         grid = turned(grid) if self.swap else grid
         return normalised(grid) if self.normalise else grid
 
@@ -117,7 +121,7 @@ def convert_files(
         a format that cannot be written, or not in 3D; a height that is not positive.
     """
     heights = change.heights()
-    flat = not heights and not change.swap
+    flat = not heights and not change.swap and change.coarsen == 1
     boundaries = flat and _writes_boundaries(sources[0], output, from_format, to_format)
     if boundaries:
         destination = Destination(output, to_format, "boundaries")

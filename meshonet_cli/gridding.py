@@ -40,6 +40,7 @@ class Recipe:
     allow_invalid : whether a folded grid is a result.
     gates : conditions that end the program with 1.
     repair : whether a folded grid goes to the guard, which unfolds it or makes another.
+    refine : how often the cells that `sampling` asks for are halved.
     """
 
     sampling: Sampling
@@ -47,6 +48,7 @@ class Recipe:
     allow_invalid: bool = False
     gates: tuple[Gate, ...] = ()
     repair: bool = True
+    refine: int = 0
     facts: dict[str, object] = field(default_factory=dict)
 
     def grid(self, item: Item[Shape]) -> tuple[Grid, Report]:
@@ -59,6 +61,8 @@ class Recipe:
         """
         clock = Clock()
         boundary = item.what.boundary(self.sampling)
+        if self.refine:
+            boundary = item.what.boundary(finer(self.sampling, boundary, 2**self.refine))
         clock.lap("boundary")
         solution = self.method(boundary)
         # what a method takes beside its grid are modules and models, loaded once a process
@@ -129,6 +133,13 @@ def _tell(recipe: Recipe, session: Session, report: Report, path: str) -> None:
         session.warn(f"{report.item.label}: {report.quality.folded} folded cells are in {path}")
     session.tell(report)
     session.gate(report.item.label, [told for gate in recipe.gates if (told := gate.broken(report.quality))])
+
+
+def finer(sampling: Sampling, boundary: Boundary, k: int) -> Sampling:
+    """Return `sampling` with `k` times the cells of `boundary`, those along the wake of a C included."""
+    wakes = [part.stop - part.start for part in boundary.parts if part.name == "wake"]
+    nodes = k * wakes[0] + 1 if boundary.topology == "c" and wakes else sampling.wake_nodes
+    return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
 
 
 class Clock:

@@ -13,14 +13,22 @@ from solvers.solution import Solution
 Method = Callable[[Boundary], Solution]
 
 
-def at_any_resolution(method: partial[Solution], coarse: int | None) -> Method:
+def at_any_resolution(method: partial[Solution], coarse: int | None, refine: int = 0) -> Method:
     """Return `method`, solving on `coarse` nodes a direction and evaluating at the boundary's when given.
+
+    With `refine`, it solves on boundaries that are as often coarser first.
 
     Raises
     ------
     InputError
-        a grid to start from as well: it has the counts of the result.
+        coarse and refine together; coarse and a grid to start from: that has the counts of the result.
     """
+    if refine:
+        from solvers.refine import solve_refined
+
+        if coarse is not None:
+            raise InputError("--coarse and --refine both solve on fewer nodes first", "give one of them")
+        return partial(solve_refined, method=method, levels=refine)
     if coarse is None:
         return method
     settings: dict[str, Any] = method.keywords

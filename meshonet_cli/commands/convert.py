@@ -11,6 +11,7 @@ EXAMPLES = (
     "meshonet convert grid.vts grid3d.msh --extrude 0.1",
     "meshonet convert grid.vts grid3d.p3d --normalise --extrude 1 --planes 5",
     "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
+    "meshonet tfi duct.csv --res 41x21 -o - | meshonet convert - coarse.vts --coarsen 2",
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
     "meshonet convert --list-formats",
 )
@@ -59,6 +60,13 @@ def convert(
             "to unit length.",
         ),
     ] = False,
+    coarsen: Annotated[
+        int | None,
+        typer.Option(
+            "--coarsen", metavar="K", min=2, max=10_000, show_default=False,
+            help="Keep every K-th node along xi and eta; K must divide the cells.",
+        ),
+    ] = None,
     list_formats: Annotated[
         bool, typer.Option("--list-formats", help="Print what can be read and written, and stop.")
     ] = False,
@@ -85,6 +93,6 @@ def convert(
     return convert_files(
         sources, target, session,
         from_format=from_format, to_format=to_format, skip_existing=skip_existing,
-        change=Change(extrude, planes, swap=swap, normalise=normalise),
+        change=Change(extrude, planes, swap=swap, normalise=normalise, coarsen=coarsen or 1),
     )
 # fmt: on

@@ -12,6 +12,7 @@ EXAMPLES = (
     "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
     "meshonet solve-pde duct.csv --res 400 --coarse 65 -o fine.vts",
     "meshonet solve-pde duct.csv --method thomas-middlecoff --spacing tanh -o layers.vts",
+    "meshonet solve-pde duct.csv --res 25x13 --refine 3 -o finest.vts",
     "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
@@ -50,6 +51,14 @@ Coarse = Annotated[
         help="Solve on N x N nodes and evaluate at --res by splines. [default: solve at --res]",
     ),
 ]
+Refine = Annotated[
+    int,
+    typer.Option(
+        "--refine", metavar="K", min=0, max=8, show_default=False,
+        help="Solve at --res, halve all cells and solve again, K times: the finest grid of a family; "
+        "convert --coarsen 2 makes the others of it.",
+    ),
+]
 Initial = Annotated[
     str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
 ]
@@ -64,6 +73,7 @@ def solve_pde(
     tol: Tolerance = None,
     max_cycles: MaxCycles = None,
     coarse: Coarse = None,
+    refine: Refine = 0,
     initial: Initial = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
@@ -102,7 +112,9 @@ def solve_pde(
     from solvers.variational.solve import solve as minimise
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
-    marched = layer.marching(method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse})
+    marched = layer.marching(
+        method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse, "--refine": refine or None}
+    )
     elliptic = {"auto": solve, "winslow": solve, "thomas-middlecoff": solve_thomas_middlecoff}
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
@@ -111,9 +123,10 @@ def solve_pde(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
         ),
-        marched or at_any_resolution(partial(elliptic.get(method, minimise), **settings), coarse),
+        marched or at_any_resolution(partial(elliptic.get(method, minimise), **settings), coarse, refine),
         allow_invalid,
         parse_gates(fail_on),
+        refine=refine,
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

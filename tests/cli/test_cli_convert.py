@@ -35,6 +35,41 @@ def test_a_grid_stays_the_same_grid(meshonet: Meshonet, grid_vts: Path, name: st
     assert after.topology == "o"
 
 
+def test_coarsen_keeps_every_kth_node(meshonet: Meshonet, duct_h5: Path) -> None:
+    meshonet("tfi", duct_h5, "-o", "fine.vts")
+    told = meshonet("convert", "fine.vts", "coarse.vts", "--coarsen", "2", "--json").only
+    assert (told["ni"], told["nj"]) == (11, 6)
+    (fine,), (coarse,) = read_grids("fine.vts"), read_grids("coarse.vts")
+    np.testing.assert_array_equal(coarse.nodes, fine.nodes[::2, ::2])
+    assert [part.name for part in coarse.parts] == [part.name for part in fine.parts]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--coarsen", "3"), "fine.vts: 21x11 nodes are 20x10 cells, which 3 does not divide; use a number "
+                             "that divides 10, or make the grid with 19x10 nodes, say"),
+        (("--coarsen", "1"), "'--coarsen': 1 is not in the range"),
+        (("--coarsen", "x"), "'--coarsen': 'x' is not a valid int"),
+    ],
+)  # fmt: skip
+def test_coarsen_tells_what_would_go(
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, str], told: str
+) -> None:
+    meshonet("tfi", duct_h5, "-o", "fine.vts")
+    done = meshonet("convert", "fine.vts", "coarse.vts", *words)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("coarse.vts").exists()
+
+
+def test_coarsen_needs_grids(meshonet: Meshonet, duct_h5: Path) -> None:
+    done = meshonet("convert", duct_h5, "coarse.h5", "--coarsen", "2")
+    assert done.code == 2
+    assert "holds boundaries, not grids" in done.err
+
+
 def test_the_output_may_be_an_option(meshonet: Meshonet, grid_vts: Path) -> None:
     assert meshonet("convert", grid_vts, "-o", "grid.h5").code == 0
     assert Path("grid.h5").exists()

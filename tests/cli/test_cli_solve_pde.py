@@ -129,9 +129,46 @@ def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_
     assert 0 < distance < 2e-3
 
 
+def test_refine_makes_the_finest_grid_of_a_family(meshonet: Meshonet, duct_h5: Path) -> None:
+    done = meshonet("solve-pde", duct_h5, "--refine", "2", "--tol", "1e-9", "-o", "finest.vts")
+    assert done.code == 0
+    assert "refined: 21x11 in " in done.err
+    (finest,) = read_grids("finest.vts")
+    assert (finest.ni, finest.nj) == (81, 41)
+    meshonet("solve-pde", duct_h5, "--res", "81x41", "--tol", "1e-9", "-o", "alone.vts")
+    (alone,) = read_grids("alone.vts")
+    np.testing.assert_allclose(finest.nodes, alone.nodes, atol=1e-7)
+    meshonet("convert", "finest.vts", "coarsest.vts", "--coarsen", "4")
+    (coarsest,) = read_grids("coarsest.vts")
+    np.testing.assert_array_equal(coarsest.nodes, finest.nodes[::4, ::4])
+
+
+@pytest.mark.parametrize("topology", ["o", "c"])
+def test_refine_keeps_the_ends_of_wall_and_wake(meshonet: Meshonet, topology: str) -> None:
+    words = ("solve-pde", "naca:2412", "--topology", topology, "--res", "61x17", "--refine", "1")
+    assert meshonet(*words, "-o", "f.vts").code == 0
+    assert meshonet("convert", "f.vts", "g.vts", "--coarsen", "2").code == 0
+    (grid,) = read_grids("g.vts")
+    assert (grid.ni, grid.nj, grid.topology) == (61, 17, topology)
+
+
+def test_refine_goes_with_a_first_grid_and_not_with_marching(meshonet: Meshonet, body_h5: Path) -> None:
+    meshonet("solve-pde", body_h5, "-o", "start.vts")
+    words = ("solve-pde", body_h5, "--refine", "1", "-o", "g.vts")
+    assert meshonet(*words, "--initial", "start.vts").code == 0
+    done = meshonet(*words, "--wall-spacing", "1e-3")
+    assert done.code == 2
+    assert "--refine is of no use to a grid marched from the wall; drop --refine" in done.err
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
+        (("--refine", "9"), "'--refine': 9 is not in the range 0<=x<=8"),
+        (
+            ("--refine", "1", "--coarse", "9"),
+            "--coarse and --refine both solve on fewer nodes first; give one",
+        ),
         (("--tol", "2"), "--tol: 2 is not between 0 and 1; use e.g. 1e-8"),
         (("--tol", "x"), "tol"),
         (("--max-cycles", "0"), "max-cycles"),
