@@ -25,7 +25,8 @@ Model = Annotated[
     str | None,
     typer.Option(
         "--model", metavar="NAME", show_default=False,
-        help="strip (the airfoil operator), meshonet (the paper's), meshonet-hard (boundary exact). "
+        help="strip (the airfoil operator), meshonet (the paper's), meshonet-hard (exact boundary), deeponet, "
+        "pod-deeponet, fno1d, fno2d (the baselines), mionet. "
         "[default: meshonet for grids, strip for boundaries]",
     ),
 ]

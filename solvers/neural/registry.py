@@ -17,6 +17,11 @@ STRIP = "strip"
 OPERATORS: dict[str, tuple[str, str]] = {
     "meshonet": ("meshonet", "MeshONet"),
     "meshonet-hard": ("meshonet_hard", "MeshONetHard"),
+    "deeponet": ("deeponet", "DeepONet"),
+    "pod-deeponet": ("pod_deeponet", "PODDeepONet"),
+    "fno1d": ("fno1d", "FNO1D"),
+    "fno2d": ("fno2d", "FNO2D"),
+    "mionet": ("mionet", "MIONet"),
 }
 """Module and class of the models that learn from solved grids and answer any boundary of their family."""
 

@@ -13,7 +13,7 @@ from safetensors.numpy import load_file, save_file
 
 from geometry.errors import InputError
 from solvers.neural.inference import answered, infer
-from solvers.neural.layers import initial
+from solvers.neural.layers import count, initial
 from solvers.neural.models.model import Frame
 from solvers.neural.places import lift, rim, sensors, square
 from solvers.neural.registry import OPERATORS, operator
@@ -54,6 +54,13 @@ def test_numpy_and_torch_agree(kind: str, topology: str) -> None:
 def test_the_paper_counts_as_many_parameters() -> None:
     model = operator("meshonet", "quad")
     assert sum(np.prod(shape) for shape in model.shapes(Frame("quad", 101, 101)).values()) == 54_482
+
+
+def test_the_page_counts_every_models_parameters() -> None:
+    page = (Path(__file__).parents[3] / "docs" / "paper-models.md").read_text()
+    for kind in OPERATORS:
+        shapes = operator(kind, "quad").shapes(Frame("quad", 101, 101))
+        assert f"| `{kind}` | {count(shapes):,} |" in page
 
 
 @pytest.mark.parametrize("topology", FAMILIES)

@@ -1,0 +1,94 @@
+"""FNO2D with two inputs and two outputs: a Fourier neural operator on the computational square.
+
+::
+
+    in    at (xi, eta): x and y of south and north at xi and of west and east at eta; xi; eta
+    out   x and y there
+
+The boundary is carried into the square, since the operator maps functions of the square to each other. Four
+Fourier layers h <- gelu(K h + W h + b), K mixing the lowest modes; h is continued by zeros in both
+directions before it is transformed. It answers on the nodes of the training grids.
+Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from geometry.boundary import Boundary
+from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
+from solvers.neural.models.model import Frame, Operator
+
+SEEN = 10
+
+
+@dataclass(frozen=True)
+class FNO2D(Operator):
+    """Fourier layers on the square.
+
+    Parameters
+    ----------
+    width : channels of the hidden state.
+    modes : that are mixed, along either direction (of eta positive and negative ones).
+    layers : Fourier layers.
+    padding : nodes of zeros in either direction before the transform.
+    """
+
+    native: ClassVar[bool] = True
+
+    width: int = 12
+    modes: int = 8
+    layers: int = 4
+    padding: int = 9
+
+    def shapes(self, frame: Frame) -> Shapes:
+        """Return the shapes of what is trained."""
+        shapes = {**dense_shapes("lift", (SEEN, self.width))}
+        for k in range(self.layers):
+            shapes |= dense_shapes(f"local{k}", (self.width, self.width))
+            shapes[f"mix{k}/spectral"] = (2 * self.modes, self.modes, self.width, self.width, 2)
+        return {**shapes, **dense_shapes("project", (self.width, 64, 2))}
+
+    def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
+        """Return the edges: south and north (batch, ni, 4), west and east (batch, nj, 4)."""
+        along = np.array([np.hstack([one.south, one.north]) for one in boundaries])
+        across = np.array([np.hstack([one.west, one.east]) for one in boundaries])
+        return {"along": along, "across": across}
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+        """Return coordinates (batch, p, 2) at nodes of the training grids."""
+        along, across = inputs["along"], inputs["across"]
+        batch, ni, nj = len(along), along.shape[1], across.shape[1]
+        weight, bias = w["lift/0/weight"], w["lift/0/bias"]
+        # the first layer is linear, so it is applied to the edges before they are carried into the square
+        xi, eta = (_places(xp, n, along) for n in (ni, nj))
+        rows, columns = along @ weight[:4] + xi * weight[8], across @ weight[4:8] + eta * weight[9]
+        h = rows[:, :, None] + columns[:, None] + bias
+        for k in range(self.layers):
+            local = dense(xp, w, f"local{k}", h)
+            h = gelu(xp, self._mixed(xp, w[f"mix{k}/spectral"], h) + local)
+        return dense(xp, w, "project", h.reshape(batch, ni * nj, self.width)[:, index])
+
+    def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
+        """Return h (batch, ni, nj, width) with its lowest modes mixed, a complex matrix each."""
+        ni, nj = h.shape[1], h.shape[2]
+        size = (ni + self.padding, nj + self.padding)
+        spectrum = xp.fft.rfft2(h, size, (1, 2))
+        m, rows = self.modes, spectrum.shape[1]
+        kept = xp.concatenate([spectrum[:, :m, :m], spectrum[:, -m:, :m]], 1)
+        matrix = weight[..., 0] + 1j * weight[..., 1]
+        mixed = xp.einsum("bmnc,mncd->bmnd", kept, matrix)
+        middle = xp.zeros_like(spectrum[:, : rows - 2 * m, :m])
+        low = xp.concatenate([mixed[:, :m], middle, mixed[:, m:]], 1)
+        columns = xp.fft.ifft(low, None, 1)
+        return xp.fft.irfft(columns, size[1], 2)[:, :ni, :nj]
+
+
+def _places(xp: Any, n: int, like: Any) -> Any:
+    """Return n places of the unit interval as a column of the kind and precision of `like`."""
+    where = np.linspace(0.0, 1.0, n)[:, None]
+    return where.astype(like.dtype) if xp is np else xp.as_tensor(where, dtype=like.dtype, device=like.device)
