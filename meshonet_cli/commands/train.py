@@ -25,7 +25,7 @@ Model = Annotated[
     str | None,
     typer.Option(
         "--model", metavar="NAME", show_default=False,
-        help="strip (the airfoil operator), meshonet (the paper's), meshonet-hard (exact boundary), deeponet, "
+        help="strip (airfoil operator), meshonet (the paper's), meshonet-hard (exact boundary), deeponet, "
         "pod-deeponet, fno1d, fno2d (the baselines), mionet. "
         "[default: meshonet for grids, strip for boundaries]",
     ),

@@ -35,7 +35,7 @@ def test_two_processes_train_as_one(meshonet: Meshonet, tmp_path: Path, batch: i
         "--set",
         "hidden=[16]",
     ]
-    given += ["--device", "cpu", "--model", "meshonet"]
+    given += ["--set", "hidden=[16]", "--device", "cpu", "--model", "meshonet"]
     assert meshonet(*given, "-o", "one.safetensors", "--log-csv", "one.csv").code == 0
     team = [sys.executable, "-m", "torch.distributed.run", "--standalone", "--nproc-per-node", "2"]
     more = ["-m", "meshonet_cli", *given, "-o", "two.safetensors", "--log-csv", "two.csv", "--resume"]
