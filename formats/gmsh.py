@@ -1,25 +1,26 @@
-"""Gmsh ``.msh`` 2.2: quadrilaterals with merged seams, and the boundary's parts as physical groups.
+"""Gmsh ``.msh`` 2.2 and 4.1: quadrilaterals with merged seams, and the boundary's parts as physical groups.
 
-Written through meshio, binary unless asked otherwise: fifteen times quicker than text, which converters
-such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format-version-2
+2.2 is written through meshio, binary unless asked otherwise; text is what converters such as OpenFOAM's
+insist on. 4.1 is in `formats.gmsh41`. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format-version-2
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 
+from formats import gmsh41
 from formats.format import Format, Heights, only_one
+from formats.gmsh41 import INTERIOR
+from formats.gmsh_read import read_shapes, sniff
 from formats.source import printable
 from formats.unstructured import Indices, extruded, unstructured
 from geometry.arrays import Floats
 from geometry.grid import Grid
-
-INTERIOR = "fluid"
-"""Name of the group of all cells."""
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:
@@ -68,21 +69,21 @@ def quotable(name: str) -> str:
     return printable(name).replace('"', "'")
 
 
-FORMATS = (
-    Format(
-        name="gmsh",
-        suffixes=(".msh",),
-        description="Gmsh 2.2 mesh, binary, parts as physical groups",
-        write_grids=write_grids,
-        write_extruded=write_extruded,
-        names_parts=True,
-    ),
-    Format(
-        name="gmsh-ascii",
-        suffixes=(".msh",),
-        description="Gmsh 2.2 mesh, text, parts as physical groups",
-        write_grids=partial(write_grids, text=True),
-        write_extruded=partial(write_extruded, text=True),
-        names_parts=True,
-    ),
-)
+def _formats(number: str, one: ModuleType | None, version: str) -> Iterator[Format]:
+    """Yield the binary and the text format of a version; `one` has its writers, or this module."""
+    grids = one.write_grids if one else write_grids
+    layers = one.write_extruded if one else write_extruded
+    for text, kind in ((False, "binary"), (True, "text")):
+        yield Format(
+            name=f"gmsh{number}{'-ascii' if text else ''}",
+            suffixes=(".msh",),
+            description=f"Gmsh {version} mesh, {kind}, parts as physical groups; read as a boundary",
+            read_shapes=read_shapes,
+            write_grids=partial(grids, text=text),
+            write_extruded=partial(layers, text=text),
+            sniff=sniff,
+            names_parts=True,
+        )
+
+
+FORMATS = (*_formats("", None, "2.2"), *_formats("41", gmsh41, "4.1"))

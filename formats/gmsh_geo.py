@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from formats.format import Format, only_one
-from formats.gmsh import INTERIOR, quotable
+from formats.gmsh import quotable
+from formats.gmsh41 import INTERIOR
 from formats.unstructured import Indices, node_numbers, unstructured
 from geometry.grid import Grid
 

@@ -10,7 +10,7 @@ A single curve that ends in one trailing edge is taken for an airfoil.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -92,11 +92,20 @@ def sniff(head: bytes) -> bool:
 
 def _one_curve(rows: list[Line], name: str) -> Shape:
     points = np.array([line.values[:2] for line in rows])
-    places = [f"line {line.number}" for line in rows]
+    return one_curve(points, name, [f"line {line.number}" for line in rows])
+
+
+def one_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Shape:
+    """Return the airfoil or the outline through `points` (n, 2), repeated neighbours left out.
+
+    Parameters
+    ----------
+    places : (n,) where each point stands in its source, for messages.
+    """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
     if len(points) > 1 and np.array_equal(points[0], points[-1]):
         keep[-1] = len(points) < 3
-    points, places = points[keep], [place for place, kept in zip(places, keep, strict=True) if kept]
+    points, places = points[keep], [place for place, kept in zip(places, keep, strict=False) if kept]
     if len(points) < 3:
         raise InputError(f"{len(points)} points", "a closed curve needs at least 3")
     if _ends_in_one_edge(points):

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from formats.format import Format, Heights, only_one
+from formats.su2_read import read_shapes, sniff
 from formats.text_rows import write_rows
 from formats.unstructured import Indices, extruded, unstructured
 from formats.words import words
@@ -55,8 +56,10 @@ def _row(kind: int, nodes: Indices) -> str:
 FORMAT = Format(
     name="su2",
     suffixes=(".su2",),
-    description="SU2 mesh, text, parts as markers",
+    description="SU2 mesh, text, parts as markers; read as a boundary",
     write_grids=write_grids,
     write_extruded=write_extruded,
+    read_shapes=read_shapes,
+    sniff=sniff,
     names_parts=True,
 )

@@ -72,7 +72,8 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
         raise InputError(f"is not well-formed XML ({error})", "write the file again") from error
     if root.tag != "VTKFile" or root.get("type") != "StructuredGrid":
         raise InputError(
-            f"is a VTK file of type {printable(root.get('type', '?'))}", "give one of type StructuredGrid"
+            f"is a VTK file of type {printable(root.get('type', '?'))[:60]}",
+            "give one of type StructuredGrid",
         )
     return root, start, end
 

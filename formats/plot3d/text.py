@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Sequence
 from math import prod
 
 import numpy as np
 
+from formats.free_numbers import parsed
 from formats.plot3d.layouts import Candidate, Layout, layouts
 from geometry.arrays import Floats
 from geometry.errors import InputError
@@ -82,23 +82,12 @@ def _numbers(data: bytes) -> Floats:
         plain, counts = _repeats(plain)
         if int(counts.sum()) > _MOST_REPEATED * len(data):
             raise InputError("repeats a number too often for its size", "write the values out")
-    values = _parsed(plain)
+    values = parsed(plain)
     if values is None:
-        values = _parsed(b" ".join(_spelled(word, data) for word in plain.split()))
+        values = parsed(b" ".join(_spelled(word, data) for word in plain.split()))
     if values is None:
         raise InputError("has a word that is not a number", "write numbers only")
     return values if counts is None else np.repeat(values, counts)
-
-
-def _parsed(text: bytes) -> Floats | None:
-    """Return the numbers of blank-separated `text`, or None when there is something else in it."""
-    with warnings.catch_warnings():
-        # numpy announces text it cannot parse by a DeprecationWarning that is to become a ValueError
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            return np.fromstring(text, dtype=np.float64, sep=" ")
-        except (DeprecationWarning, ValueError):
-            return None
 
 
 def _repeats(text: bytes) -> tuple[bytes, np.ndarray[tuple[int], np.dtype[np.int64]]]:

@@ -6,6 +6,7 @@ import functools
 import json
 import re
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -27,6 +28,11 @@ TEXTS = {
     "geojson": json.dumps({"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}),
 }
 """A good file of each format that this package reads and does not write."""
+TEXTS["dxf"] = "\n".join(
+    ["0", "SECTION", "2", "ENTITIES"]
+    + [f"0\nLINE\n8\nside\n10\n{a[0]}\n20\n{a[1]}\n11\n{b[0]}\n21\n{b[1]}" for a, b in pairwise(SQUARE)]
+    + ["0", "ENDSEC", "0", "EOF", ""]
+)
 
 BITS = [
     b"\0", b"\xff", b"nan", b"inf", b"-1", b"0", b"1e999", b"-1e308", b"999999999", b"2147483647",

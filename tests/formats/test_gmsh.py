@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.gmsh import write_extruded, write_grids
+from formats import gmsh41
+from formats.gmsh import write_grids
+from formats.registry import format_named
 from geometry.grid import Grid
 from geometry.parts import Part
 
@@ -42,12 +44,17 @@ COUNTS = {
 }
 
 
-@pytest.mark.parametrize("text", [False, True])
+VERSIONS = pytest.mark.parametrize("version", ["gmsh", "gmsh-ascii", "gmsh41", "gmsh41-ascii"])
+
+
+@VERSIONS
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 @pytest.mark.usefixtures("client")
-def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], text: bool, tmp_path: Path) -> None:
+def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], version: str, tmp_path: Path) -> None:
     grid = make()
-    write_grids(tmp_path / "g.msh", [grid], text=text)
+    writer = format_named(version).write_grids
+    assert writer is not None
+    writer(tmp_path / "g.msh", [grid])
     gmsh.open(str(tmp_path / "g.msh"))
     nodes, cells, parts = COUNTS[grid.topology]
     assert len(gmsh.model.mesh.getNodes()[0]) == nodes
@@ -59,12 +66,16 @@ def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], text: bool, tmp_
     assert np.array_equal(np.unique(points[:, 0]), np.unique(grid.x))
 
 
-@pytest.mark.parametrize("layers", [1, 3])
-@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@VERSIONS
+@pytest.mark.parametrize(("make", "layers"), [(channel, 3), (ring, 1), (c_grid, 1)])
 @pytest.mark.usefixtures("client")
-def test_gmsh_sees_layers_of_right_handed_hexahedra(make: type[Grid], layers: int, tmp_path: Path) -> None:
+def test_gmsh_sees_layers_of_right_handed_hexahedra(
+    make: type[Grid], layers: int, version: str, tmp_path: Path
+) -> None:
     grid = make()
-    write_extruded(tmp_path / "g.msh", [grid], tuple(0.5 * k for k in range(layers + 1)))
+    writer = format_named(version).write_extruded
+    assert writer is not None
+    writer(tmp_path / "g.msh", [grid], tuple(0.5 * k for k in range(layers + 1)))
     gmsh.open(str(tmp_path / "g.msh"))
     nodes, cells, parts = COUNTS[grid.topology]
     assert len(gmsh.model.mesh.getNodes()[0]) == (layers + 1) * nodes
@@ -77,7 +88,11 @@ def test_gmsh_sees_layers_of_right_handed_hexahedra(make: type[Grid], layers: in
     assert len(np.unique(np.sort(faces, axis=1), axis=0)) == len(faces)
 
 
-@pytest.mark.parametrize("write", [write_grids, functools.partial(write_grids, text=True)])
+@pytest.mark.parametrize(
+    "write",
+    [write_grids, functools.partial(write_grids, text=True), gmsh41.write_grids,
+     functools.partial(gmsh41.write_grids, text=True)],
+)  # fmt: skip
 def test_meshio_reads_the_names_back(write: Callable[[Path, list[Grid]], None], tmp_path: Path) -> None:
     write(tmp_path / "g.msh", [ring()])
     mesh = meshio.gmsh.read(tmp_path / "g.msh")
