@@ -17,7 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, as_planar, planar_nodes
+from geometry.arrays import Floats, Topology, as_planar, planar_nodes
 from geometry.boundary import Boundary
 from geometry.corners import Indices, find_corners
 from geometry.errors import InputError
@@ -44,7 +44,7 @@ def solve_coarse(
 
     Parameters
     ----------
-    boundary : quad or o.
+    boundary : quad, o or c.
     method : a solver of boundary to solution.
     n : coarse nodes along each direction that has more.
     smooth : whether to end with sweeps of Winslow's equations at full resolution around the lines that leave
@@ -77,10 +77,14 @@ def solve_coarse(
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
-    """Return `boundary` with ni x nj nodes, at equal steps of the index of the given ones."""
+    """Return `boundary` with ni x nj nodes, at equal steps of the index of the given ones.
+
+    A C becomes a quad: thinned, its trailing edge need not be a node.
+    """
+    topology: Topology = "quad" if boundary.topology == "c" else boundary.topology
     south, north = _between(boundary.south, ni), _between(boundary.north, ni)
     west, east = _between(boundary.west, nj), _between(boundary.east, nj)
-    return Boundary(south, north, west, east, boundary.topology, name=boundary.name)
+    return Boundary(south, north, west, east, topology, name=boundary.name)
 
 
 def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
@@ -108,18 +112,20 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     return nodes
 
 
-def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> None:
+def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> bool:
     """Relax planar `nodes` in place by sweeps of Winslow's equations around the lines that leave kinks.
 
     Transfinite interpolation carries a kink of an edge along the whole line that starts there, and no spline
-    through the `counts` coarse nodes takes it out again.
+    through the `counts` coarse nodes takes it out again. Returns whether there are kinks.
     """
+    any_kinks = False
     for axis, sides in ((0, ("south", "north")), (1, ("west", "east"))):
         if boundary.topology == "o" and axis == 1:
             continue
         kinks = np.concatenate([find_corners(getattr(boundary, side)) for side in sides])
         n = nodes.shape[axis]
         reach = int(np.ceil(REACH * (n - 1) / (counts[axis] - 1)))
+        any_kinks = any_kinks or len(kinks) > 0
         for start, stop in _joined(np.unique(kinks), reach, n):
             if axis == 0:
                 _sweep(nodes[start:stop])
@@ -127,6 +133,7 @@ def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> N
                 strip = as_planar(nodes[:, start:stop])
                 _sweep(strip)
                 nodes[:, start:stop] = strip
+    return any_kinks
 
 
 def _joined(kinks: Indices, reach: int, n: int) -> Iterator[tuple[int, int]]:

@@ -23,7 +23,7 @@ Method = Annotated[
     typer.Option(
         "--method", metavar="auto|winslow|thomas-middlecoff|variational|hyperbolic",
         help="Equations to solve: winslow is elliptic; thomas-middlecoff too, with control functions that "
-        "carry the spacing of the edges inside; variational (quad) minimises a functional of angles "
+        "carry the spacing of the edges inside; variational minimises a functional of angles "
         "and edge lengths: better angles, no folds; hyperbolic marches from the wall, and is what auto takes "
         "when a first cell is given.",
     ),

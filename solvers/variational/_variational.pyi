@@ -8,6 +8,7 @@ def energy(
     smoothness: float,
     epsilon: float,
     periodic: bool,
+    relief: Floats | None,
     gradient: Floats,
     work: Floats,
 ) -> tuple[float, float]: ...
@@ -23,6 +24,7 @@ class Minimiser:
         shape: float,
         smoothness: float,
         epsilon: float,
+        relief: Floats | None,
         still: float,
         reach: float,
         most: int,

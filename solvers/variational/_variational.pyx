@@ -9,6 +9,7 @@ cdef extern from "variational_kernel.h":
         double smoothness
         double epsilon
         int periodic
+        const double *relief
     ctypedef struct Spectrum:
         Py_ssize_t mi
         Py_ssize_t mj
@@ -50,11 +51,12 @@ def workspace(Py_ssize_t ni, Py_ssize_t nj):
 
 
 def energy(const double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, bint periodic,
-           double[:, :, ::1] gradient, double[::1] work):
+           const double[::1] relief, double[:, :, ::1] gradient, double[::1] work):
     """Return (value, smallest corner Jacobian) for the planes z (2, ni, nj); fill `gradient` likewise.
 
     The gradient is zero at fixed nodes: those of the rim, or with `periodic` rows (the last is the first) of the
-    first and the last column; the last row's is in the first then. `epsilon` regularises; without it a folded
+    first and the last column; the last row's is in the first then. `relief` (ni,) is the share of the angle term
+    that corners at nodes (i, 0) keep, or None. `epsilon` regularises; without it a folded
     grid has an infinite value and no gradient.
     """
     cdef Py_ssize_t ni = z.shape[1], nj = z.shape[2]
@@ -65,7 +67,7 @@ def energy(const double[:, :, ::1] z, double aspect, double shape, double smooth
     if <size_t>work.shape[0] < variational_workspace(ni, nj):
         raise ValueError("too little workspace")
     weights.aspect, weights.shape, weights.smoothness = aspect, shape, smoothness
-    weights.epsilon, weights.periodic = epsilon, periodic
+    weights.epsilon, weights.periodic, weights.relief = epsilon, periodic, _relief(relief, ni)
     with nogil:
         total = variational_energy(&z[0, 0, 0], &z[1, 0, 0], ni, nj, &weights, &gradient[0, 0, 0],
                                    &gradient[1, 0, 0], &smallest, &work[0])
@@ -104,8 +106,8 @@ cdef class Minimiser:
         descent_place(&self.state, &room[0], &small[0])
         self.held = (q_i, q_i_t, q_j, q_j_t, factors, room, small)
 
-    def run(self, double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, double still,
-            double reach, int most):
+    def run(self, double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, const double[::1] relief,
+            double still, double reach, int most):
         """Descend from the planes z (2, ni, nj), in place; return (value, smallest Jacobian, iterations).
 
         It stops when no node moves by more than `still` of its cells in three iterations on end, or after `most`
@@ -117,6 +119,7 @@ cdef class Minimiser:
         self.state.z = &z[0, 0, 0]
         self.state.weights.aspect, self.state.weights.shape = aspect, shape
         self.state.weights.smoothness, self.state.weights.epsilon = smoothness, epsilon
+        self.state.weights.relief = _relief(relief, self.state.ni)
         self.state.still, self.state.reach = still, reach
         with nogil:
             descent_start(&self.state)
@@ -126,6 +129,14 @@ cdef class Minimiser:
                 state = descent_step(&self.state)
             done += 1
         return self.state.value, self.state.smallest, done
+
+
+cdef const double *_relief(const double[::1] relief, Py_ssize_t ni) except? NULL:
+    if relief is None:
+        return NULL
+    if relief.shape[0] != ni:
+        raise ValueError("a relief of another length")
+    return &relief[0]
 
 
 def _padded(matrix):

@@ -6,7 +6,8 @@
          + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, l the edge lengths
 
    At the centre u and v are the means of opposite edges. Δ_i and Δ_j are the differences to the next edge of the
-   same family in either direction; those along the rim count half. One row of cells, or of edges, at a time: first
+   same family in either direction; those along the rim count half. Where the rim itself turns so far that no angle there can be good, corners keep a
+   share of their angle terms only. One row of cells, or of edges, at a time: first
    the forces of each into row buffers, which vectorises, then onto the nodes. */
 #ifndef MESHONET_FUNCTIONAL_H
 #define MESHONET_FUNCTIONAL_H
@@ -185,6 +186,26 @@ MESHONET_INLINE double family(const double *x, const double *y, ptrdiff_t nj, pt
         }
         energy += by_i * sum_i + on_rim * sum_j;
         push_row(x + i * nj, y + i * nj, next, n, force, inverse + i * n, gx + i * nj, gy + i * nj);
+    }
+    return energy;
+}
+
+/* Take away from the energy what the corners at nodes (i, 0) do not keep of their angle terms, w over the number of
+   corners each; the only free node that it moves is (i, 1). */
+MESHONET_INLINE double relieve(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
+                               double angle, double *gx, double *gy)
+{
+    double energy = 0.0;
+    for (ptrdiff_t i = weights->periodic ? 0 : 1; i < ni - 1; i++) {
+        if (!(weights->relief[i] < 1.0))
+            continue;
+        const Factors f = {0.0, 0.0, angle * (1.0 - weights->relief[i]), 0.0};
+        const ptrdiff_t k = i * nj, east = k + nj, west = i > 0 ? k - nj : (ni - 2) * nj;
+        const double vx = x[k + 1] - x[k], vy = y[k + 1] - y[k];
+        const Corner a = corner(x[east] - x[k], y[east] - y[k], vx, vy, &f, 0);
+        const Corner b = corner(x[k] - x[west], y[k] - y[west], vx, vy, &f, 0);
+        energy += a.energy + b.energy;
+        gx[k + 1] -= a.dv_x + b.dv_x, gy[k + 1] -= a.dv_y + b.dv_y;
     }
     return energy;
 }

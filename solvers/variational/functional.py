@@ -40,6 +40,10 @@ class Weights:
     smoothness: float = 2.5e-3
 
 
+AROUND = Weights(smoothness=3e-6)
+"""Around a body, where cells grow by orders of magnitude: more smoothness would cost angles."""
+
+
 def energy(
     nodes: Floats, aspect: float, weights: Weights, epsilon: float = 0.0, *, periodic: bool = False
 ) -> float:
@@ -90,6 +94,20 @@ def _roughness(log_length: Floats, nodes: Floats, periodic: bool) -> float:
     else:
         squares_j[[0, -1]] *= 0.5
     return float(squares_i.sum() + squares_j.sum())
+
+
+def relief_of(wall: Floats) -> Floats:
+    """Return the share of the angle term that corners at the nodes of a closed `wall` (ni, 2) keep, (ni,).
+
+    Where the domain takes up more than 320 degrees around a node, as at a trailing edge, the two corners
+    there cannot both be good; they keep sin⁴ of half that angle: like a right one at best.
+    """
+    edges = np.diff(wall, axis=0)
+    before = np.roll(edges, 1, axis=0)
+    turn = np.arctan2(_cross(before, edges), (before * edges).sum(axis=-1))
+    half = 0.5 * (np.pi - turn)
+    share = np.where(half > 8.0 / 9.0 * np.pi, np.maximum(np.sin(half), 1e-3) ** 4, 1.0)
+    return np.append(share, share[0])
 
 
 def aspect_of(nodes: Floats, periodic: bool = False) -> float:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Topology
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
@@ -22,11 +22,14 @@ from solvers.repair import repair
 from solvers.solution import Solution
 from solvers.tfi import tfi
 from solvers.variational._variational import energy, workspace
-from solvers.variational.functional import Weights, aspect_of
+from solvers.variational.functional import AROUND, Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
+
+COARSEST_AROUND = 65
+"""The same around a body."""
 
 STILL = 1e-4
 """Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
@@ -59,7 +62,7 @@ def solve(
 
     Parameters
     ----------
-    boundary : quad.
+    boundary : quad, o or c. Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is.
     tol : stop when iterations move no node by more than this part of √cells steps, its own cells' steps; that
         is about this part of the domain's size. None is 1e-4.
     max_cycles : iterations on the finest level at the most.
@@ -80,13 +83,13 @@ def solve(
     """
     _check(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
-    weights = weights or Weights()
+    weights = weights or (Weights() if boundary.topology == "quad" else AROUND)
     still = tol if tol is not None else STILL
     if initial is None:
         nodes, weights, iterations, valid = _nested(boundary, weights, still, max_cycles)
     else:
         nodes = _inside(boundary, initial)
-        iterations, valid = descend(nodes, weights, still, max_cycles)
+        iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
     grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, {**facts, "cycles": iterations})
@@ -98,26 +101,29 @@ def _nested(
     boundary: Boundary, weights: Weights, still: float, most: int
 ) -> tuple[Floats, Weights, int, bool]:
     """Return nodes, the weights that made them, iterations on the finest level, whether it is valid."""
-    levels = [boundary]
-    while max(levels[-1].ni, levels[-1].nj) > COARSEST:
-        counts = (n // 2 + 1 if n > COARSEST else n for n in (levels[-1].ni, levels[-1].nj))
+    periodic = boundary.topology == "o"
+    coarsest = (COARSEST if boundary.topology == "quad" else COARSEST_AROUND), COARSEST
+    levels = [thinned(boundary, boundary.ni, boundary.nj) if boundary.topology == "c" else boundary]
+    while any(n > least for n, least in zip((levels[-1].ni, levels[-1].nj), coarsest, strict=True)):
+        now = levels[-1].ni, levels[-1].nj
+        counts = (n // 2 + 1 if n > least else n for n, least in zip(now, coarsest, strict=True))
         levels.append(thinned(levels[-1], *counts))
     last = len(levels) - 1
     nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most if last == 0 else MOST)
     for k in range(last - 1, -1, -1):
         nodes = _evaluated(nodes, levels[k])
         limits = (still, most) if k == 0 else (LOOSER * still, MOST)
-        iterations, valid = descend(nodes, weights, *limits)
+        iterations, valid = descend(nodes, weights, *limits, periodic=periodic)
     return nodes, weights, iterations, valid
 
 
 def _evaluated(nodes: Floats, boundary: Boundary) -> Floats:
-    """Return the grid `nodes` at the counts of `boundary`; swept at lines that leave kinks if it folds."""
+    """Return the grid `nodes` at the counts of `boundary`, smooth at lines that leave kinks."""
+    counts = nodes.shape[0], nodes.shape[1]
     plain = evaluate(nodes, boundary)
-    if count_folded(plain) == 0:
-        return plain
     swept = plain.copy(order="K")
-    sweep_kinks(swept, boundary, (nodes.shape[0], nodes.shape[1]))
+    if not sweep_kinks(swept, boundary, counts):
+        return plain
     return plain if count_folded(swept) else swept
 
 
@@ -132,63 +138,73 @@ def _coarsest(
     from solvers.elliptic.solve import solve as winslow
 
     start = winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
-    limits = [value + 1e-9 for value in _angles(start)]
+    limits = [value + 1e-9 for value in _angles(start, boundary.topology)]
     nodes = start.copy(order="K")
-    iterations, valid = descend(nodes, weights, still, most)
+    periodic = boundary.topology == "o"
+    iterations, valid = descend(nodes, weights, still, most, periodic=periodic)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
-        if not valid or all(value <= limit for value, limit in zip(_angles(nodes), limits, strict=True)):
+        if not valid or all(
+            value <= limit for value, limit in zip(_angles(nodes, boundary.topology), limits, strict=True)
+        ):
             return nodes, weights, iterations, valid
         weights = replace(weights, smoothness=0.25 * weights.smoothness)
         nodes = nodes.copy(order="K")
-        more, valid = descend(nodes, weights, still, most)
+        more, valid = descend(nodes, weights, still, most, periodic=periodic)
         iterations += more
     return best
 
 
-def _angles(nodes: Floats) -> tuple[float, float]:
+def _angles(nodes: Floats, topology: Topology) -> tuple[float, float]:
     """Return the largest and the mean of the cells' largest included angles, in degrees; 360 when folded."""
     if count_folded(nodes):
         return 360.0, 360.0
-    summary = measure(Grid(nodes))["max_angle"]
+    summary = measure(Grid(nodes, topology))["max_angle"]
     return summary.max, summary.mean
 
 
-def descend(nodes: Floats, weights: Weights, still: float, most: int) -> tuple[int, bool]:
+def descend(
+    nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False
+) -> tuple[int, bool]:
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
     Parameters
     ----------
     still : as `tol` of `solve`.
     most : iterations at the most.
+    periodic : around a body: the last row of nodes is the first, and its nodes move like any others.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
         return 0, count_folded(nodes) == 0
     z = np.moveaxis(nodes, -1, 0)
-    cells, aspect = (ni - 1) * (nj - 1), aspect_of(nodes)
-    descent = minimiser(ni, nj, False, aspect, weights)
+    cells, aspect = (ni - 1) * (nj - 1), aspect_of(nodes, periodic)
+    relief = relief_of(nodes[:, 0]) if periodic else None
+    descent = minimiser(ni, nj, periodic, aspect, weights)
     terms = aspect, weights.shape, weights.smoothness
-    if count_folded(nodes) and repair(nodes, periodic=False):
-        if max(ni, nj) > UNFOLDED:
+    if count_folded(nodes) and repair(nodes, periodic):
+        if periodic or max(ni, nj) > UNFOLDED:
             return 0, False
         cell = _area(nodes) / cells
-        smallest = energy(z, *terms, 0.0, False, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
+        smallest = energy(z, *terms, 0.0, False, None, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
         epsilon = max(0.05 * cell, -0.5 * smallest)
         for _ in range(25):
-            if descent.run(z, *terms, epsilon, 1e-3, REACH, 40)[1] > 0:
+            if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:
                 break
             epsilon *= 0.4
         else:
             return 0, False
-    return descent.run(z, *terms, 0.0, still * np.sqrt(cells), REACH, most)[2], True
+    return descent.run(z, *terms, 0.0, relief, still * np.sqrt(cells), REACH, most)[2], True
 
 
 def _inside(boundary: Boundary, initial: Grid) -> Floats:
     """Return a copy of the nodes of `initial` with the edges of `boundary`."""
     nodes = initial.nodes.copy(order="K")
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    nodes[0], nodes[-1] = boundary.west, boundary.east
+    if boundary.topology == "o":
+        nodes[-1] = nodes[0]
+    else:
+        nodes[0], nodes[-1] = boundary.west, boundary.east
     return nodes
 
 
@@ -200,11 +216,6 @@ def _area(nodes: Floats) -> float:
 
 
 def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    if boundary.topology != "quad":
-        raise InputError(
-            f"the variational method has no {boundary.topology} boundaries yet",
-            "use topology quad or method winslow",
-        )
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5")
     if max_cycles < 1:

@@ -56,6 +56,8 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
         energy += family(x, y, nj, ni - 1, nj, nj, p, by_i, by_j, gx, gy, length, inverse, rows);
         energy += family(x, y, nj, ni, nj - 1, 1, p, by_i, by_j, gx, gy, length, inverse, rows);
     }
+    if (weights->relief && !(eps > 0.0))
+        energy -= relieve(x, y, ni, nj, weights, one * weights->shape, gx, gy);
     clear_rim(gx, ni, nj, weights->periodic);
     clear_rim(gy, ni, nj, weights->periodic);
     return isfinite(energy) ? energy : INFINITY;

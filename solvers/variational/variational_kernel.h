@@ -9,6 +9,7 @@ typedef struct {
     double smoothness; /* β: weight of the edge length term */
     double epsilon;    /* an area: Jacobians are regularised by it; with 0 the value of a folded grid is infinite */
     int periodic;      /* the last row of nodes is the first, and its nodes are free */
+    const double *relief; /* (ni,) share of the angle term that corners at nodes (i, 0) keep, or NULL for all of it */
 } Weights;
 
 /* Transforms that make the Hessian of a uniform grid diagonal: q_i (mi, ki), q_j (mj, kj), both transposed too; rows

@@ -113,10 +113,17 @@ def test_variational_angles_are_better(meshonet: Meshonet, duct_h5: Path) -> Non
         assert told["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"]
 
 
-def test_variational_takes_no_rings_yet(meshonet: Meshonet, body_h5: Path) -> None:
-    done = meshonet("solve-pde", body_h5, "--method", "variational", "-o", "g.vts")
-    assert done.code == 2
-    assert "the variational method has no o boundaries yet; use topology quad or method winslow" in done.err
+@pytest.mark.parametrize("topology", ["o", "c"])
+def test_variational_around_a_body(meshonet: Meshonet, topology: str) -> None:
+    words = ("solve-pde", "naca:2412", "--topology", topology, "--res", "100x40", "--method", "variational")
+    told = meshonet(*words, "--json", "-o", "g.vts").only
+    assert (told["method"], told["topology"], told["folded"], told["path"]) == (
+        "variational",
+        topology,
+        0,
+        [],
+    )
+    assert told["quality"]["max_angle"]["mean"] < 93
 
 
 def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_h5: Path) -> None:

@@ -5,13 +5,28 @@ from functools import partial
 import numpy as np
 import pytest
 from random_quads import random_quad
-from solver_shapes import arch, bump, folded, hexagon, hole, naca, quad, seamount, segment, wrench
+from solver_shapes import (
+    arch,
+    bump,
+    circle,
+    folded,
+    hexagon,
+    hole,
+    naca,
+    quad,
+    ring,
+    seamount,
+    segment,
+    wrench,
+)
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
+from geometry.naca import naca as naca_section
 from geometry.quality import Summary, measure
+from geometry.sampling import Sampling
 from solvers.coarse import solve_coarse, thinned
 from solvers.elliptic.solve import solve as winslow
 from solvers.tfi import tfi
@@ -142,10 +157,47 @@ def test_provenance_names_method_and_weights() -> None:
     assert (facts["method"], facts["shape"], facts["smoothness"]) == ("variational", 0.97, 2.5e-3)
 
 
-@pytest.mark.parametrize("make", [hole, naca])
-def test_rings_are_refused(make) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(InputError, match="no o boundaries yet; use topology quad or method winslow"):
-        solve(make(33, 33))
+@pytest.mark.parametrize("make", [hole, naca, partial(naca, thickness=0.3, far=5.0)])
+@pytest.mark.parametrize(("ni", "nj"), [(129, 65), (100, 40)])
+def test_around_a_body_the_cut_moves(make, ni: int, nj: int) -> None:  # type: ignore[no-untyped-def]
+    boundary = make(ni, nj)
+    reference, solution = winslow(boundary).grid, solve(boundary)
+    found = solution.grid.nodes
+    assert solution.notes == ()
+    assert folded(found) == 0
+    # a sharp edge bounds the maximum, and Winslow's line halves it exactly on symmetric bodies
+    assert angle(found).max < angle(reference.nodes).max + 0.01
+    assert angle(found).mean < angle(reference.nodes).mean
+    assert np.array_equal(found[0], found[-1])
+    assert np.array_equal(found[:, 0], boundary.south)
+    assert np.array_equal(found[:, -1], boundary.north)
+
+
+def test_behind_a_sharp_edge_the_wake_stays() -> None:
+    boundary = naca_section("0012").boundary(Sampling(101, 41, topology="c"))
+    reference, found = tfi(boundary), solve(boundary).grid
+    assert found.topology == "c"
+    assert found.parts == reference.parts
+    assert np.array_equal(found.nodes[:, 0], boundary.south)
+    never_worse(found.nodes, reference.nodes)
+    assert angle(found.nodes).mean < 93
+
+
+def test_a_bent_cut_is_straightened() -> None:
+    """Of a round body in a round far field the minimum is known: circles and rays."""
+    walls = circle(1.0, 65), circle(4.0, 65)
+    boundary = ring(*walls, 33)
+    bent = tfi(boundary).nodes.copy(order="K")
+    angle = 0.4 * np.sin(np.pi * np.linspace(0, 1, 33))
+    x, y = bent[..., 0].copy(), bent[..., 1].copy()
+    bent[..., 0], bent[..., 1] = (
+        np.cos(angle) * x - np.sin(angle) * y,
+        np.sin(angle) * x + np.cos(angle) * y,
+    )
+    found = solve(boundary, initial=Grid(bent, "o"), tol=1e-6).grid.nodes
+    rays = np.arctan2(found[..., 1], found[..., 0]) - np.arctan2(walls[0][:, 1], walls[0][:, 0])[:, None]
+    assert np.abs((rays + np.pi) % (2 * np.pi) - np.pi).max() < 1e-4
+    assert np.ptp(np.hypot(found[..., 0], found[..., 1]), axis=0).max() < 1e-4
 
 
 @pytest.mark.parametrize("bad", [{"tol": 0.0}, {"tol": 2.0}, {"max_cycles": 0}])

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 from random_quads import random_quad
-from solver_shapes import bump, hole, wrench
+from solver_shapes import bump, hole, naca, wrench
 
 from geometry.arrays import Floats
 from solvers.tfi import tfi
 from solvers.variational._variational import energy as compiled
 from solvers.variational._variational import workspace
-from solvers.variational.functional import Weights, aspect_of, energy
+from solvers.variational.functional import Weights, aspect_of, energy, relief_of
 
 
 def planes(nodes: Floats) -> Floats:
@@ -23,7 +23,7 @@ def call(
     gradient = np.empty_like(z)
     work = np.empty(workspace(*nodes.shape[:2]))
     terms = aspect_of(nodes, periodic), weights.shape, weights.smoothness
-    value, low = compiled(z, *terms, epsilon, periodic, gradient, work)
+    value, low = compiled(z, *terms, epsilon, periodic, None, gradient, work)
     return value, low, gradient
 
 
@@ -67,6 +67,26 @@ def test_around_a_body_the_cut_is_like_any_other_line(epsilon: float) -> None:
     h = 1e-6
     ahead, behind = (energy(nodes + k * h * both, aspect, weights, epsilon, periodic=True) for k in (1, -1))
     assert (gradient * planes(move)).sum() == pytest.approx((ahead - behind) / (2 * h), rel=1e-6)
+
+
+def test_corners_at_a_sharp_edge_keep_a_share_of_their_angle_term() -> None:
+    nodes = tfi(naca(33, 9)).nodes
+    weights, aspect, z = Weights(), aspect_of(nodes, periodic=True), planes(nodes)
+    terms, work = (aspect, weights.shape, weights.smoothness, 0.0, True), np.empty(workspace(33, 9))
+    share = relief_of(nodes[:, 0])
+    assert share[0] == share[-1] < 1e-3
+    assert (share[1:-1] == 1).all()
+    values, gradients = [], []
+    for relief in (None, share):
+        gradients.append(np.empty_like(z))
+        values.append(compiled(z, *terms, relief, gradients[-1], work)[0])
+    u, v = nodes[1, 0] - nodes[0, 0], nodes[0, 1] - nodes[0, 0]
+    back = nodes[0, 0] - nodes[-2, 0]
+    angles = [(e @ e) * (v @ v) / (e[0] * v[1] - e[1] * v[0]) ** 2 for e in (u, back)]
+    lost = weights.shape * (1 - share[0]) * sum(a**2 for a in angles) / (12 * 32 * 8)
+    assert values[0] - values[1] == pytest.approx(lost, rel=1e-10)
+    changed = np.argwhere(gradients[0] != gradients[1])
+    assert {(int(i), int(j)) for _, i, j in changed} == {(0, 1)}
 
 
 def test_the_gradient_is_zero_on_the_rim() -> None:
