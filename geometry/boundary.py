@@ -45,6 +45,7 @@ class Boundary:
     sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
     notes : sentences a user should read, such as that an outline was changed.
     origin : the numbers that made it and what it is kept for, of a sample of a dataset.
+    sampled : whether the nodes were chosen here, on curves, and may be chosen otherwise.
 
     Raises
     ------
@@ -65,6 +66,7 @@ class Boundary:
     sensors: Floats | None = None
     notes: tuple[str, ...] = ()
     origin: Origin = UNKNOWN
+    sampled: bool = False
 
     def __post_init__(self) -> None:
         if self.topology not in TOPOLOGIES:
@@ -140,7 +142,7 @@ class Boundary:
             for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
         }
         parts = tuple(_rescaled(part, self, ni, nj) for part in self.parts)
-        return replace(self, **edges, parts=parts, sensors=None)
+        return replace(self, **edges, parts=parts, sensors=None, sampled=True)
 
     def _check_corners(self) -> None:
         corners = (

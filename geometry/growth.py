@@ -62,10 +62,19 @@ def cells_for_growth(first: float, length: float, ratio: float) -> int:
     return math.ceil(math.log1p(length / first * (ratio - 1.0)) / math.log(ratio) - 1e-9)
 
 
-def growing_steps(first: float, length: float, cells: int) -> Floats:
-    """Return `cells` sizes (cells,) from `first` on that grow by `growth_ratio` and add up to `length`."""
-    ratio = growth_ratio(first, length, cells)
-    return np.asarray(first * ratio ** np.arange(cells))
+def growing_steps(first: float, length: float, cells: int, constant: int = 1) -> Floats:
+    """Return `cells` sizes (cells,) from `first` on that grow by `growth_ratio` and add up to `length`.
+
+    The first `constant` ones are equal; the ratio is that of the others.
+
+    Examples
+    --------
+    >>> growing_steps(1.0, 9.0, 5, 3).tolist()
+    [1.0, 1.0, 1.0, 2.0, 4.0]
+    """
+    equal = min(constant, cells) - 1
+    ratio = growth_ratio(first, length - equal * first, cells - equal)
+    return np.asarray(first * ratio ** np.maximum(np.arange(cells) - equal, 0))
 
 
 def _sum(log_ratio: float, cells: int) -> float:

@@ -132,7 +132,7 @@ class Outline:
             edge[0], edge[-1] = curve.points[corners[k]], curve.points[corners[(k + 1) % 4]]
             edges.append(edge)
         south, east, north, west = edges
-        return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name)
+        return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
 
     def _asked_corners(self, asked: tuple[int, int, int, int]) -> tuple[int, ...]:
         """Return the corners asked for, counter-clockwise from the first."""

@@ -69,8 +69,7 @@ class Recipe:
         inside = {stage: solution.seconds[stage] for stage in ("grid", "guard") if stage in solution.seconds}
         clock.lap("load" if "grid" in inside else "grid", inside=inside)
         grid, path = self._guarded(solution, boundary)
-        told = ["the guard changed cells: the first ones are no longer all as high as asked"]
-        told = told if path and solution.method == "hyperbolic" else []
+        told = self._first_cells(grid) if path else ()
         clock.lap("guard")
         quality = measure(grid, percentiles=need_percentiles(self.gates))
         clock.lap("quality")
@@ -90,6 +89,18 @@ class Recipe:
         report.seconds |= clock.seconds
         grid = replace(grid, origin=boundary.origin)
         return grid.with_provenance(**provenance(), **self.facts), report
+
+    @staticmethod
+    def _first_cells(grid: Grid) -> tuple[str, ...]:
+        """Return what there is to tell of first cells that the guard changed."""
+        if not any(key == "wall_spacing" or key.startswith("spacing_") for key in grid.provenance):
+            return ()
+        from solvers.walls.spread import worst_first_cell
+
+        error = worst_first_cell(grid)
+        if error < 1e-8:
+            return ()
+        return (f"the guard changed first cells: they miss what was asked by up to {error:.1g} of it",)
 
     def _guarded(self, solution: Solution, boundary: Boundary) -> tuple[Grid, tuple[str, ...]]:
         grid = solution.grid

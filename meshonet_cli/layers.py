@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -14,15 +12,13 @@ if TYPE_CHECKING:
     from meshonet_cli.options import SpacingName
     from solvers.solution import Solution
 
-Method: TypeAlias = "Callable[[Boundary], Solution]"
-
 # fmt: off
 WallSpacing = Annotated[
     float | None,
     typer.Option(
         "--wall-spacing", metavar="H", show_default=False,
-        help="Height of the first cell at every wall node, in chords: a grid for boundary layers, marched "
-        "from the wall (method hyperbolic).",
+        help="Height of the first cell at every wall node. Around a body in chords: a grid for boundary "
+        "layers, marched from the wall. In a four-sided domain off south and north, in its own unit.",
     ),
 ]
 YPlus = Annotated[
@@ -104,16 +100,13 @@ def read_layers(
             f"{FORMULA} ({SOURCE})"
         )
     if wall_spacing is None:
-        if growth is not None:
-            raise InputError("--growth without a first cell", "give --wall-spacing or --y-plus as well")
         return None
-    from solvers.hyperbolic import check_layers
-
-    try:
-        check_layers(wall_spacing, growth)
-    except InputError as error:
-        error.source = error.source or ("--growth" if "growth" in error.problem else "--wall-spacing")
-        raise
+    if not 0 < wall_spacing < float("inf"):
+        raise InputError(f"a wall spacing of {wall_spacing:g}", "use 1e-9 to 0.1", source="--wall-spacing")
+    if growth is not None and not 1 < growth <= 10:
+        raise InputError(
+            f"a growth of {growth:g}", "give the ratio of neighbouring cells, such as 1.15", source="--growth"
+        )
     return Layers(wall_spacing, growth, growth is not None and res is None, note)
 
 
@@ -122,40 +115,21 @@ def spacing_along(layers: Layers | None, asked: SpacingName) -> SpacingName:
     return "curvature" if layers is not None and asked == "auto" else asked
 
 
-def marching(method: str, layers: Layers | None, unused: Mapping[str, object]) -> Method | None:
-    """Return the solver that marches `layers`, or None when `method` is another one.
-
-    Parameters
-    ----------
-    method : ``auto`` marches when there are layers.
-    layers : asked for.
-    unused : values by option, not None when given, of no use to a march.
-
-    Raises
-    ------
-    InputError
-        a method and options that do not go together.
-    """
+def march(boundary: Boundary, layers: Layers, constant: int = 1) -> Solution:
+    """Return the grid marched from the wall of `boundary`, with `constant` equal first layers."""
     from geometry.errors import InputError
+    from solvers.hyperbolic import check_layers, hyperbolic
 
-    if layers is None and method != "hyperbolic":
-        return None
-    if layers is None:
-        raise InputError(
-            "--method hyperbolic without a first cell", "give --wall-spacing or --y-plus as well"
-        )
-    if method not in ("auto", "hyperbolic"):
-        raise InputError(f"--method {method} cannot set the first cell", "use --method hyperbolic")
-    for option, value in unused.items():
-        if value is not None:
-            raise InputError(f"{option} is of no use to a grid marched from the wall", f"drop {option}")
-    return partial(_marched, layers=layers)
-
-
-def _marched(boundary: Boundary, *, layers: Layers) -> Solution:
-    from solvers.hyperbolic import hyperbolic
-
+    try:
+        check_layers(layers.wall_spacing, layers.growth)
+    except InputError as error:
+        error.source = "--growth" if "growth" in error.problem else "--wall-spacing"
+        raise
     solution = hyperbolic(
-        boundary, wall_spacing=layers.wall_spacing, growth=layers.growth, free_rows=layers.free_rows
+        boundary,
+        wall_spacing=layers.wall_spacing,
+        growth=layers.growth,
+        free_rows=layers.free_rows,
+        constant=constant,
     )
     return replace(solution, notes=(layers.note, *solution.notes) if layers.note else solution.notes)

@@ -71,7 +71,12 @@ OPEN_ATTEMPTS = (
 
 
 def hyperbolic(
-    boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False
+    boundary: Boundary,
+    *,
+    wall_spacing: float,
+    growth: float | None = None,
+    free_rows: bool = False,
+    constant: int = 1,
 ) -> Solution:
     """Return an O or C grid marched from the wall of `boundary`.
 
@@ -81,6 +86,7 @@ def hyperbolic(
         many rows to take. The ends of a C's rows move along its west and east, taken as straight.
     wall_spacing : distance of the first node from the wall in chords (`Boundary.chord`), met to 1e-8 of it.
     growth : the largest ratio of neighbouring cells from the wall outwards; None takes what the rows need.
+    constant : so many first rows are equally high.
     free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
 
     Returns
@@ -99,10 +105,10 @@ def hyperbolic(
     begun = time.perf_counter()
     first = _first_cell(boundary, wall_spacing, growth)
     front = Front(boundary)
-    cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows)
+    cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows, constant)
     best, least = None, 0
     for settings in OPEN_ATTEMPTS if boundary.topology == "c" else ATTEMPTS:
-        nodes = _marched(front, cells, first, settings)
+        nodes = _marched(front, cells, first, settings, constant)
         if nodes is None:
             continue
         folded = count_folded(nodes)
@@ -137,10 +143,13 @@ def check_layers(wall_spacing: float, growth: float | None = None) -> None:
         )
 
 
-def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool) -> int:
+def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool, constant: int) -> int:
     """Return the number of cells from the wall to the far field."""
     allowed = growth or _MOST_GROWTH
-    needed = cells_for_growth(first, distance, allowed)
+    equal = constant - 1
+    if equal * first >= distance:
+        raise InputError(f"{constant} layers of {first:.3g} reach the far field", "use fewer constant layers")
+    needed = equal + cells_for_growth(first, distance - equal * first, allowed)
     if free and growth:
         return needed
     if needed > cells:
@@ -148,11 +157,11 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
             f"{cells + 1} rows of nodes cannot reach the far field growing by {allowed:g} each",
             f"use {needed + 1} rows or more",
         )
-    growth_ratio(first, distance, cells)  # raises when even equal cells reach too far
+    growth_ratio(first, distance - equal * first, cells - equal)  # raises when even equal cells reach too far
     return cells
 
 
-def _marched(front: Front, cells: int, first: float, settings: MarchSettings) -> Floats | None:
+def _marched(front: Front, cells: int, first: float, settings: MarchSettings, constant: int) -> Floats | None:
     """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
 
     Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
@@ -164,9 +173,9 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings) ->
     levels[:, 0] = start.T
     scratch = np.empty(scratch_size(n))
     knobs = settings.dissipation, 1.0 + settings.theta, 0.16, settings.sweeps, round(0.75 * cells)
-    distance = _distance_to_march(front.inner, front.outer, first, cells, knobs[1])
+    distance = _distance_to_march(front.inner, front.outer, first, cells, knobs[1], constant)
     for _ in range(4):
-        steps = growing_steps(first, distance, cells)
+        steps = growing_steps(first, distance, cells, constant)
         march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
         reached = front.reach(levels)
         if not math.isfinite(reached):
@@ -180,7 +189,9 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings) ->
     return nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None
 
 
-def _distance_to_march(inner: float, outer: float, first: float, cells: int, implicit: float) -> float:
+def _distance_to_march(
+    inner: float, outer: float, first: float, cells: int, implicit: float, constant: int
+) -> float:
     """Return the sum of the steps that lead from a circle of radius `inner` to one of radius `outer`.
 
     Around a circle a step s leads from r to r + s/(1 + f s/r), f being the weight of the flux along a level.
@@ -188,7 +199,7 @@ def _distance_to_march(inner: float, outer: float, first: float, cells: int, imp
     distance = outer - inner
     for _ in range(8):
         r = inner
-        for step in growing_steps(first, distance, cells).tolist():
+        for step in growing_steps(first, distance, cells, constant).tolist():
             r += step / (1.0 + implicit * step / r)
         if abs(r - outer) < 1e-3 * outer:
             break
@@ -202,7 +213,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     The correction of row j fades like exp(-(j - 1)/m), slower than cells grow, so that rows keep their order.
     """
     rows = nodes.shape[1]
-    rate = math.log(steps[1] / steps[0]) if rows > 2 else 1.0
+    rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(_FADE, 1.5 / max(rate, 1e-3)))
     if rows > 2:
         redistribute(nodes[..., 0], nodes[..., 1], heights, fade, np.empty(5 * rows))

@@ -6,6 +6,7 @@ import typer
 
 from meshonet_cli import layers as layer
 from meshonet_cli import options as o
+from meshonet_cli import walls as wall
 
 EXAMPLES = (
     "meshonet infer airfoil.dat --res 800 -o grid.vts",
@@ -53,6 +54,7 @@ def infer(
     reynolds: layer.Reynolds = None,
     chord_fraction: layer.ChordFraction = 0.5,
     growth: layer.Growth = None,
+    constant_layers: wall.ConstantLayers = None,
     te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
     wake: o.Wake = None,
@@ -80,14 +82,15 @@ def infer(
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     unused = {"--model": model, "--polish": None if polish == "auto" else polish}
-    marched = layer.marching("auto", layers, unused)
+    edges = wall.read_edges((), constant_layers, growth, res, layers)
+    solver = partial(operate, model=model, polish=o.polish_steps(polish), answer=answer)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
         ),
-        marched or partial(operate, model=model, polish=o.polish_steps(polish), answer=answer),
+        wall.WithWalls("auto", solver, layers, edges, unused),
         allow_invalid,
         parse_gates(fail_on),
         repair=answer == "valid",

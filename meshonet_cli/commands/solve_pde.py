@@ -6,6 +6,7 @@ import typer
 
 from meshonet_cli import layers as layer
 from meshonet_cli import options as o
+from meshonet_cli import walls as wall
 
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
@@ -14,6 +15,7 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --method thomas-middlecoff --spacing tanh -o layers.vts",
     "meshonet solve-pde duct.csv --res 25x13 --refine 3 -o finest.vts",
     "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
+    "meshonet solve-pde duct.csv --res 200x80 --wall-spacing 1e-4 --slide -o channel.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
 
@@ -84,6 +86,12 @@ def solve_pde(
     reynolds: layer.Reynolds = None,
     chord_fraction: layer.ChordFraction = 0.5,
     growth: layer.Growth = None,
+    constant_layers: wall.ConstantLayers = None,
+    slide: wall.Slide = None,
+    spacing_south: wall.SpacingSouth = None,
+    spacing_north: wall.SpacingNorth = None,
+    spacing_west: wall.SpacingWest = None,
+    spacing_east: wall.SpacingEast = None,
     te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
     wake: o.Wake = None,
@@ -112,18 +120,26 @@ def solve_pde(
     from solvers.variational.solve import solve as minimise
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
-    marched = layer.marching(
-        method, layers, {"--tol": tol, "--initial": initial, "--coarse": coarse, "--refine": refine or None}
-    )
+    sides = (spacing_south, spacing_north, spacing_west, spacing_east)
+    edges = wall.read_edges(sides, constant_layers, growth, res, layers, slide)
     elliptic = {"auto": solve, "winslow": solve, "thomas-middlecoff": solve_thomas_middlecoff}
-    lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
-    lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
+    lengths = {
+        "le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te, "wake": wake,
+        "wake_nodes": wake_nodes, "viscous": layers is not None,
+    }  # fmt: skip
     settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
+    solver = at_any_resolution(partial(elliptic.get(method, minimise), **settings), coarse, refine)
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
         ),
-        marched or at_any_resolution(partial(elliptic.get(method, minimise), **settings), coarse, refine),
+        wall.WithWalls(
+            method,
+            solver,
+            layers,
+            edges,
+            {"--tol": tol, "--initial": initial, "--coarse": coarse, "--refine": refine or None},
+        ),  # fmt: skip
         allow_invalid,
         parse_gates(fail_on),
         refine=refine,

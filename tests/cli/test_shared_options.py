@@ -242,13 +242,18 @@ def test_growth_takes_the_rows_it_needs(meshonet: Meshonet, command: str) -> Non
             ("--y-plus", "1", "--reynolds", "2e3", "--chord-fraction", "0.1"),
             "--chord-fraction: a Reynolds number of 200 at 0.1 of the chord; use a larger part",
         ),
-        (("--growth", "1.2"), "--growth without a first cell; give --wall-spacing or --y-plus as well"),
+        (("--growth", "1.2"), "--growth without a first cell; give --wall-spacing, --y-plus or --spacing"),
         (
             ("--wall-spacing", "1e-5", "--growth", "0.2"),
             "--growth: a growth of 0.2; give the ratio of neighb",
         ),
-        (("--wall-spacing", "-1"), "--wall-spacing: a wall spacing of -1 chords; use 1e-9 to 0.1"),
+        (("--wall-spacing", "-1"), "--wall-spacing: a wall spacing of -1; use 1e-9 to 0.1"),
         (("--wall-spacing", "x"), "wall-spacing"),
+        (("--wall-spacing", "2"), "--wall-spacing: a wall spacing of 2 chords; use 1e-9 to 0.1"),
+        (("--wall-spacing", "nan"), "--wall-spacing: a wall spacing of nan; use 1e-9 to 0.1"),
+        (("--constant-layers", "3"), "--constant-layers without a first cell; give --wall-spacing"),
+        (("--wall-spacing", "1e-3", "--constant-layers", "0"), "constant-layers"),
+        (("--wall-spacing", "0.1", "--constant-layers", "200"), "200 layers of 0.1 reach the far field"),
         (("--wall-spacing", "1e-5", "--res", "90x10"), "10 rows of nodes cannot reach the far field growing"),
     ],
 )
@@ -263,10 +268,33 @@ def test_first_cells_that_make_no_sense_get_a_line(
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)
-def test_a_channel_has_no_march(meshonet: Meshonet, duct_h5: Path, command: str) -> None:
-    done = meshonet(command, duct_h5, "--wall-spacing", "1e-3", "-o", "g.vts")
+def test_in_a_channel_the_walls_are_south_and_north(meshonet: Meshonet, duct_h5: Path, command: str) -> None:
+    words = ("--wall-spacing", "1e-4", "--res", "61x61", "--constant-layers", "3")
+    told = meshonet(command, duct_h5, *words, "-o", "g.h5", "--json").only
+    assert told["folded"] == 0
+    assert any("0.0001 off south, 0.0001 off north" in note for note in told["notes"])
+    (grid,) = read_grids("g.h5")
+    steps = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
+    np.testing.assert_allclose(steps[:, [0, -1]], 1e-4, rtol=1e-8)
+    np.testing.assert_allclose(steps[:, [1, 2, -2, -3]], 1e-4, rtol=1e-3)
+
+
+def test_no_march_makes_a_channel(meshonet: Meshonet, duct_h5: Path) -> None:
+    words = (duct_h5, "--wall-spacing", "1e-3", "--method", "hyperbolic", "-o", "g.vts")
+    done = meshonet("solve-pde", *words)
     assert done.code == 2
     assert "hyperbolic marching cannot make a quad grid; use it around a body (topology o or c)" in done.err
+
+
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_constant_layers_are_equally_high(meshonet: Meshonet, command: str) -> None:
+    words = ("--wall-spacing", "1e-4", "--constant-layers", "5", "--res", "120x70")
+    assert meshonet(command, SECTION, *words, "-o", "g.h5").code == 0
+    (grid,) = read_grids("g.h5")
+    steps = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
+    np.testing.assert_allclose(steps[:, 0], 1e-4, rtol=1e-8)
+    assert np.abs(steps[:, 1:5] / 1e-4 - 1).mean() < 0.02
+    assert (steps[:, 8] > 1.2e-4).all()
 
 
 def options() -> list[tuple[str, str]]:

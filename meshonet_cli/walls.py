@@ -1,0 +1,217 @@
+"""The options for first cells off single edges, and the way from all of them to a grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Annotated, TypeAlias
+
+import typer
+
+if TYPE_CHECKING:
+    from geometry.boundary import Boundary
+    from meshonet_cli.layers import Layers
+    from solvers.solution import Solution
+    from solvers.walls.heights import Heights
+
+Method: TypeAlias = "Callable[..., Solution]"
+
+# fmt: off
+SpacingSouth = Annotated[
+    float | None,
+    typer.Option(
+        "--spacing-south", metavar="H", show_default=False,
+        help="Height of the first cell at every node of the south side of a four-sided domain, in its unit.",
+    ),
+]
+SpacingNorth = Annotated[
+    float | None,
+    typer.Option("--spacing-north", metavar="H", show_default=False, help="The same off the north side."),
+]
+SpacingWest = Annotated[
+    float | None,
+    typer.Option("--spacing-west", metavar="H", show_default=False, help="The same off the west side."),
+]
+SpacingEast = Annotated[
+    float | None,
+    typer.Option("--spacing-east", metavar="H", show_default=False, help="The same off the east side."),
+]
+ConstantLayers = Annotated[
+    int | None,
+    typer.Option(
+        "--constant-layers", metavar="K", min=1, show_default=False,
+        help="So many first cells are equally high; beyond, they grow. [default: 1]",
+    ),
+]
+Slide = Annotated[
+    bool | None,
+    typer.Option(
+        "--slide/--no-slide", show_default=False,
+        help="Move the nodes of south and north along these walls of a four-sided domain to where grid lines "
+        "leave at right angles. [default: with --wall-spacing, when the nodes were sampled here]",
+    ),
+]
+# fmt: on
+
+
+@dataclass(frozen=True)
+class Edges:
+    """What was asked off single edges of four-sided domains, and of layers everywhere.
+
+    Parameters
+    ----------
+    heights : by side, in the unit of the domain.
+    constant : equal first layers.
+    growth, free_rows : as in `meshonet_cli.layers.Layers`.
+    slide : whether wall nodes of four-sided domains move; None: when there are layers and no given nodes.
+    """
+
+    heights: Mapping[str, float]
+    constant: int = 1
+    growth: float | None = None
+    free_rows: bool = False
+    slide: bool | None = None
+
+
+def read_edges(
+    asked: Sequence[float | None],
+    constant: int | None,
+    growth: float | None,
+    res: str | None,
+    layers: Layers | None,
+    slide: bool | None = None,
+) -> Edges:
+    """Return what the options ask for, `asked` off south, north, west and east.
+
+    Raises
+    ------
+    InputError
+        a height that is not positive; constant layers or growth without any height.
+    """
+    from geometry.errors import InputError
+
+    sides = ("south", "north", "west", "east")
+    heights = {side: height for side, height in zip(sides, asked, strict=False) if height is not None}
+    for side, height in heights.items():
+        if not 0 < height < float("inf"):
+            raise InputError(
+                f"a first cell of {height:g}", "give a positive height", source=f"--spacing-{side}"
+            )
+    if not heights and layers is None:
+        for option, value in (("--constant-layers", constant), ("--growth", growth)):
+            if value is not None:
+                raise InputError(
+                    f"{option} without a first cell",
+                    "give --wall-spacing, --y-plus or --spacing-south as well",
+                )
+    return Edges(heights, constant or 1, growth, growth is not None and res is None, slide)
+
+
+@dataclass(frozen=True)
+class WithWalls:
+    """A method, and what becomes of its grids at the walls.
+
+    Parameters
+    ----------
+    name : of the method as it was asked for.
+    method : the solver.
+    layers : asked for at walls.
+    edges : asked for off single edges.
+    unused : values by option, not None when given, of no use to a march.
+    """
+
+    name: str
+    method: Method
+    layers: Layers | None
+    edges: Edges
+    unused: Mapping[str, object] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        from geometry.errors import InputError
+
+        if self.name == "hyperbolic" and self.layers is None:
+            problem = "--method hyperbolic without a first cell"
+            raise InputError(problem, "give --wall-spacing or --y-plus as well")
+
+    def __call__(self, boundary: Boundary) -> Solution:
+        """Return the grid of `boundary`, its first cells as high as asked.
+
+        Raises
+        ------
+        InputError
+            what was asked does not fit the boundary or the method.
+        """
+        from geometry.errors import InputError
+
+        if boundary.topology != "quad":
+            if self.edges.heights:
+                raise InputError(
+                    f"a height off a single side, around a body (topology {boundary.topology})",
+                    "use --wall-spacing",
+                    source=f"--spacing-{next(iter(self.edges.heights))}",
+                )
+            if self.layers is not None and self.name == "auto":
+                return self._marched(boundary, self.layers)
+        if self.layers is not None and self.name == "hyperbolic":
+            return self._marched(boundary, self.layers)
+        heights = self.heights(boundary)
+        if heights.any and self.unused.get("--refine") is not None:
+            raise InputError("--refine with first cells of given heights", "use a finer --res instead")
+        solution = self._solved(boundary, heights)
+        if not heights.any:
+            return solution
+        from solvers.walls.spread import spread
+
+        solution = spread(solution, solution.boundary or boundary, heights)
+        note = self.layers.note if self.layers else ""
+        return replace(solution, notes=(note, *solution.notes)) if note else solution
+
+    def _solved(self, boundary: Boundary, heights: Heights) -> Solution:
+        """Return the grid of `boundary` with even rows, its wall nodes slid when they are to."""
+        channel = boundary.topology == "quad" and boundary.sampled and self.name == "auto"
+        slide = self.edges.slide
+        if slide is None:
+            slide = channel and bool(heights.south or heights.north)
+        if not slide:
+            return self.method(boundary)
+        from solvers.elliptic.solve import solve
+        from solvers.walls.slide import slide_walls
+
+        slid, controls = slide_walls(boundary)
+        told = "wall nodes slid along south and north"
+        if controls is not None and getattr(self.method, "func", None) is solve:
+            solution = self.method(slid, controls=controls)
+        else:
+            solution = self.method(slid)
+        return replace(solution, boundary=slid, notes=(*solution.notes, told))
+
+    def heights(self, boundary: Boundary) -> Heights:
+        """Return the heights in the unit of `boundary`.
+
+        A wall spacing is in chords around a body and off south and north, in its own unit, in a four-sided
+        domain. A y+ gives chords; the chord of a four-sided domain is the extent of its south side.
+        """
+        from solvers.walls.heights import Heights
+
+        found: dict[str, float] = {}
+        if self.layers is not None:
+            chords = boundary.topology != "quad" or self.layers.note
+            height = self.layers.wall_spacing * (boundary.chord if chords else 1.0)
+            walls = ("south", "north") if boundary.topology == "quad" else ("south",)
+            found = dict.fromkeys(walls, height)
+        edges = self.edges
+        return Heights(
+            **found | dict(edges.heights),
+            constant=edges.constant,
+            growth=edges.growth,
+            free_rows=edges.free_rows,
+        )
+
+    def _marched(self, boundary: Boundary, layers: Layers) -> Solution:
+        from geometry.errors import InputError
+        from meshonet_cli.layers import march
+
+        for option, value in self.unused.items():
+            if value is not None:
+                raise InputError(f"{option} is of no use to a grid marched from the wall", f"drop {option}")
+        return march(boundary, layers, self.edges.constant)

@@ -1,0 +1,1 @@
+"""Cells of given heights at the walls of any grid."""

@@ -1,0 +1,189 @@
+"""Wall nodes of a four-sided domain moved along their walls until the lines leave them at right angles.
+
+Each round solves for the grid (a cycle from the last one), measures by how much the lines lean at the walls,
+and moves the wall nodes against it. A displacement sin(k s) of both walls leans the lines by k tanh(k H/2)
+times as much, a contrary one by k coth(k H/2), H being the distance of the walls, so sum and difference of
+the leans are divided by that, wave by wave. It is done on few nodes; the map from old to new places along a
+wall is smooth and serves any number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import Floats, planar_nodes
+from geometry.boundary import Boundary
+from geometry.curves import Curve
+from geometry.errors import InputError
+from geometry.sampling import monotone_cubic
+from geometry.stretch import on_corners
+from solvers.elliptic.control import Controls, Factors
+from solvers.elliptic.multigrid import Multigrid
+
+COUNTS = 129, 49
+"""Nodes to slide at the most: along and between the walls."""
+
+ROUNDS = 60
+"""Rounds at the most."""
+
+STRAIGHT = np.sin(np.radians(0.05))
+"""Lean of a line at the wall that is left, as the sine of the angle to the normal."""
+
+RELAXATION = 0.7
+"""Part of the linear answer that a round moves by."""
+
+ROOM = 0.4
+"""Part by which a round may change a step between wall nodes."""
+
+
+def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
+    """Return `boundary` with the nodes of south and north moved, and the controls to solve with.
+
+    The lines of an elliptic grid of the result leave both walls at right angles, but next to west and east
+    where those do not, and at kinks of the walls, which stay nodes. Nodes that were not evenly spaced are not
+    so afterwards either: the control function φ(ξ) keeps what their spacing had of ξ alone; none, when even.
+
+    Parameters
+    ----------
+    boundary : quad; its walls are the curves through its nodes.
+
+    Raises
+    ------
+    InputError
+        a topology other than ``quad``.
+    """
+    if boundary.topology != "quad":
+        raise InputError(f"the wall of a {boundary.topology} grid cannot slide", "slide those of channels")
+    curves = Curve(boundary.south), Curve(boundary.north)
+    given = curves[0].knots, curves[1].knots
+    m, n = (min(count, most) for count, most in zip((boundary.ni, boundary.nj), COUNTS, strict=True))
+    if m < 5 or n < 5:
+        return boundary, _controls(*given, boundary.nj)
+    few = np.linspace(0.0, boundary.ni - 1.0, m)
+    index = np.arange(float(boundary.ni))
+    starts = np.interp(few, index, given[0]), np.interp(few, index, given[1])
+    ends = _slid(boundary, curves, starts, n)
+    sides = []
+    for side, curve, old, start, end in zip(("south", "north"), curves, given, starts, ends, strict=True):
+        new = on_corners(monotone_cubic(start, end, old), _inner_corners(curve))
+        edge = curve.at(new)
+        edge[[0, -1]] = getattr(boundary, side)[[0, -1]]
+        sides.append(edge)
+    return replace(boundary, south=sides[0], north=sides[1], sensors=None), _controls(*given, boundary.nj)
+
+
+def _inner_corners(curve: Curve) -> Floats:
+    return curve.corners[(curve.corners > 0) & (curve.corners < curve.length)]
+
+
+def _controls(south: Floats, north: Floats, nj: int) -> Controls | None:
+    """Return φ(ξ) of the mean spacing of two walls with arc lengths (n,), None when it is even."""
+    steps = np.log(np.diff(0.5 * (south / south[-1] + north / north[-1])))
+    ratios = np.zeros(len(south))
+    ratios[1:-1] = np.diff(steps)
+    if np.abs(ratios).max() < 1e-6:
+        return None
+    return Controls(Factors(ratios[None], np.ones((1, nj))), Factors.none(len(south), nj))
+
+
+def _slid(
+    boundary: Boundary, curves: tuple[Curve, Curve], starts: tuple[Floats, Floats], n: int
+) -> tuple[Floats, Floats]:
+    """Return arc lengths (m,) on both walls at which the lines of a grid of m x n nodes stand upright."""
+    m = len(starts[0])
+    few = np.linspace(0.0, boundary.nj - 1.0, n)
+    sides = [_between(getattr(boundary, side), few) for side in ("west", "east")]
+    arcs = [start.copy() for start in starts]
+    best, least = (starts[0].copy(), starts[1].copy()), np.inf
+    nodes = planar_nodes(m, n)
+    edges = curves[0].at(arcs[0]), curves[1].at(arcs[1]), sides[0], sides[1]
+    for edge, side in zip(edges[:2], (0, -1), strict=True):
+        edge[0], edge[-1] = sides[0][side], sides[1][side]
+    levels = Multigrid(nodes, edges, False, controls=_controls(*starts, n))
+    levels.nested_iteration()
+    for _ in range(2):
+        levels.cycle()
+    waves = _waves(m)
+    relaxation, part = RELAXATION, 0.0
+    for _ in range(ROUNDS):
+        leans = _leans(nodes, curves, arcs)
+        lean = float(np.sqrt(np.mean(np.square(leans))))
+        if not lean < 4.0 * least:  # not a number, or going astray
+            break
+        if lean < least:
+            best, least = (arcs[0].copy(), arcs[1].copy()), lean
+        elif relaxation > 0.1 and part == relaxation:
+            relaxation *= 0.8
+        if max(np.abs(one).max() for one in leans) < STRAIGHT:
+            break
+        apart = float(np.hypot(*(nodes[:, -1] - nodes[:, 0]).T).mean())
+        moves = _answer(leans, arcs, waves, apart)
+        part = min(relaxation, _part(moves, arcs))
+        for k, curve in enumerate(curves):
+            arcs[k] += part * moves[k]
+            edge = curve.at(arcs[k])
+            edge[[0, -1]] = nodes[[0, -1], -k]
+            _move_wall(nodes, edge, k)
+        levels.cycle()
+    return best
+
+
+def _between(edge: Floats, places: Floats) -> Floats:
+    """Return points on the curve through an edge at fractional places of its index; the ends are kept."""
+    curve = Curve(edge)
+    points = curve.at(np.interp(places, np.arange(float(len(edge))), curve.knots))
+    points[[0, -1]] = edge[[0, -1]]
+    return points
+
+
+def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> list[Floats]:
+    """Return the sine (m,) of the angle by which lines lean along each wall, away from its normal."""
+    leans = []
+    for curve, arc, rows in zip(curves, arcs, ((0, 1, 2), (-1, -2, -3)), strict=True):
+        a, b, c = (nodes[:, j] for j in rows)
+        first, second = np.hypot(*(b - a).T)[:, None], np.hypot(*(c - b).T)[:, None]
+        out = (b - a) / first
+        direction = out + (out - (c - b) / second) * first / (first + second)
+        leans.append((direction * curve.tangent(arc)).sum(axis=1) / np.hypot(*direction.T))
+        for kink in _inner_corners(curve):
+            leans[-1][np.abs(arc - kink) < 1e-9 * curve.length] = 0.0
+        leans[-1][[0, -1]] = 0.0
+    return leans
+
+
+def _waves(m: int) -> Floats:
+    """Return sines (m - 2, m - 2) that take inner values to amplitudes, and back, but for 2/(m - 1)."""
+    k = np.arange(1, m - 1)
+    return np.sin(np.pi * np.outer(k, k) / (m - 1))
+
+
+def _answer(leans: list[Floats], arcs: list[Floats], waves: Floats, apart: float) -> tuple[Floats, Floats]:
+    """Return the displacements (m,) along both walls that take the leans away, to first order."""
+    m = len(arcs[0])
+    k = 2.0 * np.pi * np.arange(1, m - 1) / (arcs[0][-1] + arcs[1][-1])
+    both, contrary = (
+        waves @ (waves @ lean[1:-1] * (2.0 / (m - 1)) / (k * response))
+        for lean, response in (
+            (0.5 * (leans[0] + leans[1]), np.tanh(0.5 * k * apart)),
+            (0.5 * (leans[0] - leans[1]), 1.0 / np.tanh(0.5 * k * apart)),
+        )
+    )
+    return np.pad(both + contrary, 1), np.pad(both - contrary, 1)
+
+
+def _part(moves: tuple[Floats, Floats], arcs: list[Floats]) -> float:
+    """Return the largest part of the displacements, at most 1, that changes no step by more than `ROOM`."""
+    pairs = zip(moves, arcs, strict=True)
+    change = max(float((np.abs(np.diff(move)) / np.diff(arc)).max()) for move, arc in pairs)
+    return min(1.0, ROOM / max(change, 1e-300))
+
+
+def _move_wall(nodes: Floats, edge: Floats, k: int) -> None:
+    """Put an edge (m, 2) into the first (k = 0) or last row, the others following less and less."""
+    n = nodes.shape[1]
+    share = np.linspace(1.0, 0.0, n) if k == 0 else np.linspace(0.0, 1.0, n)
+    shift = edge - nodes[:, -k]
+    nodes[1:-1] += share[None, :, None] * shift[1:-1, None]
+    nodes[1:-1, -k] = edge[1:-1]

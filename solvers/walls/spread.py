@@ -1,0 +1,218 @@
+"""Any grid, its lines kept, with layers of given heights at its walls.
+
+::
+
+    grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
+
+The lines that leave a wall stay the curves they are and get their nodes anew (``layers_kernel.c``), so that a
+valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their index, which
+keeps kinks of the walls on their nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import SIDES, Floats, as_planar, planar_nodes
+from geometry.boundary import Boundary
+from geometry.curves import Curve
+from geometry.errors import InputError
+from geometry.grid import Grid
+from geometry.growth import LARGEST
+from geometry.parts import default_parts
+from geometry.sampling import monotone_cubic
+from geometry.stretch import on_corners
+from solvers._layers import fill_lines
+from solvers._redistribute import redistribute
+from solvers.guard import guard
+from solvers.solution import Solution
+from solvers.walls.heights import Heights, arcs_in_layers, cells_needed, check_fit, edge_in_layers
+
+FADE = 12.0
+"""Nodes over which the last correction of a first cell fades out."""
+
+EXACT = 1e-10
+"""Relative error of a first cell that is left."""
+
+SLIGHT = 1e-3
+"""Relative error up to which the first node alone is moved."""
+
+PASSES = 100
+"""Alternating corrections of first cells off edges that meet, at the most."""
+
+
+def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
+    """Return `solution` with its nodes moved along its grid lines into layers.
+
+    Parameters
+    ----------
+    solution : a quad or O grid, best with even rows.
+    boundary : what it was made for.
+    heights : of the first cells.
+
+    Returns
+    -------
+    Solution
+        with the boundary that its edges have now, and a note of heights and growth.
+
+    Raises
+    ------
+    InputError
+        heights that the boundary cannot have, or more growth than allowed.
+    """
+    check_fit(heights, boundary)
+    grid, path = guard(solution.grid, boundary, allow_invalid=True)
+    nodes = grid.nodes
+    if heights.west or heights.east:
+        nodes = _along_xi(nodes, boundary, heights)
+    growth = 1.0
+    if heights.south or heights.north:
+        nodes, growth = _along_eta(nodes, boundary, heights)
+    _make_exact(nodes, grid.topology == "o", heights)
+    edges = replace(
+        boundary,
+        south=nodes[:, 0],
+        north=nodes[:, -1],
+        west=nodes[0],
+        east=nodes[-1],
+        parts=boundary.parts if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
+        sensors=None,
+    )
+    asked = {f"spacing_{side}": height for side in SIDES if (height := getattr(heights, side))}
+    facts = {**grid.provenance, **asked}
+    note = f"first cells {heights.told()}, at every node there"
+    note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""
+    return replace(
+        solution,
+        path=(*solution.path, *path),
+        grid=Grid(nodes, grid.topology, edges.parts, grid.name, facts),
+        boundary=edges,
+        notes=(*solution.notes, note),
+    )
+
+
+def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg]
+    """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
+    if all(part.side in ("south", "north") for part in boundary.parts):
+        return boundary.parts
+    return default_parts(boundary.topology, *nodes.shape[:2])
+
+
+def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
+    """Return nodes in layers off south and north, and the largest ratio of neighbouring cells."""
+    ni, nj = nodes.shape[:2]
+    longest = float(np.hypot(*np.diff(nodes, axis=1).T).sum(axis=0).max())
+    count = nj
+    if heights.free_rows:
+        count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1
+    out = planar_nodes(ni, count)
+    given = as_planar(nodes)
+    scratch = np.empty(10 * nj + count)
+    ends = heights.south, heights.north
+    planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
+    ratio = fill_lines(*planes, *ends, heights.constant, scratch)
+    _check_ratio(ratio, count, longest, ends, heights)
+    if boundary.topology == "quad":
+        for i, edge in ((0, boundary.west), (-1, boundary.east)):
+            out[i] = edge_in_layers(edge, count, *ends, heights)
+    else:
+        out[-1] = out[0]
+    return out, ratio
+
+
+def _check_ratio(
+    ratio: float, count: int, length: float, ends: tuple[float, float], heights: Heights
+) -> None:
+    allowed = heights.growth or LARGEST
+    if ratio > allowed * (1 + 1e-9):
+        needed = cells_needed(1.001 * length, *ends, heights) + 1
+        raise InputError(
+            f"{count} nodes across {length:.3g} need cells that grow by {ratio:.3g}, more than {allowed:g}",
+            f"use {needed} or more",
+        )
+
+
+def _along_xi(nodes: Floats, boundary: Boundary, heights: Heights) -> Floats:
+    """Return nodes in layers off west and east: every row by the same kind of map of its index."""
+    ni, nj = nodes.shape[:2]
+    out = nodes.copy(order="K")
+    index = np.arange(float(ni))
+    maps = []
+    for j, edge in ((0, boundary.south), (-1, boundary.north)):
+        curve = Curve(edge)
+        ends = heights.west, heights.east
+        arcs, ratio = arcs_in_layers(curve, ni, *ends, heights)
+        _check_ratio(ratio, ni, curve.length, ends, heights)
+        kinks = curve.corners[(curve.corners > arcs[1]) & (curve.corners < arcs[-2])]
+        arcs = on_corners(arcs, kinks, fixed=(1, ni - 2))
+        maps.append(monotone_cubic(curve.knots, index, arcs))
+        out[:, j] = curve.at(arcs)
+        out[0, j], out[-1, j] = edge[0], edge[-1]
+    t = np.linspace(0.0, 1.0, nj)[1:-1]
+    at = (1 - t) * maps[0][1:-1, None] + t * maps[1][1:-1, None]
+    out[1:-1, 1:-1] = _between_rows(nodes[:, 1:-1], at)
+    return out
+
+
+def _between_rows(nodes: Floats, at: Floats) -> Floats:
+    """Return points (m, n, 2) of nodes (ni, n, 2) at the places `at` (m, n) of the first index.
+
+    Cubic pieces whose slopes are those of parabolas through three nodes.
+    """
+    slope = np.empty_like(nodes)
+    slope[1:-1] = (nodes[2:] - nodes[:-2]) / 2
+    slope[0] = 2 * (nodes[1] - nodes[0]) - slope[1]
+    slope[-1] = 2 * (nodes[-1] - nodes[-2]) - slope[-2]
+    k = np.clip(at.astype(np.intp), 0, len(nodes) - 2)
+    q = (at - k)[..., None]
+    column = np.arange(nodes.shape[1])[None, :]
+    start, stop = nodes[k, column], nodes[k + 1, column]
+    bend = q * (1 - q) * ((1 - q) * slope[k, column] - q * slope[k + 1, column])
+    return np.asarray(start + q * q * (3 - 2 * q) * (stop - start) + bend)
+
+
+def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
+    """Correct first cells in place, off one edge after the other until all are exact."""
+    asked = [
+        (side, height) for side in ("west", "east", "south", "north") if (height := getattr(heights, side))
+    ]
+    for _ in range(PASSES):
+        wrong = [(side, height) for side, height in asked if first_cell_error(nodes, side, height) > EXACT]
+        for side, height in wrong:
+            _correct(nodes, side, height)
+        if periodic:
+            nodes[-1] = nodes[0]
+        if not wrong:
+            return
+
+
+def _correct(nodes: Floats, side: str, height: float) -> None:
+    """Make the first cells off one edge exact, moving nodes less and less away from it."""
+    view = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
+    ends = slice(None) if side in ("south", "north") else slice(1, -1)
+    view = view[ends, ::-1] if side in ("north", "east") else view[ends]
+    planes = np.ascontiguousarray(view[..., 0]), np.ascontiguousarray(view[..., 1])
+    count = view.shape[1]
+    away = np.arange(count) - 1.0
+    if first_cell_error(nodes, side, height) < SLIGHT:
+        fade = (away == 0.0).astype(np.float64)
+    else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
+        fade = np.exp(-np.maximum(away, 0.0) / FADE) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
+    redistribute(*planes, np.full(len(view), height), fade, np.empty(5 * count))
+    view[..., 0], view[..., 1] = planes
+
+
+def worst_first_cell(grid: Grid) -> float:
+    """Return the largest relative error of the first cells that the making of `grid` asked for."""
+    asked = {side: grid.provenance.get(f"spacing_{side}") for side in SIDES}
+    asked["south"] = asked["south"] or grid.provenance.get("wall_spacing")
+    return max((first_cell_error(grid.nodes, side, float(h)) for side, h in asked.items() if h), default=0.0)
+
+
+def first_cell_error(nodes: Floats, side: str, height: float) -> float:
+    """Return the largest relative error of the first cells off one edge."""
+    view = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
+    one, two = (view[:, -1], view[:, -2]) if side in ("north", "east") else (view[:, 0], view[:, 1])
+    return float(np.abs(np.hypot(*(two - one).T) / height - 1.0).max())
