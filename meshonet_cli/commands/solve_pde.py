@@ -139,7 +139,7 @@ def solve_pde(
             layers,
             edges,
             {"--tol": tol, "--initial": initial, "--coarse": coarse, "--refine": refine or None},
-        ),  # fmt: skip
+        ),
         allow_invalid,
         parse_gates(fail_on),
         refine=refine,
