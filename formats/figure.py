@@ -82,12 +82,7 @@ def draw(
         outline(ax, grid)
         ax.set(xlim=view[:2], ylim=view[2:])
         if max(steps) > 1:
-            told = (
-                f"every {steps[0]}th × {steps[1]}th line"
-                if steps[0] != steps[1]
-                else f"every {steps[0]}th line"
-            )
-            _note(ax, told.replace(" 2th", " 2nd"))
+            _note(ax, _drawn_lines(*steps))
     if bar is not None and mesh is not None and colouring:
         figure.colorbar(mesh, cax=bar, extend=_beyond(colouring, limits)).set_label(
             colouring.label, color=INK, size=9
@@ -239,3 +234,18 @@ FORMATS = (
     _format("svg", "picture of a grid, lines as vectors"),
     _format("pdf", "picture of a grid, lines as vectors"),
 )
+
+
+def _drawn_lines(xi: int, eta: int) -> str:
+    """Return in words which lines are drawn: every `xi`-th and every `eta`-th, one of them above 1."""
+    if xi == eta:
+        return f"every {_ordinal(xi)}line"
+    return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"
+
+
+def _ordinal(k: int) -> str:
+    """Return ``3rd `` and the like; nothing for 1."""
+    if k == 1:
+        return ""
+    last = k % 10 if k % 100 not in (11, 12, 13) else 0
+    return f"{k}{('th', 'st', 'nd', 'rd')[last] if last < 4 else 'th'} "

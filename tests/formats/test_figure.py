@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.figure import Colouring, draw, write
+from formats.figure import _drawn_lines, Colouring, draw, write
 from geometry.errors import InputError
 from geometry.grid import Grid
 
@@ -137,3 +137,16 @@ def test_what_cannot_be_drawn_is_refused(case: str) -> None:
     settings, told = CASES[case]
     with pytest.raises(InputError, match=told):
         draw(CHANNEL, **settings)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("steps", "words"),
+    [
+        ((1, 5), "every xi and 5th eta line"),
+        ((2, 2), "every 2nd line"),
+        ((12, 21), "every 12th xi and 21st eta line"),
+        ((4, 3), "every 4th xi and 3rd eta line"),
+    ],
+)
+def test_lines_left_out_are_told_in_words(steps: tuple[int, int], words: str) -> None:
+    assert _drawn_lines(*steps) == words
