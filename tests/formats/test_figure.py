@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.figure import _drawn_lines, Colouring, draw, write
+from formats.figure import Colouring, _drawn_lines, draw, write
 from geometry.errors import InputError
 from geometry.grid import Grid
 
