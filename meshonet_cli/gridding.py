@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import TYPE_CHECKING
 
+from formats.output import whole_file
 from formats.registry import read_grids, read_shapes
 from geometry.boundary import Boundary
 from geometry.errors import NoValidGridError
@@ -22,7 +23,9 @@ from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
+from meshonet_cli.watching import Live, Recorder, Row, write
 from solvers.guard import guard
+from solvers.progress import listening
 from solvers.solution import Solution
 
 if TYPE_CHECKING:
@@ -41,6 +44,7 @@ class Recipe:
     gates : conditions that end the program with 1.
     repair : whether a folded grid goes to the guard, which unfolds it or makes another.
     refine : how often the cells that `sampling` asks for are halved.
+    history : file that the cycles go to.
     """
 
     sampling: Sampling
@@ -49,6 +53,7 @@ class Recipe:
     gates: tuple[Gate, ...] = ()
     repair: bool = True
     refine: int = 0
+    history: str | None = None
     facts: dict[str, object] = field(default_factory=dict)
 
     def grid(self, item: Item[Shape]) -> tuple[Grid, Report]:
@@ -64,7 +69,9 @@ class Recipe:
         if self.refine:
             boundary = item.what.boundary(finer(self.sampling, boundary, 2**self.refine))
         clock.lap("boundary")
-        solution = self.method(boundary)
+        recorder = Recorder()
+        with listening(recorder) if self.history else contextlib.nullcontext():
+            solution = self.method(boundary)
         # what a method takes beside its grid are modules and models, loaded once a process
         inside = {stage: solution.seconds[stage] for stage in ("grid", "guard") if stage in solution.seconds}
         clock.lap("load" if "grid" in inside else "grid", inside=inside)
@@ -87,6 +94,7 @@ class Recipe:
             notes=(*boundary.notes, *solution.notes, *told),
         )
         report.seconds |= clock.seconds
+        report.history = recorder.of(solution) if self.history else ()
         grid = replace(grid, origin=boundary.origin)
         return grid.with_provenance(**provenance(), **self.facts), report
 
@@ -133,8 +141,17 @@ def make_grids(
     """
     prepare(sources, destination, session)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
-    tell = partial(_tell, recipe, session)
-    deliver(found, recipe.grid, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+    members: list[tuple[str, Iterable[Row]]] = []
+
+    def tell(report: Report, path: str) -> None:
+        members.append((report.item.label, report.history))
+        _tell(recipe, session, report, path)
+
+    with whole_file(recipe.history) if recipe.history else contextlib.nullcontext() as file:
+        with listening(Live(session.status)) if session.live else contextlib.nullcontext():
+            deliver(found, recipe.grid, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+        if file is not None:
+            write(file, members)
     return session.finish()
 
 

@@ -12,6 +12,7 @@ from meshonet_cli.member import Item
 
 if TYPE_CHECKING:
     from geometry.quality import Quality
+    from meshonet_cli.watching import Row
 
 
 STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
@@ -75,6 +76,7 @@ class Report(Timed):
     residual: float | None = None
     cycles: int | None = None
     notes: tuple[str, ...] = ()
+    history: tuple[Row, ...] = ()
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""

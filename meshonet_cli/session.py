@@ -139,6 +139,23 @@ class Session:
                 "--json and -o - both want standard output", "write the result to a file", source="-o"
             )
 
+    @property
+    def live(self) -> bool:
+        """Whether progress is shown: on a terminal that can, unless quiet."""
+        return self._bar
+
+    def status(self, text: str) -> None:
+        """Show on a terminal what is going on, in place of what was shown before."""
+        if self._bar:
+            self._clear()
+            self._draw(text)
+
+    def _draw(self, line: str) -> None:
+        width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
+        sys.stderr.write(line[:width])
+        sys.stderr.flush()
+        self._bar_shown = True
+
     def begin(self, name: str, count: int | None = None) -> None:
         """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
         check()
@@ -152,23 +169,16 @@ class Session:
         bar = (
             f"[{'#' * filled}{'-' * (_BAR - filled)}] {self.members}/{count}" if count else f"{self.members}"
         )
-        width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
         self._clear()
-        line = f"{bar}{left}: {printable(name)}"
-        sys.stderr.write(line[:width])
-        sys.stderr.flush()
-        self._bar_shown = True
+        self._draw(f"{bar}{left}: {printable(name)}")
 
     def progress(self, done: int, count: int, text: str) -> bool:
         """Show on a terminal how far one long task is; say whether there is one."""
         if not self._bar:
             return False
         filled = _BAR * done // count
-        width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
         self._clear()
-        sys.stderr.write(f"[{'#' * filled}{'-' * (_BAR - filled)}] {printable(text)}"[:width])
-        sys.stderr.flush()
-        self._bar_shown = True
+        self._draw(f"[{'#' * filled}{'-' * (_BAR - filled)}] {printable(text)}")
         return True
 
     def skip(self, name: str, path: str) -> None:

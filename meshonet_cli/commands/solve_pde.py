@@ -10,7 +10,7 @@ from meshonet_cli import walls as wall
 
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
-    "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 -o naca2412.vts",
+    "meshonet solve-pde naca:2412 --res 200 --tol 1e-8 --history cycles.csv -o naca2412.vts",
     "meshonet solve-pde duct.csv --res 400 --coarse 65 -o fine.vts",
     "meshonet solve-pde duct.csv --method thomas-middlecoff --spacing tanh -o layers.vts",
     "meshonet solve-pde duct.csv --res 25x13 --refine 3 -o finest.vts",
@@ -64,6 +64,13 @@ Refine = Annotated[
 Initial = Annotated[
     str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
 ]
+History = Annotated[
+    str | None,
+    typer.Option(
+        "--history", metavar="F.csv", show_default=False,
+        help="Write residual, change, seconds and folded cells of every cycle to F.csv.",
+    ),
+]
 # fmt: on
 
 
@@ -77,6 +84,7 @@ def solve_pde(
     coarse: Coarse = None,
     refine: Refine = 0,
     initial: Initial = None,
+    history: History = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -116,6 +124,7 @@ def solve_pde(
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.session import Session
     from meshonet_cli.solving import at_any_resolution, given
+    from meshonet_cli.watching import check_file
     from solvers.elliptic.solve import solve, solve_thomas_middlecoff
     from solvers.variational.solve import solve as minimise
 
@@ -143,6 +152,7 @@ def solve_pde(
         allow_invalid,
         parse_gates(fail_on),
         refine=refine,
+        history=check_file(history),
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

@@ -19,6 +19,7 @@ from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
 from solvers.elliptic.control import Controls, thomas_middlecoff
 from solvers.elliptic.multigrid import Multigrid, Settings
+from solvers.progress import tell
 from solvers.solution import Solution
 
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
@@ -81,7 +82,7 @@ def solve(
         try:
             for part in steps:
                 weaker = None if controls is None else controls.scaled(part)
-                nodes, residual, cycles = _attempt(boundary, tol, max_cycles, start, settings, weaker)
+                nodes, residual, cycles = _attempt(boundary, tol, max_cycles, start, settings, weaker, method)
                 start = Grid(nodes, boundary.topology) if part != 1.0 else None
         except _DivergedError as error:
             notes += (f"attempt {k + 1} diverged ({error})",)
@@ -126,6 +127,7 @@ def _attempt(
     initial: Grid | None,
     settings: Settings,
     controls: Controls | None,
+    method: str,
 ) -> tuple[Floats, float, int]:
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
@@ -147,9 +149,11 @@ def _attempt(
     estimate = tol is None and initial is None
     residuals = [levels.residual()]
     corrections: list[float] = []
+    tell(method, nodes, 0, residuals[0] / start)
     while not residuals[-1] <= goal and len(corrections) < max_cycles:
         corrections.append(levels.cycle())
         residuals.append(levels.residual())
+        tell(method, nodes, len(corrections), residuals[-1] / start, corrections[-1])
         if _diverges(residuals, start, 1.5 if settings == ATTEMPTS[0] else 10.0):
             raise _DivergedError(f"residual {residuals[-1] / start:.1e} after {len(corrections)} cycles")
         if estimate and residuals[-1] < 0.5 * start and _at_discretisation_level(corrections):

@@ -1,0 +1,56 @@
+"""What iterations tell while they run, to whoever listens. Usually nobody does, and it costs nothing."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from geometry.arrays import Floats
+from geometry.quality import count_folded
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """State of the finest grid after a cycle.
+
+    Parameters
+    ----------
+    method : that iterates.
+    ni, nj : nodes of the grid.
+    number : of the cycle, 0 for the start; it begins anew with every attempt.
+    residual : relative to that of the transfinite interpolation.
+    change : root mean square of what the cycle's coarse levels moved the nodes by, in units of length.
+    folded : cells.
+    """
+
+    method: str
+    ni: int
+    nj: int
+    number: int
+    residual: float
+    change: float | None
+    folded: int
+
+
+Listener = Callable[[Cycle], None]
+_listeners: list[Listener] = []
+
+
+@contextlib.contextmanager
+def listening(listener: Listener) -> Iterator[None]:
+    """Have `listener` called after every cycle that runs inside the block."""
+    _listeners.append(listener)
+    try:
+        yield
+    finally:
+        _listeners.remove(listener)
+
+
+def tell(method: str, nodes: Floats, number: int, residual: float, change: float | None = None) -> None:
+    """Tell the listeners of a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
+    if not _listeners:
+        return
+    cycle = Cycle(method, nodes.shape[0], nodes.shape[1], number, residual, change, count_folded(nodes))
+    for listener in tuple(_listeners):
+        listener(cycle)

@@ -1,0 +1,162 @@
+"""Cycles on the terminal and in the file of `--history`."""
+
+import csv
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT, Meshonet, dataset, ellipse
+
+from formats.registry import read_grids
+from geometry.quality import count_folded
+from meshonet_cli.watching import COLUMNS, Live
+from solvers.progress import Cycle, listening, tell
+
+
+def table(path: str = "h.csv") -> list[dict[str, str]]:
+    with Path(path).open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_history_has_every_cycle(meshonet: Meshonet, body_h5: Path) -> None:
+    words = ("solve-pde", body_h5, "--tol", "1e-8", "-o", "g.vts")
+    told = meshonet(*words, "--history", "h.csv", "--json").only
+    rows = table()
+    assert tuple(rows[0]) == COLUMNS
+    assert [int(row["cycle"]) for row in rows] == list(range(told["cycles"] + 1))
+    assert float(rows[-1]["residual"]) == told["residual"]
+    residuals, seconds = ([float(row[name]) for row in rows] for name in ("residual", "seconds"))
+    assert all(after < 0.5 * before for before, after in zip(residuals[1:], residuals[2:], strict=False))
+    assert seconds == sorted(seconds)
+    assert rows[0]["change"] == ""
+    assert float(rows[1]["change"]) > float(rows[-1]["change"]) > 0
+    assert {(row["method"], row["ni"], row["nj"], row["attempt"]) for row in rows} == {
+        ("winslow", "41", "15", "1")
+    }
+    (grid,) = read_grids("g.vts")
+    assert int(rows[-1]["folded"]) == count_folded(grid.nodes)
+    assert meshonet(*words).code == 0  # and the grid is the same without
+    (again,) = read_grids("g.vts")
+    np.testing.assert_array_equal(grid.nodes, again.nodes)
+
+
+def test_history_of_a_batch_names_its_members(meshonet: Meshonet, three_h5: Path) -> None:
+    words = ("solve-pde", three_h5, "--tol", "1e-6", "-o", "{name}.vts", "--history", "h.csv")
+    assert meshonet(*words, "--jobs", "2").code == 0
+    names = [row["input"] for row in table()]
+    assert sorted(set(names), key=names.index) == [f"{three_h5}[{name}]" for name in ("flat", "low", "high")]
+
+
+def test_history_of_other_methods_has_their_result(meshonet: Meshonet, duct_h5: Path, body_h5: Path) -> None:
+    assert (
+        meshonet("solve-pde", duct_h5, "--method", "variational", "-o", "g.vts", "--history", "h.csv").code
+        == 0
+    )
+    (row,) = table()
+    assert (row["method"], row["ni"], row["nj"], row["residual"]) == ("variational", "21", "11", "")
+    assert int(row["cycle"]) > 0
+    words = ("--wall-spacing", "1e-3", "--res", "41x60", "-o", "g.vts", "--history", "h.csv")
+    assert meshonet("solve-pde", body_h5, *words).code == 0
+    (row,) = table()
+    assert (row["method"], row["cycle"]) == ("hyperbolic", "")
+
+
+def test_history_of_refined_grids_has_every_level(meshonet: Meshonet, duct_h5: Path) -> None:
+    meshonet("solve-pde", duct_h5, "--refine", "2", "-o", "g.vts", "--history", "h.csv")
+    counts = [row["ni"] for row in table()]
+    assert sorted(set(counts), key=counts.index) == ["21", "41", "81"]
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("h.txt", "--history: cycles are written as a table of commas; name a file, F.csv"),
+        ("-", "--history: cycles are written as a table of commas; name a file, F.csv"),
+        ("none/h.csv", "none/h.csv: its folder does not exist"),
+    ],
+)
+def test_history_that_cannot_be_is_told(meshonet: Meshonet, duct_h5: Path, name: str, told: str) -> None:
+    done = meshonet("solve-pde", duct_h5, "-o", "g.vts", "--history", name)
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()
+
+
+def test_interrupts_leave_no_file_half_written(tmp_path: Path) -> None:
+    dataset(tmp_path / "many.h5", "o", *[ellipse(thickness=0.2 + 0.001 * k) for k in range(300)])
+    (tmp_path / "h.csv").write_text("mine")
+    words = ["solve-pde", "many.h5", "--res", "150", "--tol", "1e-9", "-o", "g.h5", "--history", "h.csv"]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "meshonet_cli", *words],
+        stderr=subprocess.PIPE, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert running.stderr is not None
+    running.stderr.readline()  # the first report: it is in the middle of its work
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=30)
+    assert running.returncode == 130
+    assert told.endswith(b"interrupted\n")
+    assert (tmp_path / "h.csv").read_text() == "mine"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["h.csv", "many.h5"]
+
+
+def test_the_residual_is_live_on_a_terminal(tmp_path: Path) -> None:
+    told = on_terminal(tmp_path)
+    assert re.search(r"\r\x1b\[2K129x129: cycle \d+, residual \d\.\de[-+]\d\d", told)
+    assert told.replace("\r\n", "\n").rstrip().splitlines()[-1].startswith("  time")
+    assert "cycle" not in on_terminal(tmp_path, "--quiet")
+
+
+def test_a_pipe_sees_no_residual(meshonet: Meshonet, duct_h5: Path) -> None:
+    assert "\x1b" not in meshonet("solve-pde", duct_h5, "-o", "g.vts").err
+
+
+def on_terminal(folder: Path, *words: str) -> str:
+    """Return what a solve prints on a terminal."""
+    leader, follower = pty.openpty()
+    command = ["solve-pde", "naca:0012", "--res", "129", "--tol", "1e-8", "-o", "g.vts", *words]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "meshonet_cli", *command],
+        stderr=follower, cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
+    )  # fmt: skip
+    os.close(follower)
+    told, end = b"", time.monotonic() + 60
+    while time.monotonic() < end:
+        if select.select([leader], [], [], 0.2)[0]:
+            try:
+                told += os.read(leader, 65536)
+            except OSError:  # the other end is closed
+                break
+        elif running.poll() is not None:
+            break
+    os.close(leader)
+    assert running.wait() == 0
+    return told.decode()
+
+
+def test_the_terminal_is_not_flooded() -> None:
+    shown: list[str] = []
+    live = Live(shown.append)
+    for number in range(1000):
+        live(Cycle("winslow", 9, 9, number, 1e-3, None, 2))
+    assert 1 <= len(shown) < 5
+    assert shown[0] == "9x9: cycle 0, residual 1.0e-03, 2 folded"
+
+
+def test_who_does_not_listen_hears_nothing() -> None:
+    heard: list[Cycle] = []
+    nodes = np.zeros((3, 4, 2))
+    tell("winslow", nodes, 1, 0.5)
+    with listening(heard.append):
+        tell("winslow", nodes, 2, 0.25, 0.1)
+    tell("winslow", nodes, 3, 0.1)
+    assert heard == [Cycle("winslow", 3, 4, 2, 0.25, 0.1, 6)]
