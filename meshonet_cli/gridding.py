@@ -23,7 +23,7 @@ from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
-from meshonet_cli.watching import Live, Recorder, Row, write
+from meshonet_cli.watching import Live, Recorder, Row, check_file, write
 from solvers.guard import guard
 from solvers.progress import listening
 from solvers.solution import Solution
@@ -140,6 +140,7 @@ def make_grids(
         several members and room for one.
     """
     prepare(sources, destination, session)
+    check_file(recipe.history)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
     members: list[tuple[str, Iterable[Row]]] = []
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import astuple, dataclass
@@ -94,21 +93,16 @@ class Live:
         self._show(f"{cycle.ni}x{cycle.nj}: cycle {cycle.number}, residual {cycle.residual:.1e}{folded}")
 
 
-def check_file(text: str | None) -> str | None:
-    """Return the name of a file of cycles.
-
-    Raises
-    ------
-    InputError
-        it is standard output, or does not end in ``.csv``.
-    """
+def check_file(text: str | None) -> None:
+    """Raise InputError when a file of cycles does not end in ``.csv``, standard output included."""
     if text is not None and Path(text).suffix.lower() != ".csv":
         raise InputError("cycles are written as a table of commas", "name a file, F.csv", source="--history")
-    return text
 
 
 def write(path: Path, members: Iterable[tuple[str, Iterable[Row]]]) -> None:
     """Write the cycles of all members, each under its label, to `path`."""
+    import csv
+
     with path.open("w", newline="", encoding="utf-8") as stream:
         table = csv.writer(stream, lineterminator="\n")
         table.writerow(COLUMNS)

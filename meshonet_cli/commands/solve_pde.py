@@ -124,7 +124,6 @@ def solve_pde(
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.session import Session
     from meshonet_cli.solving import at_any_resolution, given
-    from meshonet_cli.watching import check_file
     from solvers.elliptic.solve import solve, solve_thomas_middlecoff
     from solvers.variational.solve import solve as minimise
 
@@ -152,7 +151,7 @@ def solve_pde(
         allow_invalid,
         parse_gates(fail_on),
         refine=refine,
-        history=check_file(history),
+        history=history,
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

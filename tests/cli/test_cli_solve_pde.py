@@ -288,6 +288,10 @@ def test_refine_goes_with_a_first_grid_and_not_with_marching(meshonet: Meshonet,
 @pytest.mark.parametrize(
     ("words", "told"),
     [
+        (
+            ("--history", "cycles.txt"),
+            "--history: cycles are written as a table of commas; name a file, F.csv",
+        ),
         (("--refine", "9"), "'--refine': 9 is not in the range 0<=x<=8"),
         (
             ("--refine", "1", "--coarse", "9"),

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -27,19 +28,19 @@ def table(path: str = "h.csv") -> list[dict[str, str]]:
 
 
 def test_history_has_every_cycle(meshonet: Meshonet, body_h5: Path) -> None:
-    words = ("solve-pde", body_h5, "--tol", "1e-8", "-o", "g.vts")
+    words = ("solve-pde", body_h5, "--res", "101x65", "--tol", "1e-8", "-o", "g.vts")
     told = meshonet(*words, "--history", "h.csv", "--json").only
     rows = table()
     assert tuple(rows[0]) == COLUMNS
     assert [int(row["cycle"]) for row in rows] == list(range(told["cycles"] + 1))
     assert float(rows[-1]["residual"]) == told["residual"]
     residuals, seconds = ([float(row[name]) for row in rows] for name in ("residual", "seconds"))
-    assert all(after < 0.5 * before for before, after in zip(residuals[1:], residuals[2:], strict=False))
+    assert all(after < 0.5 * before for before, after in pairwise(residuals[1:]))
     assert seconds == sorted(seconds)
     assert rows[0]["change"] == ""
     assert float(rows[1]["change"]) > float(rows[-1]["change"]) > 0
     assert {(row["method"], row["ni"], row["nj"], row["attempt"]) for row in rows} == {
-        ("winslow", "41", "15", "1")
+        ("winslow", "101", "65", "1")
     }
     (grid,) = read_grids("g.vts")
     assert int(rows[-1]["folded"]) == count_folded(grid.nodes)
@@ -111,7 +112,7 @@ def test_interrupts_leave_no_file_half_written(tmp_path: Path) -> None:
 
 def test_the_residual_is_live_on_a_terminal(tmp_path: Path) -> None:
     told = on_terminal(tmp_path)
-    assert re.search(r"\r\x1b\[2K129x129: cycle \d+, residual \d\.\de[-+]\d\d", told)
+    assert re.search(r"129x129: cycle \d+, residual \d\.\de[-+]\d\d", told)
     assert told.replace("\r\n", "\n").rstrip().splitlines()[-1].startswith("  time")
     assert "cycle" not in on_terminal(tmp_path, "--quiet")
 
