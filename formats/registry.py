@@ -64,16 +64,33 @@ _DESIGNATION = "naca:"
 def format_named(name: str) -> Format:
     """Return the format that ``--from`` or ``--to`` names: by its name, its ending, or the start of its name.
 
+    Behind a colon may follow what only Plot3D files need: ``plot3d:big,float32`` (`formats.plot3d.variant`).
+
     Raises
     ------
     InputError
         no such format; the message lists those there are.
     """
-    word = name.lower().lstrip(".")
+    word, _, variant = name.lower().lstrip(".").partition(":")
     for known, row in TABLE.items():
         if word and (known == word or f".{word}" in row.suffixes[:1] or known.startswith(f"{word}-")):
-            return _record(known, row)
+            return in_variant(_record(known, row), variant) if variant else _record(known, row)
     raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
+
+
+def in_variant(found: Format, words: str) -> Format:
+    """Return a Plot3D format in the variant that comma-separated words describe.
+
+    Raises
+    ------
+    InputError
+        another format, or words that are not known.
+    """
+    if not found.name.startswith("plot3d"):
+        raise InputError(f"{found.name} files have no variants", "leave the words out", source=words)
+    from formats.plot3d import variant_of
+
+    return variant_of(found, words)
 
 
 def formats() -> tuple[Format, ...]:

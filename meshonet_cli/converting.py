@@ -137,6 +137,7 @@ def convert_files(
 
     def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
         what = change(item.what) if isinstance(item.what, Grid) else item.what
+        _tell_of_iblank(item, session)
         return what, Converted(item, what)
 
     def tell(report: Converted, path: str) -> None:
@@ -145,6 +146,24 @@ def convert_files(
 
     deliver(items(sources, read, session), make, destination, session, tell, skip_existing=skip_existing)
     return session.finish()
+
+
+def in_plot3d(
+    words: str | None, output: str, from_format: str | None, to_format: str | None
+) -> tuple[str | None, str | None]:
+    """Return the formats to read and write, the Plot3D file among them in the variant of `words`.
+
+    Raises
+    ------
+    InputError
+        words that are not known, or no file in Plot3D.
+    """
+    if words is None:
+        return from_format, to_format
+    written = format_for_output(output, to_format).name if to_format or Path(output).suffix else ""
+    if written.startswith("plot3d"):
+        return from_format, f"{written}:{words}"
+    return f"{from_format or 'plot3d'}:{words}", to_format
 
 
 def print_formats(session: Session, *, as_json: bool) -> int:
@@ -157,6 +176,16 @@ def print_formats(session: Session, *, as_json: bool) -> int:
     else:
         session.print(plain())
     return session.finish()
+
+
+def _tell_of_iblank(item: Item[Grid | Boundary], session: Session) -> None:
+    """Warn of nodes that an iblank array takes out of use or gives a meaning: no grid has room for it."""
+    counts = item.what.provenance.get("iblank") if isinstance(item.what, Grid) else None
+    told = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
+    if told:
+        session.warn(
+            f"{item.label}: iblank marks nodes ({', '.join(told[:5])}); they are kept as ordinary ones"
+        )
 
 
 def _writes_boundaries(source: str, output: str, from_format: str | None, to_format: str | None) -> bool:

@@ -5,28 +5,50 @@ https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from formats.format import Format, Heights
-from formats.plot3d.read import read_grids, sniff
-from formats.plot3d.write import Put, put_binary, put_fortran, put_text, write_blocks
+from formats.plot3d.read import read_grids as read
+from formats.plot3d.read import sniff
+from formats.plot3d.variant import Variant, parse_variant
+from formats.plot3d.write import write_blocks
+from formats.source import Source
 from geometry.grid import Grid
 
+_SUFFIXES = {
+    "ascii": (".p3d", ".xyz", ".fmt", ".x", ".dat"),
+    "binary": (".bin", ".xyz", ".p3d"),
+    "fortran": (".ufmt", ".unf"),
+}
+_TOLD = {
+    "ascii": "Plot3D text, 2D",
+    "binary": "Plot3D C binary, float64, nk = 1",
+    "fortran": "Plot3D Fortran records, float64, 2D",
+}
 
-def _format(
-    name: str, suffixes: tuple[str, ...], description: str, put: Put, heights: tuple[float, ...] = ()
-) -> Format:
+
+def _format(kind: str, given: Variant | None = None) -> Format:
+    """Return the format of a kind, all that `given` says of it on top."""
+    words = given.words if given else frozenset[str]()
+    wanted = words - {"ascii", "binary", "fortran"} if given is None else words
+    variant = Variant(words | {kind})
+    # with z and nk = 1: VTK takes a counted two-dimensional float64 file for a three-dimensional float32 one
+    solid = variant.one_of("2d", "3d", default="3d" if kind == "binary" else "2d") == "3d"
+
+    def read_grids(source: Source) -> Iterator[Grid]:
+        return read(source, Variant(wanted))
+
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-        write_blocks(path, grids, put, heights)
+        write_blocks(path, grids, variant.for_writing(), (0.0,) if solid else ())
 
     def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-        write_blocks(path, grids, put, heights)
+        write_blocks(path, grids, variant.for_writing(), heights)
 
     return Format(
-        name=name,
-        suffixes=suffixes,
-        description=description,
+        name=f"plot3d-{kind}",
+        suffixes=_SUFFIXES[kind],
+        description=_TOLD[kind],
         read_grids=read_grids,
         write_grids=write_grids,
         write_extruded=write_extruded,
@@ -35,11 +57,12 @@ def _format(
     )
 
 
-FORMATS = (
-    _format("plot3d-ascii", (".p3d", ".xyz", ".fmt", ".x", ".dat"), "Plot3D text, 2D", put_text),
-    # with z and nk = 1: VTK takes a counted two-dimensional float64 file for a three-dimensional float32 one
-    _format(
-        "plot3d-binary", (".bin", ".xyz", ".p3d"), "Plot3D C binary, float64, nk = 1", put_binary, (0.0,)
-    ),
-    _format("plot3d-fortran", (".ufmt", ".unf"), "Plot3D Fortran records, float64, 2D", put_fortran),
-)
+def variant_of(found: Format, text: str) -> Format:
+    """Return a Plot3D format in the variant of comma-separated words (`formats.plot3d.variant`)."""
+    given = parse_variant(text)
+    return _format(
+        given.one_of("ascii", "binary", "fortran", default=found.name.removeprefix("plot3d-")), given
+    )
+
+
+FORMATS = tuple(_format(kind) for kind in _SUFFIXES)

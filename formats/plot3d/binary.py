@@ -91,7 +91,13 @@ def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], told: str, r
             arrays.append(flags.astype(np.float64))
         return arrays
 
-    return Candidate(layout, block, told)
+    kind = {
+        "fortran" if records else "binary",
+        "big" if ", big" in told else "little",
+        f"float{8 * dtype.itemsize}",
+        "planes" if by_planes else "whole",
+    }
+    return Candidate(layout, block, told, frozenset(kind))
 
 
 def _unframed(data: bytes, order: str) -> list[memoryview] | None:

@@ -23,6 +23,7 @@ Dims = tuple[int, ...]
 Header = Callable[[int], "int | None"]
 """Returns header integer k, or None past the end or where the number is no integer."""
 _MOST_BLOCKS = 100_000
+_MOST_FLAGS = 1000
 
 
 @dataclass(frozen=True)
@@ -85,11 +86,35 @@ class Candidate:
     layout : the layout.
     arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
     told : the number type and byte order, for messages.
+    kind : words of `formats.plot3d.variant` for these.
     """
 
     layout: Layout
     arrays: Callable[[int], Sequence[Floats]]
     told: str = ""
+    kind: frozenset[str] = frozenset()
+
+    @property
+    def traits(self) -> frozenset[str]:
+        """The words of `formats.plot3d.variant` that describe it."""
+        layout = self.layout
+        words = {
+            "multi" if layout.counted else "single",
+            f"{layout.axes}d",
+            "iblank" if layout.iblank else "no-iblank",
+        }
+        return self.kind | words
+
+    def iblank(self, block: int) -> dict[str, int]:
+        """Return how many nodes of a block have which value, nothing where there is no iblank array."""
+        if not self.layout.iblank:
+            return {}
+        values, counts = np.unique(self.arrays(block)[-1], return_counts=True)
+        if len(values) > _MOST_FLAGS:
+            raise InputError(
+                f"iblank has {len(values)} different values", "write 0, 1, 2 or numbers of blocks"
+            )
+        return {f"{value:.0f}": int(count) for value, count in zip(values, counts, strict=True)}
 
     def plane(self, block: int) -> Floats:
         """Return nodes (ni, nj, 2) of a block.

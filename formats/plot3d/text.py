@@ -48,7 +48,7 @@ def _candidate(layout: Layout, values: Floats) -> Candidate:
     def block(k: int) -> Sequence[Floats]:
         return list(values[starts[k] : starts[k + 1]].reshape(arrays, -1))
 
-    return Candidate(layout, block, "ASCII")
+    return Candidate(layout, block, "ASCII", frozenset({"ascii", "whole"}))
 
 
 def _length(layout: Layout) -> int:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.typing import NDArray
 
+from formats.plot3d.variant import Variant
 from formats.text_rows import write_rows
 from geometry.arrays import Floats
 from geometry.errors import InputError
@@ -17,94 +19,132 @@ from geometry.grid import Grid
 _LINE = 4
 """Numbers a line of text."""
 
-Put = Callable[[BinaryIO, Sequence["Block"]], None]
-
 
 class Block:
-    """One grid as Plot3D stores it: dims, and x, y[, z] with i fastest.
+    """One grid as Plot3D stores it: dims, and x, y[, z] with the first index fastest.
 
     Parameters
     ----------
     grid : the grid.
     heights : z of each plane; none of them makes a two-dimensional block without z.
+    variant : which index runs in z, whether there is an iblank array.
     """
 
-    def __init__(self, grid: Grid, heights: tuple[float, ...]) -> None:
-        self.grid, self.heights = grid, heights
-        self.dims = (grid.ni, grid.nj, len(heights)) if heights else (grid.ni, grid.nj)
+    def __init__(self, grid: Grid, heights: tuple[float, ...], variant: Variant) -> None:
+        self.grid, self.heights, self.iblank = grid, heights, variant.has("iblank")
+        self._span = {"span-i": 0, "span-j": 1}.get(variant.one_of("span-i", "span-j", default=""), 2)
+        dims = [grid.ni, grid.nj]
+        if heights:
+            dims.insert(self._span, len(heights))
+        self.dims = tuple(dims)
 
     def arrays(self) -> Iterator[Floats]:
         """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
         planes = max(1, len(self.heights))
         for axis in (0, 1):
             flat = self.grid.nodes[..., axis].ravel(order="F")
-            yield flat if planes == 1 else np.tile(flat, planes)
+            yield flat if planes == 1 else self._repeated(flat)
         if self.heights:
-            yield np.repeat(np.array(self.heights), self.grid.ni * self.grid.nj)
+            shape = [1, 1, 1]
+            shape[self._span] = planes
+            yield np.broadcast_to(np.array(self.heights).reshape(shape), self.dims).ravel(order="F")
+
+    def _repeated(self, flat: Floats) -> Floats:
+        if self._span == 2:
+            return np.tile(flat, len(self.heights))
+        plane = np.expand_dims(flat.reshape((self.grid.ni, self.grid.nj), order="F"), self._span)
+        return np.broadcast_to(plane, self.dims).ravel(order="F")
 
     @property
-    def bytes(self) -> int:
-        """Bytes of all coordinates."""
-        numbers = 3 * len(self.heights) or 2
-        return 8 * numbers * self.grid.ni * self.grid.nj
+    def nodes(self) -> int:
+        """Nodes of all planes."""
+        return int(np.prod(self.dims))
 
 
-def write_blocks(path: Path, grids: Iterable[Grid], put: Put, heights: tuple[float, ...] = ()) -> None:
-    """Write the blocks of `grids` with one of the ways below.
+def write_blocks(path: Path, grids: Iterable[Grid], variant: Variant, heights: tuple[float, ...]) -> None:
+    """Write the blocks of `grids`; `heights` is empty for blocks of two dimensions without z.
 
     Raises
     ------
     InputError
-        there is no grid.
+        there is no grid; several in a file without a count; a block that no Fortran record can hold.
     """
-    blocks = [Block(grid, heights) for grid in grids]
+    blocks = [Block(grid, heights, variant) for grid in grids]
     if not blocks:
         raise InputError("there is no grid to write", "check the input")
+    if variant.has("single") and len(blocks) > 1:
+        raise InputError(
+            f"{len(blocks)} grids do not fit in a file without a count", "leave out the word single"
+        )
+    put = {"ascii": _put_text, "binary": _put_binary, "fortran": _put_fortran}
     with path.open("wb") as stream:
-        put(stream, blocks)
+        put[variant.one_of(*put, default="ascii")](stream, blocks, variant)
 
 
-def put_text(stream: BinaryIO, blocks: Sequence[Block]) -> None:
+def _put_text(stream: BinaryIO, blocks: Sequence[Block], variant: Variant) -> None:
     """Write text: the count of blocks, the dims of each on a line, then the numbers."""
-    head = [str(len(blocks)), *(" ".join(map(str, block.dims)) for block in blocks)]
+    head = [] if variant.has("single") else [str(len(blocks))]
+    head += [" ".join(map(str, block.dims)) for block in blocks]
     stream.write(("\n".join(head) + "\n").encode())
     for block in blocks:
         for values in block.arrays():
-            whole = len(values) - len(values) % _LINE
-            for part, width in ((values[:whole], _LINE), (values[whole:], len(values) - whole)):
-                if width:
-                    write_rows(stream, " ".join(["%e"] * width), part.reshape(-1, width))
+            _put_lines(stream, "%e", values)
+        if block.iblank:
+            _put_lines(stream, "%d", np.ones(block.nodes, np.int64))
 
 
-def put_binary(stream: BinaryIO, blocks: Sequence[Block]) -> None:
-    """Write C binary, little endian, float64."""
-    stream.write(_counts(blocks))
+def _put_lines(stream: BinaryIO, field: str, values: NDArray[Any]) -> None:
+    whole = len(values) - len(values) % _LINE
+    for part, width in ((values[:whole], _LINE), (values[whole:], len(values) - whole)):
+        if width:
+            write_rows(stream, " ".join([field] * width), part.reshape(-1, width))
+
+
+def _put_binary(stream: BinaryIO, blocks: Sequence[Block], variant: Variant) -> None:
+    """Write C binary."""
+    for record in _head(blocks, variant):
+        stream.write(record)
     for block in blocks:
-        for values in block.arrays():
-            stream.write(values.astype("<f8", copy=False).data)
+        for data in _body(block, variant):
+            stream.write(data)
 
 
-def put_fortran(stream: BinaryIO, blocks: Sequence[Block]) -> None:
-    """Write Fortran records, little endian, float64: count, dims, one record a block."""
-    _record(stream, struct.pack("<i", len(blocks)))
-    _record(stream, _counts(blocks)[4:])
+def _put_fortran(stream: BinaryIO, blocks: Sequence[Block], variant: Variant) -> None:
+    """Write Fortran records: count, dims, one record a block."""
+    word = struct.Struct(_order(variant) + "i")
+    for record in _head(blocks, variant):
+        stream.write(word.pack(len(record)) + record + word.pack(len(record)))
     for block in blocks:
-        if block.bytes >= 1 << 31:
+        size = block.nodes * (len(block.dims) * _real(variant).itemsize + 4 * int(block.iblank))
+        if size >= 1 << 31:
             raise InputError(
                 "a block of 2 GiB or more does not fit in a Fortran record", "write plot3d-binary"
             )
-        marker = struct.pack("<i", block.bytes)
-        stream.write(marker)
-        for values in block.arrays():
-            stream.write(values.astype("<f8", copy=False).data)
-        stream.write(marker)
+        stream.write(word.pack(size))
+        for data in _body(block, variant):
+            stream.write(data)
+        stream.write(word.pack(size))
 
 
-def _counts(blocks: Sequence[Block]) -> bytes:
+def _head(blocks: Sequence[Block], variant: Variant) -> Iterator[bytes]:
+    """Yield the count, where there is one, and the dims."""
     sizes = [size for block in blocks for size in block.dims]
-    return struct.pack(f"<{1 + len(sizes)}i", len(blocks), *sizes)
+    if not variant.has("single"):
+        yield struct.pack(f"{_order(variant)}i", len(blocks))
+    yield struct.pack(f"{_order(variant)}{len(sizes)}i", *sizes)
 
 
-def _record(stream: BinaryIO, data: bytes) -> None:
-    marker = struct.pack("<i", len(data))
-    stream.write(marker + data + marker)
+def _body(block: Block, variant: Variant) -> Iterator[memoryview]:
+    """Yield the coordinates and iblank of a block."""
+    for values in block.arrays():
+        yield values.astype(_real(variant), copy=False).data
+    if block.iblank:
+        yield np.ones(block.nodes, _order(variant) + "i4").data
+
+
+def _order(variant: Variant) -> str:
+    return ">" if variant.has("big") else "<"
+
+
+def _real(variant: Variant) -> np.dtype[Any]:
+    return np.dtype(_order(variant) + ("f4" if variant.has("float32") else "f8"))

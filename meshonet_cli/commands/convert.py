@@ -13,6 +13,7 @@ EXAMPLES = (
     "meshonet convert grids/*.vts -o 'plot3d/{stem}.p3d'",
     "meshonet tfi duct.csv --res 41x21 -o - | meshonet convert - coarse.vts --coarsen 2",
     "meshonet convert grid.vts case/case.foam --extrude 0.1",
+    "meshonet convert grid.vts grid.p3d --plot3d fortran,big,single",
     "meshonet convert --list-formats",
 )
 
@@ -48,6 +49,15 @@ def convert(
             help="With --extrude: planes of nodes in z, so one cell fewer. [default: 2]",
         ),
     ] = None,
+    plot3d: Annotated[
+        str | None,
+        typer.Option(
+            "--plot3d", metavar="WORDS", show_default=False,
+            help="Variant of the Plot3D file to write, else to read: of ascii/binary/fortran, multi/single, "
+            "2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes, span-k/span-i/span-j, with "
+            "commas. Reading finds out what can be found; --from plot3d:WORDS says it in any command.",
+        ),
+    ] = None,
     swap: Annotated[
         bool,
         typer.Option("--swap", help="Have xi run where eta ran (four-sided grids), still right-handed."),
@@ -79,7 +89,7 @@ def convert(
 ) -> int:
     """Turn files from one format into another."""
     from geometry.errors import InputError
-    from meshonet_cli.converting import Change, convert_files, print_formats
+    from meshonet_cli.converting import Change, convert_files, in_plot3d, print_formats
     from meshonet_cli.session import Session
 
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
@@ -90,6 +100,7 @@ def convert(
         remedy = f"name it: meshonet convert {given[0] if given else 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
     *sources, target = given
+    from_format, to_format = in_plot3d(plot3d, target, from_format, to_format)
     return convert_files(
         sources, target, session,
         from_format=from_format, to_format=to_format, skip_existing=skip_existing,

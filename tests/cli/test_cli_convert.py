@@ -99,6 +99,29 @@ def test_extrude_makes_one_layer_of_cells(meshonet: Meshonet, grid_vts: Path) ->
     assert reader.GetOutput().GetBounds()[4:] == (0.0, 0.25)
 
 
+def test_plot3d_is_written_and_read_in_the_variant_asked_for(meshonet: Meshonet, grid_vts: Path) -> None:
+    words = "fortran,big,float32,single"
+    assert meshonet("convert", grid_vts, "grid.p3d", "--plot3d", words).code == 0
+    data = Path("grid.p3d").read_bytes()
+    assert data[:16] == b"\0\0\0\x08\0\0\0\x29\0\0\0\x0f\0\0\0\x08"
+    assert len(data) == 16 + 8 + 4 * 2 * 41 * 15
+    assert meshonet("convert", "grid.p3d", "back.h5", "--plot3d", words).code == 0
+    assert meshonet("quality", "grid.p3d", "--from", f"plot3d:{words}").code == 0
+    done = meshonet("convert", "grid.p3d", "back.h5", "--plot3d", "little")
+    assert done.code == 2
+    assert "grid.p3d: is not little: it fits" in done.err
+
+
+def test_iblank_is_told_of(meshonet: Meshonet, grid_vts: Path) -> None:
+    assert meshonet("convert", grid_vts, "grid.p3d", "--plot3d", "iblank").code == 0
+    assert "iblank" not in meshonet("convert", "grid.p3d", "grid.h5").err
+    text = Path("grid.p3d").read_text()
+    Path("grid.p3d").write_text(text[:-4] + "0 2\n")
+    done = meshonet("convert", "grid.p3d", "grid.h5")
+    assert done.code == 0
+    assert "warning: grid.p3d: iblank marks nodes (1 with 0, 1 with 2); they are kept as ord" in done.err
+
+
 def test_planes_say_how_many_layers(meshonet: Meshonet, grid_vts: Path) -> None:
     assert meshonet("convert", grid_vts, "grid3d.p3d", "--extrude", "1", "--planes", "5").code == 0
     text = Path("grid3d.p3d").read_text().split()

@@ -109,7 +109,7 @@ def test_two_readings_of_the_same_length_are_told_apart_by_their_cells() -> None
 def test_a_block_too_large_for_a_fortran_record_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("formats.plot3d.write.Block.bytes", 1 << 31)
+    monkeypatch.setattr("formats.plot3d.write.Block.nodes", 1 << 28)
     writer = format_named("plot3d-fortran").write_grids
     assert writer is not None
     with pytest.raises(
