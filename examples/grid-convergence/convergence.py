@@ -43,7 +43,7 @@ def capacitance(grid: Grid) -> float:
 
 
 def stiffness(corners: Floats) -> Floats:
-    """Return the matrices (cells, 4, 4) of bilinear elements from their `corners` (cells, 4, 2), in a ring."""
+    """Return the matrices (cells, 4, 4) of bilinear elements from `corners` (cells, 4, 2), in a ring."""
     total = np.zeros((len(corners), 4, 4))
     for s in _AT:
         for t in _AT:
