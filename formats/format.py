@@ -33,6 +33,7 @@ class Format:
     sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
     names_parts : whether names of parts and the topology survive in it.
     many : whether one file holds several grids or boundaries.
+    beside : whether other files are written beside the file, so that a stream holds none.
     fills_folder : whether the file is the mark of a folder whose other files are written with it, so that a
         folder holds one and a stream none.
     """
@@ -48,6 +49,7 @@ class Format:
     sniff: Callable[[bytes], bool] | None = None
     names_parts: bool = False
     many: bool = False
+    beside: bool = False
     fills_folder: bool = False
 
 

@@ -19,7 +19,9 @@ PART_SUFFIX = ".meshonet-part"
 """Ending of unfinished files, so that one left by a killed process can be recognised and removed."""
 
 _HOST = os.uname().nodename.split(".")[0]
-_PART = re.compile(rf"\..*\.{re.escape(_HOST)}-(\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}")
+_PART = re.compile(
+    rf"\.(?P<final>.*)\.{re.escape(_HOST)}-(?P<process>\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}"
+)
 _swept: set[Path] = set()
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
 
@@ -127,6 +129,12 @@ def _told(name: str, only: set[int] | None = None) -> Iterator[None]:
         ) from error
 
 
+def final_name(part: Path) -> str:
+    """Return the name that the file at `part` will have, or has."""
+    match = _PART.fullmatch(part.name)
+    return match["final"] if match else part.name
+
+
 def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
     target = Path(os.path.realpath(destination))
     if target.is_dir():
@@ -158,7 +166,7 @@ def _sweep(folder: Path) -> None:
     with contextlib.suppress(OSError):  # a folder that may be written but not listed stays as it is
         for entry in folder.iterdir():
             match = _PART.fullmatch(entry.name)
-            if match and not _alive(int(match[1])):
+            if match and not _alive(int(match["process"])):
                 _remove(entry)
 
 

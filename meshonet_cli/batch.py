@@ -129,7 +129,7 @@ class Destination:
     def write(self, path: str, what: Iterable[Any]) -> None:
         """Write `what` to `path`, whole or not at all."""
         folder = self.format.fills_folder
-        with whole_file(path, make_folder=self.each or folder, beside=folder) as part:
+        with whole_file(path, make_folder=self.each or folder, beside=folder or self.format.beside) as part:
             self._put(part, what)
 
 

@@ -30,14 +30,12 @@ _TOLD = {
 
 def _format(kind: str, given: Variant | None = None) -> Format:
     """Return the format of a kind, all that `given` says of it on top."""
-    words = given.words if given else frozenset[str]()
-    wanted = words - {"ascii", "binary", "fortran"} if given is None else words
-    variant = Variant(words | {kind})
+    variant = Variant((given or Variant()).words | {kind})
     # with z and nk = 1: VTK takes a counted two-dimensional float64 file for a three-dimensional float32 one
     solid = variant.one_of("2d", "3d", default="3d" if kind == "binary" else "2d") == "3d"
 
     def read_grids(source: Source) -> Iterator[Grid]:
-        return read(source, Variant(wanted))
+        return read(source, given or Variant())
 
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
         write_blocks(path, grids, variant.for_writing(), (0.0,) if solid else ())
@@ -49,7 +47,7 @@ def _format(kind: str, given: Variant | None = None) -> Format:
         name=f"plot3d-{kind}",
         suffixes=_SUFFIXES[kind],
         description=_TOLD[kind],
-        read_grids=read_grids,
+        read_grids=read_grids if given else read,
         write_grids=write_grids,
         write_extruded=write_extruded,
         sniff=sniff,

@@ -16,7 +16,12 @@ from format_shapes import channel
 
 from formats.registry import TABLE, format_named
 
-READABLE = [name for name in TABLE if format_named(name).read_grids or format_named(name).read_shapes]
+READABLE = [
+    name
+    for name in TABLE
+    if (format_named(name).read_grids or format_named(name).read_shapes) and not format_named(name).beside
+]
+"""What reads a stream of bytes; each has a process of its own in ``make fuzz``."""
 SECTION = "A SECTION\n" + "".join(
     f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in np.linspace(0, 2 * np.pi, 41)
 )

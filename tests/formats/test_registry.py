@@ -28,7 +28,7 @@ BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids
 BOUNDARIES = [row.name for row in formats() if row.write_boundaries and row.read_shapes]
 CHECKED_ELSEWHERE = {
     "gmsh", "gmsh-ascii", "gmsh41", "gmsh41-ascii", "su2", "geo", "nmf", "openfoam", "vtu",
-    "png", "svg", "pdf",
+    "stl", "ply", "obj", "off", "abaqus", "medit", "png", "svg", "pdf",
 }  # fmt: skip
 """Formats that no grid is read from; each has a test file with a reader of somebody else's."""
 
@@ -177,7 +177,7 @@ def test_the_content_tells_when_the_ending_does_not(name: str, tmp_path: Path) -
 
 
 def test_standard_input_is_recognised_by_its_content(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    for name in BOTH_WAYS:
+    for name in set(BOTH_WAYS) - {"vtm"}:  # which names files beside it
         path = tmp_path / name
         writer = format_named(name).write_grids
         assert writer is not None

@@ -1,0 +1,74 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import vtk
+from format_shapes import channel, file_names, memory, ring
+
+from formats.output import whole_file
+from formats.source import open_source
+from formats.vtm import read_grids, write_extruded, write_grids
+from geometry.errors import InputError
+
+INDEX = '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>{}</vtkMultiBlockDataSet></VTKFile>'
+
+
+def test_blocks_of_any_size_and_topology_come_back(tmp_path: Path) -> None:
+    grids = [ring(name="one"), channel(name="<two> Ω")]
+    with whole_file(str(tmp_path / "all.vtm")) as part:
+        write_grids(part, grids)
+    assert file_names(tmp_path) == ["all.vtm", "all_blocks"]
+    assert file_names(tmp_path / "all_blocks") == ["block-0.vts", "block-1.vts"]
+    for back, grid in zip(read_grids(open_source(str(tmp_path / "all.vtm"))), grids, strict=True):
+        assert np.array_equal(back.nodes, grid.nodes)
+        assert (back.name, back.topology, back.parts) == (grid.name, grid.topology, grid.parts)
+
+
+def test_vtk_opens_all_blocks(tmp_path: Path) -> None:
+    write_extruded(tmp_path / "all.vtm", [ring(), channel()], (0.0, 1.0))
+    reader = vtk.vtkXMLMultiBlockDataReader()
+    reader.SetFileName(str(tmp_path / "all.vtm"))
+    reader.Update()
+    blocks = reader.GetOutput()
+    assert [blocks.GetBlock(k).GetNumberOfPoints() for k in range(blocks.GetNumberOfBlocks())] == [130, 70]
+
+
+def test_a_second_run_replaces_the_blocks_of_the_first(tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.vtm", [ring(), ring()])
+    write_grids(tmp_path / "g.vtm", [channel()])
+    assert file_names(tmp_path / "g_blocks") == ["block-0.vts"]
+
+
+def test_a_folder_with_other_files_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "g_blocks").mkdir()
+    (tmp_path / "g_blocks" / "thesis.tex").write_text("mine")
+    with pytest.raises(InputError, match="folder g_blocks holds other files, which would be lost; choose"):
+        write_grids(tmp_path / "g.vtm", [ring()])
+    assert (tmp_path / "g_blocks" / "thesis.tex").read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("hello", "is not well-formed XML"),
+        ("<a/>", "is no VTK multi-block file"),
+        (INDEX.format(""), "names no files"),
+        (INDEX.format('<DataSet file="../x.vts"/>'), "names '../x.vts', which is not below its folder"),
+        (INDEX.format('<DataSet file="/etc/passwd"/>'), "which is not below its folder"),
+        (INDEX.format('<DataSet file="b/x.vtu"/>'), "which is no .vts; give blocks that are structured"),
+        (INDEX.format('<DataSet file="b/x.vts"/>'), "names 'b/x.vts', which is not there"),
+        (INDEX.format('<DataSet file="bad.vts"/>'), "bad.vts: .*is not"),
+    ],
+)
+def test_what_is_wrong_is_named_with_its_remedy(text: str, told: str, tmp_path: Path) -> None:
+    (tmp_path / "g.vtm").write_text(text)
+    (tmp_path / "bad.vts").write_text("<VTKFile>")
+    with pytest.raises(InputError, match=told):
+        list(read_grids(open_source(str(tmp_path / "g.vtm"))))
+
+
+def test_a_stream_has_no_files_beside_it() -> None:
+    with pytest.raises(InputError, match="names files beside itself, and a stream has none; give its path"):
+        list(read_grids(memory(b"<VTKFile/>")))
