@@ -234,6 +234,32 @@ def polish_steps(text: str) -> Literal["auto", "off"] | int:
     return int(text)
 
 
+def coarse_nodes(text: str) -> Literal["auto"] | int | None:
+    """Return the nodes of ``auto``, ``off`` (None; 0 is the same) or a number from 9 on.
+
+    Raises
+    ------
+    InputError
+        `text` is none of them.
+
+    Examples
+    --------
+    >>> coarse_nodes("auto"), coarse_nodes("off"), coarse_nodes("65")
+    ('auto', None, 65)
+    """
+    if text == "auto":
+        return "auto"
+    if text in ("off", "0"):
+        return None
+    if not re.fullmatch(r"[0-9]{1,6}", text) or int(text) < 9:
+        from geometry.errors import InputError
+
+        raise InputError(
+            f"{text!r} is not a number of nodes from 9 on", "use auto, off or e.g. 65", source="--coarse"
+        )
+    return int(text)
+
+
 def tolerance(value: float | None) -> float | None:
     """Return `value`, which must be between 0 and 1 when it is given.
 

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from solvers.solution import Solution
 
 Method = Callable[[Boundary], Solution]
+Coarse = int | Literal["auto"] | None
 
 
-def at_any_resolution(method: partial[Solution], coarse: int | None, refine: int = 0) -> Method:
+def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0, name: str = "") -> Method:
     """Return `method`, solving on `coarse` nodes a direction and evaluating at the boundary's when given.
 
-    With `refine`, it solves on boundaries that are as often coarser first.
+    Without any it solves in full; ``auto`` leaves that to the method's `name` and the size, but a tolerance,
+    a number of cycles or a grid to start from means the full grid. With `refine`, it solves on boundaries
+    that are as often coarser first.
 
     Raises
     ------
@@ -26,12 +29,16 @@ def at_any_resolution(method: partial[Solution], coarse: int | None, refine: int
     if refine:
         from solvers.refine import solve_refined
 
-        if coarse is not None:
+        if isinstance(coarse, int):
             raise InputError("--coarse and --refine both solve on fewer nodes first", "give one of them")
         return partial(solve_refined, method=method, levels=refine)
-    if coarse is None:
-        return method
     settings: dict[str, Any] = method.keywords
+    if coarse == "auto" and not settings:
+        from solvers.coarse import solve_automatic
+
+        return partial(solve_automatic, method=method, name=name)
+    if not isinstance(coarse, int):
+        return method
     if settings.get("initial") is not None:
         raise InputError("a coarse solve has no use for a grid to start from", "drop --initial or --coarse")
     from solvers.coarse import solve_coarse

@@ -174,13 +174,19 @@ class WithWalls:
             slide = channel and bool(heights.south or heights.north)
         if not slide:
             return self.method(boundary)
+        from functools import partial
+
+        from solvers.coarse import solve_automatic
         from solvers.elliptic.solve import solve
         from solvers.walls.slide import slide_walls
 
         slid, controls = slide_walls(boundary)
         told = "wall nodes slid along south and north"
-        if controls is not None and getattr(self.method, "func", None) is solve:
-            solution = self.method(slid, controls=controls)
+        whole = self.method
+        if isinstance(whole, partial) and whole.func is solve_automatic:
+            whole = whole.keywords["method"]  # controls are those of the full grid
+        if controls is not None and getattr(whole, "func", None) is solve:
+            solution = whole(slid, controls=controls)
         else:
             solution = self.method(slid)
         return replace(solution, boundary=slid, notes=(*solution.notes, told))

@@ -243,6 +243,22 @@ def test_variational_around_a_body(meshonet: Meshonet, topology: str) -> None:
     assert told["quality"]["max_angle"]["mean"] < 93
 
 
+@pytest.mark.parametrize(
+    ("method", "res", "coarse"), [("variational", "260x40", 129), ("auto", "513x30", 257)]
+)
+def test_large_quads_are_solved_on_fewer_nodes_unless_told(
+    meshonet: Meshonet, duct_h5: Path, method: str, res: str, coarse: int
+) -> None:
+    words = ("solve-pde", duct_h5, "--method", method, "--res", res, "--json")
+    nj = int(res.split("x")[1])
+    for k, more in enumerate(
+        (("--coarse", "auto"), ("--coarse", "off"), ("--coarse", "0"), ("--max-cycles", "20"))
+    ):
+        meshonet(*words, *more, "-o", f"{k}.vts")
+    found = [next(read_grids(f"{k}.vts")).provenance.get("coarse") for k in range(4)]
+    assert [None if one is None else list(one) for one in found] == [[coarse, nj], None, None, None]
+
+
 def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_h5: Path) -> None:
     meshonet("solve-pde", duct_h5, "--res", "80x60", "-o", "full.vts")
     told = meshonet("solve-pde", duct_h5, "--res", "80x60", "--coarse", "33", "-o", "g.vts", "--json").only
@@ -300,7 +316,8 @@ def test_refine_goes_with_a_first_grid_and_not_with_marching(meshonet: Meshonet,
         (("--tol", "2"), "--tol: 2 is not between 0 and 1; use e.g. 1e-8"),
         (("--tol", "x"), "tol"),
         (("--max-cycles", "0"), "max-cycles"),
-        (("--coarse", "8"), "coarse"),
+        (("--coarse", "8"), "--coarse: '8' is not a number of nodes from 9 on; use auto, off or e.g. 65"),
+        (("--coarse", "x"), "--coarse: 'x' is not a number of nodes from 9 on; use auto, off or e.g. 65"),
         (("--coarse", "9", "--initial", "start.vts"), "drop --initial or --coarse"),
         (("--initial", "missing.vts"), "missing.vts: no such file"),
         (("--initial", "duct.h5"), "duct.h5: holds boundaries, not grids"),
