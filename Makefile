@@ -49,7 +49,7 @@ test: $(VENV)/.developing
 
 # programs that read what is written here, from Debian: needs to be root, or them installed
 test-clients: $(VENV)/.developing
-	{ command -v cgnscheck && command -v checkMesh; } >/dev/null || \
+	{ command -v cgnscheck && command -v checkMesh && command -v simpleFoam; } >/dev/null || \
 	  { apt-get update -qq && apt-get install -y -qq --no-install-recommends cgns-convert openfoam; }
 	MESHONET_CLIENTS=1 $(BIN)/python -m pytest -m client tests/formats
 

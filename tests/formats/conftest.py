@@ -10,6 +10,7 @@ import pytest
 
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "client(program): runs a program that is not from PyPI")
+    config.addinivalue_line("markers", "solver(program): runs a program that Debian does not have either")
 
 
 def pytest_runtest_setup(item: pytest.Item) -> None:
@@ -21,3 +22,6 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
             if os.environ.get("MESHONET_CLIENTS"):
                 pytest.fail(missing)
             pytest.skip(missing)
+    for mark in item.iter_markers("solver"):
+        if shutil.which(str(mark.args[0])) is None:
+            pytest.skip(f"{mark.args[0]} is not installed")
