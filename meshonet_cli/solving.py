@@ -43,9 +43,26 @@ def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0
         raise InputError("a coarse solve has no use for a grid to start from", "drop --initial or --coarse")
     from solvers.coarse import solve_coarse
     from solvers.elliptic.solve import solve_thomas_middlecoff
+    from solvers.elliptic.steger_sorenson import solve_steger_sorenson
 
-    uncontrolled = method.func is not solve_thomas_middlecoff  # the sweeps know no control functions
+    # the sweeps know no control functions
+    uncontrolled = method.func not in (solve_thomas_middlecoff, solve_steger_sorenson)
     return partial(solve_coarse, method=method, n=coarse, smooth=uncontrolled)
+
+
+def solver_of(name: str) -> Callable[..., Solution]:
+    """Return the solver behind a value of ``--method``: Winslow's where that is no other one's."""
+    if name == "variational":
+        from solvers.variational.solve import solve as minimise
+
+        return minimise
+    if name == "steger-sorenson":
+        from solvers.elliptic.steger_sorenson import solve_steger_sorenson
+
+        return solve_steger_sorenson
+    from solvers.elliptic.solve import solve, solve_thomas_middlecoff
+
+    return solve_thomas_middlecoff if name == "thomas-middlecoff" else solve
 
 
 def given(**settings: Any) -> dict[str, Any]:

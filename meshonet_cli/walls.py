@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from solvers.solution import Solution
     from solvers.walls.heights import Heights
 
+SIDES = ("south", "north", "west", "east")
 Method: TypeAlias = "Callable[..., Solution]"
 
 # fmt: off
@@ -43,6 +44,14 @@ ConstantLayers = Annotated[
         help="So many first cells are equally high; beyond, they grow. [default: 1]",
     ),
 ]
+WallAngle = Annotated[
+    float | None,
+    typer.Option(
+        "--wall-angle", metavar="DEGREES", show_default=False,
+        help="Angle at which lines leave the walls, for steger-sorenson: sides with a first cell, or else "
+        "south and north, or a body. [default: 90]",
+    ),
+]
 Slide = Annotated[
     bool | None,
     typer.Option(
@@ -64,6 +73,7 @@ class Edges:
     constant : equal first layers.
     growth, free_rows : as in `meshonet_cli.layers.Layers`.
     slide : whether wall nodes of four-sided domains move; None: when there are layers and no given nodes.
+    angle : of lines at walls in degrees.
     """
 
     heights: Mapping[str, float]
@@ -71,6 +81,7 @@ class Edges:
     growth: float | None = None
     free_rows: bool = False
     slide: bool | None = None
+    angle: float | None = None
 
 
 def read_edges(
@@ -80,6 +91,7 @@ def read_edges(
     res: str | None,
     layers: Layers | None,
     slide: bool | None = None,
+    angle: float | None = None,
 ) -> Edges:
     """Return what the options ask for, `asked` off south, north, west and east.
 
@@ -90,8 +102,7 @@ def read_edges(
     """
     from geometry.errors import InputError
 
-    sides = ("south", "north", "west", "east")
-    heights = {side: height for side, height in zip(sides, asked, strict=False) if height is not None}
+    heights = {side: height for side, height in zip(SIDES, asked, strict=False) if height is not None}
     for side, height in heights.items():
         if not 0 < height < float("inf"):
             raise InputError(
@@ -104,7 +115,7 @@ def read_edges(
                     f"{option} without a first cell",
                     "give --wall-spacing, --y-plus or --spacing-south as well",
                 )
-    return Edges(heights, constant or 1, growth, growth is not None and res is None, slide)
+    return Edges(heights, constant or 1, growth, growth is not None and res is None, slide, angle)
 
 
 @dataclass(frozen=True)
@@ -132,6 +143,9 @@ class WithWalls:
         if self.name == "hyperbolic" and self.layers is None:
             problem = "--method hyperbolic without a first cell"
             raise InputError(problem, "give --wall-spacing or --y-plus as well")
+        if self.edges.angle is not None and self.name != "steger-sorenson":
+            problem = f"method {self.name} sets no angle"
+            raise InputError(problem, "use --method steger-sorenson", source="--wall-angle")
 
     def __call__(self, boundary: Boundary) -> Solution:
         """Return the grid of `boundary`, its first cells as high as asked.
@@ -167,29 +181,53 @@ class WithWalls:
         return replace(solution, notes=(note, *solution.notes)) if note else solution
 
     def _solved(self, boundary: Boundary, heights: Heights) -> Solution:
-        """Return the grid of `boundary` with even rows, its wall nodes slid when they are to."""
-        channel = boundary.topology == "quad" and boundary.sampled and self.name == "auto"
+        """Return the grid of `boundary` with even rows: wall nodes slid, or lines turned, as they are to be.
+
+        Channels with layers by ``auto``: nodes that were sampled here slide; given ones stay, and sources
+        turn the lines.
+        """
+        channel = boundary.topology == "quad" and self.name == "auto" and self.layers is not None
         slide = self.edges.slide
         if slide is None:
-            slide = channel and bool(heights.south or heights.north)
-        if not slide:
-            return self.method(boundary)
+            slide = channel and boundary.sampled
+        if slide:
+            return self._slid(boundary)
+        if self.name == "steger-sorenson" or (channel and self._whole_function() is solve_function()):
+            return self._turned(boundary, heights)
+        return self.method(boundary)
+
+    def _whole(self) -> Method:
+        """Return the method, solving on all nodes whatever their number."""
         from functools import partial
 
         from solvers.coarse import solve_automatic
-        from solvers.elliptic.solve import solve
+
+        automatic = isinstance(self.method, partial) and self.method.func is solve_automatic
+        return self.method.keywords["method"] if automatic else self.method  # type: ignore[attr-defined]
+
+    def _whole_function(self) -> object:
+        return getattr(self._whole(), "func", None)
+
+    def _slid(self, boundary: Boundary) -> Solution:
         from solvers.walls.slide import slide_walls
 
         slid, controls = slide_walls(boundary)
         told = "wall nodes slid along south and north"
-        whole = self.method
-        if isinstance(whole, partial) and whole.func is solve_automatic:
-            whole = whole.keywords["method"]  # controls are those of the full grid
-        if controls is not None and getattr(whole, "func", None) is solve:
-            solution = whole(slid, controls=controls)
+        if controls is not None and self._whole_function() is solve_function():
+            solution = self._whole()(slid, controls=controls)
         else:
             solution = self.method(slid)
         return replace(solution, boundary=slid, notes=(*solution.notes, told))
+
+    def _turned(self, boundary: Boundary, heights: Heights) -> Solution:
+        from solvers.elliptic.steger_sorenson import solve_steger_sorenson
+
+        sides = {side: height for side in SIDES if (height := getattr(heights, side))}
+        angle = 90.0 if self.edges.angle is None else self.edges.angle
+        settings = getattr(self._whole(), "keywords", {})
+        if self._whole_function() in (solve_function(), solve_steger_sorenson):
+            return solve_steger_sorenson(boundary, **settings, heights=sides, angle=angle)
+        return self.method(boundary)
 
     def heights(self, boundary: Boundary) -> Heights:
         """Return the heights in the unit of `boundary`.
@@ -221,3 +259,10 @@ class WithWalls:
             if value is not None:
                 raise InputError(f"{option} is of no use to a grid marched from the wall", f"drop {option}")
         return march(boundary, layers, self.edges.constant)
+
+
+def solve_function() -> Callable[..., Solution]:
+    """Return the elliptic solver without sources."""
+    from solvers.elliptic.solve import solve
+
+    return solve

@@ -15,17 +15,19 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --method thomas-middlecoff --spacing tanh -o layers.vts",
     "meshonet solve-pde duct.csv --res 25x13 --refine 3 -o finest.vts",
     "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
+    "meshonet solve-pde duct.csv --method steger-sorenson --spacing-south 1e-3 -o upright.vts",
     "meshonet solve-pde duct.csv --res 200x80 --wall-spacing 1e-4 --slide -o channel.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
 
 # fmt: off
 Method = Annotated[
-    Literal["auto", "winslow", "thomas-middlecoff", "variational", "hyperbolic"],
+    Literal["auto", "winslow", "thomas-middlecoff", "steger-sorenson", "variational", "hyperbolic"],
     typer.Option(
-        "--method", metavar="auto|winslow|thomas-middlecoff|variational|hyperbolic",
+        "--method", metavar="auto|winslow|thomas-middlecoff|steger-sorenson|variational|hyperbolic",
         help="Equations to solve: winslow is elliptic; thomas-middlecoff too, with control functions that "
-        "carry the spacing of the edges inside; variational minimises a functional of angles "
+        "carry the spacing of the edges inside; steger-sorenson has sources at walls that turn the lines "
+        "there to --wall-angle; variational minimises a functional of angles "
         "and edge lengths: better angles, no folds; hyperbolic marches from the wall, and is what auto takes "
         "when a first cell is given.",
     ),
@@ -98,6 +100,7 @@ def solve_pde(
     growth: layer.Growth = None,
     constant_layers: wall.ConstantLayers = None,
     slide: wall.Slide = None,
+    wall_angle: wall.WallAngle = None,
     spacing_south: wall.SpacingSouth = None,
     spacing_north: wall.SpacingNorth = None,
     spacing_west: wall.SpacingWest = None,
@@ -125,20 +128,17 @@ def solve_pde(
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.session import Session
-    from meshonet_cli.solving import at_any_resolution, given
-    from solvers.elliptic.solve import solve, solve_thomas_middlecoff
-    from solvers.variational.solve import solve as minimise
+    from meshonet_cli.solving import at_any_resolution, given, solver_of
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     sides = (spacing_south, spacing_north, spacing_west, spacing_east)
-    edges = wall.read_edges(sides, constant_layers, growth, res, layers, slide)
-    elliptic = {"auto": solve, "winslow": solve, "thomas-middlecoff": solve_thomas_middlecoff}
+    edges = wall.read_edges(sides, constant_layers, growth, res, layers, slide, wall_angle)
     lengths = {
         "le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te, "wake": wake,
         "wake_nodes": wake_nodes, "viscous": layers is not None,
     }  # fmt: skip
     settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
-    solver = partial(elliptic.get(method, minimise), **settings)
+    solver = partial(solver_of(method), **settings)
     recipe = Recipe(
         o.sampling(
             res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths

@@ -74,7 +74,7 @@ def solve(
     SolverError
         the iteration diverged from every start tried.
     """
-    _check(boundary, tol, max_cycles, initial)
+    check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
     notes: tuple[str, ...] = ()
     for k, (settings, steps) in enumerate(_attempts(controls)):
@@ -192,7 +192,8 @@ def _at_discretisation_level(corrections: list[float]) -> bool:
     return rate < 0.9 and corrections[-1] * rate / (1.0 - rate) <= corrections[0] / 3.0
 
 
-def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
+def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
+    """Raise InputError unless the settings are such as `solve` takes."""
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-8")
     if max_cycles < 1:

@@ -109,13 +109,50 @@ def test_walls_of_channels_slide(meshonet: Meshonet, tmp_path: Path) -> None:
         (grid,) = read_grids("g.h5")
         leans[name] = _roof_lean(grid.nodes)
         assert (slid in told["notes"]) == (name == "own")
+        assert told["method"] == ("winslow" if name == "own" else "steger-sorenson")
         assert told["folded"] == 0
     assert leans["own"] < 1.0
-    assert leans["kept"] > 10
+    assert leans["kept"] < 1.0  # sources turn the lines instead
+    told = meshonet(*words, "181x61", "--no-slide", "--method", "winslow").only
+    (grid,) = read_grids("g.h5")
+    assert _roof_lean(grid.nodes) > 10
     for method in ("winslow", "thomas-middlecoff", "variational"):
         told = meshonet(*words, "201x41", "--method", method, "--slide").only
         assert slid in told["notes"]
         assert told["folded"] == 0
+
+
+@pytest.mark.parametrize("angle", [90, 75])
+def test_steger_sorenson_turns_the_lines_at_walls(meshonet: Meshonet, tmp_path: Path, angle: int) -> None:
+    source = dataset(tmp_path / "duct.h5", "quad", duct(121, 61, bump=0.0))
+    words = ("--method", "steger-sorenson", "--wall-angle", angle, "--spacing-south", "1e-4")
+    told = meshonet("solve-pde", source, *words, "-o", "g.h5", "--json").only
+    assert (told["method"], told["folded"]) == ("steger-sorenson", 0)
+    (grid,) = read_grids("g.h5")
+    out = grid.nodes[:, 1] - grid.nodes[:, 0]
+    np.testing.assert_allclose(np.hypot(*out.T), 1e-4, rtol=1e-8)
+    np.testing.assert_allclose(np.degrees(np.arctan2(out[10:-10, 1], out[10:-10, 0])), angle, atol=1.0)
+    assert any(f"lines leave south at {angle} degrees" in note for note in told["notes"])
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--wall-angle", "80"), "--wall-angle: method auto sets no angle; use --method steger-sorenson"),
+        (("--method", "steger-sorenson", "--wall-angle", "10"), "an angle of 10 degrees at walls; use 30 to"),
+        (("--method", "steger-sorenson", "--wall-angle", "nan"), "an angle of nan degrees at walls; use 30"),
+        (("--method", "steger-sorenson", "--tol", "3"), "--tol: 3 is not between 0 and 1"),
+        (("--method", "thomas-middlecoff", "--initial", "missing.vts"), "missing.vts: no such file"),
+    ],
+)
+def test_angles_that_make_no_sense_get_a_line(
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str
+) -> None:
+    done = meshonet("solve-pde", duct_h5, *words, "-o", "g.vts")
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()
 
 
 def test_no_body_slides(meshonet: Meshonet, body_h5: Path) -> None:

@@ -169,8 +169,7 @@ def test_divergence_brings_the_controls_in_little_by_little(monkeypatch: pytest.
     honest, parts = module._attempt, []
 
     def spoiled(*arguments: object) -> tuple[Floats, float, int]:
-        controls = arguments[-1]
-        assert isinstance(controls, Controls)
+        (controls,) = (one for one in arguments if isinstance(one, Controls))
         parts.append(float(np.abs(controls.psi.values()).max()))
         if len(parts) <= len(module.ATTEMPTS):
             raise module._DivergedError("spoiled")

@@ -1,0 +1,238 @@
+"""Elliptic grids whose lines leave chosen edges at a given angle, first cells at a given height.
+
+::
+
+    Winslow's solution --> cycle --> correct sources at the edges --+--> cycles with the sources kept --> grid
+                             ^                                      |
+                             +------- until angles are right -------+    first on few nodes, then on all
+
+The sources are those of `solvers.elliptic.wall_control`. They can hold first cells that are somewhat thinner
+than even rows; where thinner ones are asked for, the solver goes part of the way and `solvers.walls.spread`
+the rest, along lines that by then leave the wall as they should.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from geometry.arrays import Floats, planar_nodes
+from geometry.boundary import Boundary
+from geometry.errors import InputError, SolverError
+from geometry.grid import Grid
+from geometry.quality import count_folded
+from solvers.coarse import evaluate, thinned
+from solvers.elliptic.control import Controls, Factors
+from solvers.elliptic.multigrid import Multigrid
+from solvers.elliptic.solve import check_settings, solve
+from solvers.elliptic.wall_control import ControlledEdge
+from solvers.solution import Solution
+
+FEW = 129
+"""Nodes along a direction up to which sources are sought first."""
+
+ROUNDS = 80, 12
+"""Rounds of correction at the most, on few nodes and on all."""
+
+FIRST = 2
+"""Cycles before the first correction."""
+
+PATIENCE = 12
+"""Rounds without improvement after which the best so far is taken."""
+
+CLOSE = 0.002
+"""Error (sine of an angle, logarithm of a height; root mean square) at which correction stops."""
+
+THINNEST = 0.5
+"""Thinnest first cell that sources are to hold, in even ones; below, `solvers.walls.spread` takes over."""
+
+RELAXATION = 0.5
+"""Part of the linear answer by which sources are corrected."""
+
+
+def solve_steger_sorenson(
+    boundary: Boundary,
+    *,
+    heights: Mapping[str, float] | None = None,
+    angle: float = 90.0,
+    tol: float | None = None,
+    max_cycles: int = 30,
+    initial: Grid | None = None,
+) -> Solution:
+    """Solve Winslow's equations with sources that turn the lines at edges and hold first cells.
+
+    Parameters
+    ----------
+    boundary : quad or o.
+    heights : of the first cells by side, in its unit, 0 for any; the sides named are those under control.
+        None: south and north of a quad, the body of an o, of any height.
+    angle : in degrees between an edge's direction and the lines that leave it.
+    tol, max_cycles : of the last cycles, as in `solvers.elliptic.solve.solve`.
+    initial : start from this grid instead of Winslow's solution.
+
+    Returns
+    -------
+    Solution
+        notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid
+        they are weakened, and a note says so.
+
+    Raises
+    ------
+    InputError
+        a side that cannot be controlled, an angle out of range, or as `solve`.
+    SolverError
+        as `solve`.
+    """
+    check_settings(boundary, tol, max_cycles, initial)
+    asked = _asked(boundary, heights, angle)
+    begun = time.perf_counter()
+    start = initial.nodes if initial is not None else solve(boundary).grid.nodes
+    edges = _edges(boundary, asked, angle)
+    counts = min(boundary.ni, FEW), min(boundary.nj, FEW)
+    if counts != (boundary.ni, boundary.nj) and initial is None:
+        small = thinned(boundary, *counts)
+        few = _edges(small, asked, angle)
+        nodes = solve(small).grid.nodes.copy(order="K")
+        _seek(nodes, small, few, ROUNDS[0])
+        for edge, coarse in zip(edges, few, strict=True):
+            edge.taken_from(coarse)
+        nodes, rounds = evaluate(nodes, boundary), ROUNDS[1]
+    else:
+        nodes, rounds = start.copy(order="K"), ROUNDS[0]
+    _seek(nodes, boundary, edges, rounds)
+    solution, part = _settled(boundary, start, nodes, edges, tol, max_cycles)
+    notes = (*solution.notes, _told(solution.grid.nodes, edges, part))
+    return replace(solution, seconds={"grid": time.perf_counter() - begun}, notes=notes)
+
+
+def _asked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> dict[str, float]:
+    """Return the heights by side, once all is checked."""
+    if boundary.topology == "c":
+        raise InputError("steger-sorenson has no C grids", "use topology o or method hyperbolic")
+    if not 30.0 <= angle <= 150.0:
+        raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150")
+    walls = ("south", "north") if boundary.topology == "quad" else ("south",)
+    asked = dict(heights) if heights else dict.fromkeys(walls, 0.0)
+    for side in asked:
+        if boundary.topology != "quad" and side != "south":
+            problem = f"{side} of a {boundary.topology} grid cannot be controlled"
+            raise InputError(problem, "control its wall, south")
+    return asked
+
+
+def _edges(boundary: Boundary, asked: Mapping[str, float], angle: float) -> list[ControlledEdge]:
+    """Return the edges under control, with heights that sources can hold."""
+    found = []
+    for side, height in asked.items():
+        sides = ("west", "east") if side in ("south", "north") else ("south", "north")
+        count = boundary.nj if side in ("south", "north") else boundary.ni
+        lengths = [float(np.hypot(*np.diff(getattr(boundary, other), axis=0).T).sum()) for other in sides]
+        even = 0.5 * sum(lengths) / (count - 1)
+        held = max(height, THINNEST * even) if height else 0.0
+        closed = boundary.topology == "o"
+        found.append(ControlledEdge(side, getattr(boundary, side), count, angle, held, closed))
+    return found
+
+
+def _sum(edges: Sequence[ControlledEdge], boundary: Boundary) -> Controls:
+    none = Factors.none(boundary.ni, boundary.nj)
+    return sum((edge.controls() for edge in edges), Controls(none, none))
+
+
+def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], rounds: int) -> None:
+    """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right.
+
+    What is not finite or goes astray is taken back to the best so far, with smaller corrections.
+    """
+    four = boundary.south, boundary.north, boundary.west, boundary.east
+    work = planar_nodes(boundary.ni, boundary.nj)
+    levels = Multigrid(work, four, boundary.topology == "o", controls=_sum(edges, boundary))
+    work[...] = nodes
+    for _ in range(FIRST):
+        levels.cycle()
+    best, least, since, relaxation = _kept(edges), np.inf, 0, RELAXATION
+    for _ in range(rounds):
+        error = _error(work, edges)
+        if error < least:
+            best, least, since = _kept(edges), error, 0
+            nodes[...] = work
+        else:
+            since += 1
+        if least < CLOSE or since > PATIENCE:
+            break
+        if not error < 3.0 * least:
+            _restore(edges, best)
+            work[...] = nodes
+            relaxation *= 0.5
+            if relaxation < 0.05:
+                break
+        for edge in edges:
+            edge.correct(work, relaxation)
+        levels.control(_sum(edges, boundary))
+        levels.cycle()
+    _restore(edges, best)
+
+
+def _error(nodes: Floats, edges: Sequence[ControlledEdge]) -> float:
+    """Return the root mean square of what is wrong at the edges, infinite when `nodes` are not finite."""
+    if not np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()):
+        return np.inf
+    wrong = [error for edge in edges for error in edge.errors(nodes)]
+    return float(max(np.sqrt(np.mean(np.square(error))) for error in wrong))
+
+
+def _kept(edges: Sequence[ControlledEdge]) -> list[tuple[Floats, Floats]]:
+    return [(edge.along.copy(), edge.across.copy()) for edge in edges]
+
+
+def _restore(edges: Sequence[ControlledEdge], kept: list[tuple[Floats, Floats]]) -> None:
+    for edge, (along, across) in zip(edges, kept, strict=True):
+        edge.along, edge.across = along.copy(), across.copy()
+
+
+def _settled(
+    boundary: Boundary,
+    start: Floats,
+    nodes: Floats,
+    edges: Sequence[ControlledEdge],
+    tol: float | None,
+    max_cycles: int,
+) -> tuple[Solution, float]:
+    """Return the solution with the sources kept, and the part of them that folds no more than `start` is."""
+    folded, most = count_folded(start), max(_error(start, edges), 5.0 * CLOSE)
+    controls = _sum(edges, boundary)
+    for part in (1.0, 0.5, 0.25):
+        try:
+            solution = solve(
+                boundary,
+                tol=tol,
+                max_cycles=max_cycles,
+                initial=Grid(nodes if part == 1.0 else start, boundary.topology),
+                controls=controls.scaled(part),
+                method="steger-sorenson",
+            )
+        except SolverError:
+            continue
+        found = solution.grid.nodes
+        if count_folded(found) <= folded and _error(found, edges) <= most:
+            return solution, part
+    begun = Grid(start, boundary.topology)
+    return solve(boundary, tol=tol, max_cycles=max_cycles, initial=begun, method="steger-sorenson"), 0.0
+
+
+def _told(nodes: Floats, edges: Sequence[ControlledEdge], part: float) -> str:
+    """Return how near the lines came to their angles."""
+    off = [np.degrees(np.arcsin(np.clip(np.abs(edge.errors(nodes)[0]), 0.0, 1.0))) for edge in edges]
+    sides = ", ".join(edge.side for edge in edges)
+    told = (
+        f"lines leave {sides} at {edges[0].angle:g} degrees, off by {max(map(np.max, off)):.1f} at most and "
+    )
+    told += f"{np.mean(np.concatenate(off)):.2f} on average"
+    return (
+        told
+        if part == 1.0
+        else f"{told}; sources weakened to {part:g} of what that takes, which diverged or folded cells"
+    )

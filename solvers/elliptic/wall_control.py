@@ -1,0 +1,137 @@
+"""One controlled edge: how its lines stand, how high its first cells are, and the sources that change both.
+
+The sources decay from the edge inwards, φ(i, j) = p(i) e^{-b j} along it and ψ(i, j) = q(i) e^{-b j} across,
+as Steger and Sorenson's. To first order on an even grid with steps dx, dy a wave κ/dy of p turns the lines at
+the edge by (dy/dx) p/(b + κ), one of q changes the logarithm of the first cells' height by q/(b + κ): so what
+is wrong is multiplied by b + κ, wave by wave, to correct p and q.
+
+Steger and Sorenson, J. Comput. Phys. 33 (1979) 405-410; feedback of angle and height: Hilgenstock, in
+Numerical Grid Generation in Computational Fluid Mechanics (1988) 137-146.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.curves import Curve
+from solvers.elliptic.control import Controls, Factors
+
+DECAY = 6.0
+"""Exponent of the decay from an edge to the opposite one."""
+
+RAMP = 0.03
+"""Part of the nodes of an edge over which control sets in beside a corner."""
+
+LIMIT = 1.0
+"""Largest logarithm of a ratio of neighbouring steps that a source may ask for."""
+
+
+class ControlledEdge:
+    """An edge under control.
+
+    Parameters
+    ----------
+    side : ``south``, ``north``, ``west`` or ``east``.
+    edge : (n, 2) its nodes.
+    across : nodes from it to the opposite edge.
+    angle : in degrees, between the edge's own direction and the lines that leave it.
+    height : of the first cells, 0 for any.
+    periodic : the edge is closed.
+    """
+
+    def __init__(
+        self, side: str, edge: Floats, across: int, angle: float, height: float, periodic: bool
+    ) -> None:
+        self.side, self.angle, self.height, self.periodic = side, angle, height, periodic
+        curve = Curve(edge, closed=periodic)
+        self._tangent = curve.tangent(np.append(curve.knots, 0.0) if periodic else curve.knots)
+        self._steps = np.hypot(*np.diff(edge, axis=0).T)
+        self._weight = _away_from(curve, len(edge), periodic)
+        self.along = np.zeros(len(edge))
+        self.across = np.zeros(len(edge))
+        self._count = across
+
+    def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
+        """Return by how much lines lean forward (sine) and the logarithm of height over what it should be.
+
+        (n,) each, less and less towards corners and ends of the edge, where lines cannot stand as asked.
+        """
+        a, b, c = _layers(nodes, self.side)
+        first, second = np.hypot(*(b - a).T), np.hypot(*(c - b).T)
+        out = (b - a) / first[:, None]
+        direction = out + (out - (c - b) / second[:, None]) * (first / (first + second))[:, None]
+        lean = (direction * self._tangent).sum(axis=1) / np.hypot(*direction.T) - np.cos(
+            np.radians(self.angle)
+        )
+        high = np.log(first / self.height) if self.height else np.zeros(len(first))
+        return self._weight * lean, self._weight * high
+
+    def correct(self, nodes: Floats, relaxation: float) -> None:
+        """Change the sources against what is wrong with `nodes`."""
+        lean, high = self.errors(nodes)
+        a, b, _ = _layers(nodes, self.side)
+        up = np.hypot(*(b - a).T)
+        before, after = self._steps, self._steps
+        beside = np.empty(len(up))
+        beside[1:-1] = 0.5 * (before[:-1] + after[1:])
+        beside[0], beside[-1] = after[0], before[-1]
+        flat = float(np.mean(up) / np.mean(beside))
+        decay = DECAY / (self._count - 1)
+        for sources, wrong in ((self.along, lean * beside / up), (self.across, high)):
+            sources += relaxation * _stiffened(wrong, decay, flat, self.periodic)
+            np.clip(sources, -LIMIT, LIMIT, out=sources)
+
+    def controls(self) -> Controls:
+        """Return the sources as control functions."""
+        distance = np.arange(float(self._count))
+        fade = np.exp(-DECAY / (self._count - 1) * distance)
+        inwards = 1.0
+        if self.side in ("north", "east"):
+            fade, inwards = fade[::-1].copy(), -1.0
+        along, across = self.along[None], inwards * self.across[None]
+        if self.side in ("south", "north"):
+            return Controls(Factors(along, fade[None]), Factors(across, fade[None]))
+        return Controls(Factors(fade[None], across), Factors(fade[None], along))
+
+    def taken_from(self, coarse: ControlledEdge) -> None:
+        """Take over the sources of the same edge with other counts."""
+        n, m = len(self.along), len(coarse.along)
+        place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)
+        self.along = np.interp(place, few, coarse.along) * ((m - 1) / (n - 1))
+        self.across = np.interp(place, few, coarse.across) * ((coarse._count - 1) / (self._count - 1))
+
+
+def _away_from(curve: Curve, n: int, periodic: bool) -> Floats:
+    """Return weights (n,) that rise from 0 at corners and open ends to 1 some nodes away."""
+    index = np.arange(n)
+    ends = [] if periodic else [0, n - 1]
+    corners = np.unique(np.concatenate([curve.corner_index, np.array(ends, dtype=np.intp)]))
+    distance = np.full(n, float(n))
+    for corner in corners.tolist():
+        apart = np.abs(index - corner)
+        distance = np.minimum(distance, np.minimum(apart, n - 1 - apart) if periodic else apart)
+    return np.clip(distance / max(3.0, RAMP * n), 0.0, 1.0)
+
+
+def _layers(nodes: Floats, side: str) -> tuple[Floats, Floats, Floats]:
+    """Return the nodes of an edge and of the two lines next to it, (n, 2) each."""
+    if side in ("west", "east"):
+        nodes = np.swapaxes(nodes, 0, 1)
+    rows = (0, 1, 2) if side in ("south", "west") else (-1, -2, -3)
+    a, b, c = (nodes[:, k] for k in rows)
+    return a, b, c
+
+
+def _stiffened(values: Floats, decay: float, flat: float, periodic: bool) -> Floats:
+    """Return values (n,) along an edge, each wave times decay + κ, κ its phase a step times `flat`."""
+    n = len(values) - 1
+    if periodic:
+        waves = np.fft.rfft(values[:-1])
+        phase = 2.0 * np.pi / n * np.arange(len(waves))
+        out = np.fft.irfft(waves * (decay + phase * flat), n)
+        return np.append(out, out[0])
+    odd = np.concatenate([values, -values[-2:0:-1]])
+    waves = np.fft.rfft(odd)
+    phase = np.pi / n * np.arange(len(waves))
+    return np.asarray(np.fft.irfft(waves * (decay + phase * flat), 2 * n)[: n + 1])
