@@ -41,7 +41,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
 
     Parameters
     ----------
-    boundary : ``o`` goes to the operator, others to the elliptic solver at discretisation level.
+    boundary : ``o`` goes to the operator; others to the variational method, which measures best for its time.
     model : name of a shipped model or path to a ``.safetensors`` file; None takes the shipped one;
         ``base`` is the harmonic base with no network.
     polish : Picard steps after the network: a number, ``off`` for none, ``auto`` until they change nothing.
@@ -57,12 +57,13 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         a model that does not exist or cannot be read.
     """
     if boundary.topology != "o":
-        from solvers.elliptic.solve import solve
+        from solvers.coarse import solve_automatic
+        from solvers.variational.solve import solve
 
         if model is not None:
             raise InputError(f"no shipped model makes {boundary.topology} grids", "leave --model out")
-        found = solve(boundary)
-        note = f"no shipped model makes {boundary.topology} grids: made by the elliptic solver"
+        found = solve_automatic(boundary, solve, "variational")
+        note = f"no shipped model makes {boundary.topology} grids: made by the variational method"
         return replace(found, notes=(note, *found.notes))
     network = None if model == "base" else load_model(model)
     across()  # like the model, made once a process: neither is part of a grid's time

@@ -34,6 +34,10 @@ def test_a_channel_becomes_a_valid_grid_too(meshonet: Meshonet, folding_h5: Path
     assert told["folded"] == 0
     (grid,) = read_grids("grid.vts")
     np.testing.assert_array_equal(grid.nodes[:, 0], wave()["south"])
+    assert told["method"] == "variational"
+    winslow = meshonet("solve-pde", folding_h5, "-o", "winslow.vts", "--json").only
+    for figure in ("mean", "max"):
+        assert told["quality"]["max_angle"][figure] < winslow["quality"]["max_angle"][figure]
 
 
 def test_a_designation_needs_no_file(meshonet: Meshonet) -> None:
