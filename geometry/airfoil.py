@@ -11,7 +11,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
-from geometry.closing import REACH, wedged_base
+from geometry.closing import wedged_base
 from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.rounding import rounded_base
@@ -184,7 +184,7 @@ class Airfoil:
         if not self.blunt:
             return self
         first, _, last = self._arcs
-        step = 1e-3 * self.chord
+        step = 0.01 * self.chord
         a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
         ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
         return Airfoil(wedged_base(self.curve.points[1:], ways), self.name)
@@ -199,9 +199,10 @@ class Airfoil:
             topology = "c" if sampling.viscous and sharp else "o"
         notes: tuple[str, ...] = ()
         if te == "wedge" and self.blunt:
+            length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
             notes = (
                 f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide, is closed by a "
-                f"wedge {REACH * self.gap / self.chord:.3g} chords long",
+                f"wedge {length:.3g} chords long",
             )
         if topology == "c":
             return body._c_boundary(sampling, self, notes)

@@ -28,12 +28,12 @@ from geometry.parts import Part, c_parts, wake_nodes
 from geometry.sampling import TanhLaw
 from geometry.topology import straight
 
-C_EDGE = 0.4
+C_EDGE = 0.8
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. Smaller ones pinch the
 corner between wall and wake, larger ones cost angles there."""
 _GROWTH = 1.135
 """Growth of wake cells that is enough, and below which cells are better spent on the wall."""
-_SHARES = 0.12, 0.22
+_SHARES = 0.2, 0.23
 """Smallest and largest part of all cells that one side of the wake takes by itself."""
 _STEEPEST = math.radians(34.0)
 """Largest angle at which the wake leaves the trailing edge."""

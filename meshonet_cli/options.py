@@ -106,8 +106,8 @@ TrailingEdge = Annotated[
     typer.Option(
         "--te", metavar="auto|exact|round|wedge",
         help="Blunt trailing edges as they are (exact), with their two corners rounded (round), which brings "
-        "the angles there from 45 to within 10 degrees of a right one, or closed by a wedge three bases long "
-        "(wedge). auto is wedge for a C grid, and exact otherwise.",
+        "the angles there from 45 to within 10 degrees of a right one, or closed by a wedge up to four bases "
+        "long (wedge). auto is wedge for a C grid, and exact otherwise.",
     ),
 ]
 Corners = Annotated[

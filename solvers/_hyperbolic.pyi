@@ -6,6 +6,8 @@ def march(
     y: Floats,
     steps: Floats,
     dissipation: float,
+    even: float,
+    bend: float,
     implicit: float,
     volume: float,
     sweeps: int,

@@ -47,22 +47,28 @@ class MarchSettings:
     dissipation : coefficient of the smoothing along a level.
     theta : the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is robuster.
     sweeps : smoothing steps of the cells' areas along a level.
+    even : how far that smoothing evens the spacing of nodes out: 1 is robuster, 0 keeps angles.
+    bend : coefficient of the smoothing that grows with the height.
     """
 
-    dissipation: float = 0.5
-    theta: float = 0.5
-    sweeps: int = 10
+    dissipation: float
+    theta: float
+    sweeps: int
+    even: float = 1.0
+    bend: float = 0.0
 
 
 ATTEMPTS = (
-    MarchSettings(),
+    MarchSettings(0.7, 0.5, 20, 0.1, 0.03),
+    MarchSettings(0.5, 0.5, 10),
     MarchSettings(1.0, 0.5, 20),
     MarchSettings(1.0, 1.0, 40),
     MarchSettings(2.0, 2.0, 40),
 )
 """Settings tried in turn while cells are folded."""
 OPEN_ATTEMPTS = (
-    MarchSettings(0.3, 0.5, 4),
+    MarchSettings(0.5, 0.5, 4, 0.05, 0.03),
+    MarchSettings(0.5, 0.5, 4, 0.15, 0.05),
     MarchSettings(0.5, 0.5, 10),
     MarchSettings(1.0, 0.5, 20),
     MarchSettings(2.0, 2.0, 40),
@@ -172,8 +178,16 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings, co
     levels = np.empty((2, cells + 1, n))
     levels[:, 0] = start.T
     scratch = np.empty(scratch_size(n))
-    knobs = settings.dissipation, 1.0 + settings.theta, 0.16, settings.sweeps, round(0.75 * cells)
-    distance = _distance_to_march(front.inner, front.outer, first, cells, knobs[1], constant)
+    knobs = (
+        settings.dissipation,
+        settings.even,
+        settings.bend,
+        1.0 + settings.theta,
+        0.16,
+        settings.sweeps,
+        round(0.75 * cells),
+    )
+    distance = _distance_to_march(front.inner, front.outer, first, cells, knobs[3], constant)
     for _ in range(4):
         steps = growing_steps(first, distance, cells, constant)
         march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)

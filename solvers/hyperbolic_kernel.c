@@ -6,8 +6,11 @@
    which is area conservation x_xi y_eta - x_eta y_xi = V and orthogonality r_xi . r_eta = 0, linearised about
    the level below: Steger and Chaussee, SIAM J. Sci. Stat. Comput. 1 (1980) 431; areas smoothed along the level
    and dissipation that grows with the level, where lines converge and at concave nodes: Chan and Steger, Appl.
-   Math. Comput. 51 (1992) 181. d_xi is the central, D2 the second difference; C is a symmetric 2x2 matrix
-   without trace. The periodic block-tridiagonal system is solved by elimination without the last node, whose
+   Math. Comput. 51 (1992) 181. d_xi is the central difference; C is a symmetric 2x2 matrix without trace.
+   D2 r = (c+ e+ - c- e-), with c = w/|e|, is the second difference along arc length: curvature, which lets uneven
+   spacing be. Between that and c = 1, which evens spacing out at the price of angles, `even` says how much of
+   either. To eps comes a smoothing as wide as levels are high, bend s h/w² with h the height so far, without
+   which fine grids focus lines at concave corners: the others fade as cells become narrower. The periodic block-tridiagonal system is solved by elimination without the last node, whose
    equation then closes it. Levels that do not close have ends that move along straight lines d:
    dr = d (d . dr of the neighbour). */
 #include "hyperbolic_kernel.h"
@@ -40,26 +43,27 @@ typedef struct {
     double *ex, *ey, *length;    /* halo: edges from node i to i + 1, and their lengths */
     double *volume, *smoothed;   /* halo */
     double *before;              /* sum of both edges at the node, on the level below */
-    double *p, *s, *eps, *rx, *ry;
+    double *p, *s, *rx, *ry;
+    double *lower, *upper;       /* eps c- and eps c+ */
     double *bx, *by;             /* eliminated right side */
     Matrix *next, *last;         /* eliminated coefficients of the next and of the last node */
 } March;
 
 size_t hyperbolic_scratch(ptrdiff_t n)
 {
-    return (size_t)(5 * (n + 2) + 8 * n + 2 * 4 * n);
+    return (size_t)(5 * (n + 2) + 9 * n + 2 * 4 * n);
 }
 
 static March parts(double *scratch, ptrdiff_t n)
 {
     March m;
     double **halo[] = {&m.ex, &m.ey, &m.length, &m.volume, &m.smoothed};
-    double **plain[] = {&m.before, &m.p, &m.s, &m.eps, &m.rx, &m.ry, &m.bx, &m.by};
+    double **plain[] = {&m.before, &m.p, &m.s, &m.rx, &m.ry, &m.lower, &m.upper, &m.bx, &m.by};
     m.next = (Matrix *)scratch, m.last = m.next + n;
     scratch += 8 * n;
     for (int k = 0; k < 5; k++, scratch += n + 2)
         *halo[k] = scratch + 1;
-    for (int k = 0; k < 8; k++, scratch += n)
+    for (int k = 0; k < 9; k++, scratch += n)
         *plain[k] = scratch;
     return m;
 }
@@ -107,10 +111,13 @@ MESHONET_INLINE void measure_level(const March *m, const double *restrict x, con
         memcpy(m->volume, from, (size_t)n * sizeof *from);
 }
 
-/* Coefficients p, s of (1 + theta) C/2 = [p s / s -p], dissipation eps and the right side of every node.
-   `growth` is sqrt(level / levels): the dissipation's, and in the exponent of the convergence of lines. */
-MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double growth, const MarchSettings *settings)
+/* Coefficients p, s of (1 + theta) C/2 = [p s / s -p], dissipation and the right side of every node.
+   `growth` is sqrt(level / levels): the dissipation's, and in the exponent of the convergence of lines; `bend`
+   the settings' times step and height. */
+MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double growth, double bend,
+                              const MarchSettings *settings)
 {
+    const double even = settings->even, arc = 1.0 - even;
     for (ptrdiff_t i = 0; i < n; i++) {
         const double ux = m->ex[i], uy = m->ey[i], both = m->length[i] + m->length[i - 1], w = 0.5 * both;
         double tx = ux + m->ex[i - 1], ty = uy + m->ey[i - 1];
@@ -127,11 +134,12 @@ MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double gro
         const double weight = 0.5 * settings->implicit * aspect; /* half: d_xi is over two cells */
         m->p[i] = -weight * 2.0 * tx * ty;
         m->s[i] = weight * (tx * tx - ty * ty);
-        m->eps[i] = eps;
+        eps += bend / (w * w);
         /* second difference of r by edges, which keeps its digits where the cells are small */
-        const double lp = m->length[i], lm = m->length[i - 1];
-        m->rx[i] = -ty * rate + eps * (lp * ux - lm * m->ex[i - 1]);
-        m->ry[i] = tx * rate + eps * (lp * uy - lm * m->ey[i - 1]);
+        const double lp = eps * (even * m->length[i] + arc * w), lm = eps * (even * m->length[i - 1] + arc * w);
+        m->upper[i] = 2.0 * lp / m->length[i], m->lower[i] = 2.0 * lm / m->length[i - 1];
+        m->rx[i] = -ty * rate + lp * ux - lm * m->ex[i - 1];
+        m->ry[i] = tx * rate + lp * uy - lm * m->ey[i - 1];
     }
 }
 
@@ -144,9 +152,9 @@ MESHONET_INLINE void solve_closed(const March *m, const double *restrict x, cons
     Matrix next = {0, 0, 0, 0}, last = next;
     double gx = 0, gy = 0;
     for (ptrdiff_t i = 0; i < k; i++) {
-        const double p = m->p[i], s = m->s[i], e = 2.0 * m->eps[i];
-        const Matrix below = {-p - e, -s, -s, p - e}, above = {p - e, s, s, -p - e};
-        Matrix centre = {1.0 + 2.0 * e, 0, 0, 1.0 + 2.0 * e}, border;
+        const double p = m->p[i], s = m->s[i], a = m->lower[i], c = m->upper[i];
+        const Matrix below = {-p - a, -s, -s, p - a}, above = {p - c, s, s, -p - c};
+        Matrix centre = {1.0 + a + c, 0, 0, 1.0 + a + c}, border;
         double fx = m->rx[i], fy = m->ry[i];
         if (i == 0) {
             border = below;
@@ -170,9 +178,9 @@ MESHONET_INLINE void solve_closed(const March *m, const double *restrict x, cons
         last = difference(m->last[i], product(next, last));
         m->last[i] = last;
     }
-    const double p = m->p[k], s = m->s[k], e = 2.0 * m->eps[k];
-    const Matrix below = {-p - e, -s, -s, p - e}, above = {p - e, s, s, -p - e};
-    Matrix centre = {1.0 + 2.0 * e, 0, 0, 1.0 + 2.0 * e};
+    const double p = m->p[k], s = m->s[k], a = m->lower[k], c = m->upper[k];
+    const Matrix below = {-p - a, -s, -s, p - a}, above = {p - c, s, s, -p - c};
+    Matrix centre = {1.0 + a + c, 0, 0, 1.0 + a + c};
     centre = difference(difference(centre, product(below, m->last[k - 1])), product(above, m->last[0]));
     const double fx = m->rx[k] - (below.a * bx[k - 1] + below.b * by[k - 1]) - (above.a * bx[0] + above.b * by[0]);
     const double fy = m->ry[k] - (below.c * bx[k - 1] + below.d * by[k - 1]) - (above.c * bx[0] + above.d * by[0]);
@@ -195,9 +203,9 @@ MESHONET_INLINE void solve_open(const March *m, const double *restrict x, const 
     double gx = 0, gy = 0;
     m->next[0] = next, bx[0] = by[0] = 0;
     for (ptrdiff_t i = 1; i < n - 1; i++) {
-        const double p = m->p[i], s = m->s[i], e = 2.0 * m->eps[i];
-        const Matrix below = {-p - e, -s, -s, p - e}, above = {p - e, s, s, -p - e};
-        const Matrix centre = {1.0 + 2.0 * e, 0, 0, 1.0 + 2.0 * e};
+        const double p = m->p[i], s = m->s[i], a = m->lower[i], c = m->upper[i];
+        const Matrix below = {-p - a, -s, -s, p - a}, above = {p - c, s, s, -p - c};
+        const Matrix centre = {1.0 + a + c, 0, 0, 1.0 + a + c};
         const Matrix over = inverse(difference(centre, product(below, next)));
         const double rx = m->rx[i] - below.a * gx - below.b * gy, ry = m->ry[i] - below.c * gx - below.d * gy;
         next = product(over, above);
@@ -222,12 +230,14 @@ void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const
                       const MarchEnds *ends, const MarchSettings *settings, double *scratch)
 {
     const March m = parts(scratch, n);
+    double height = 0.0;
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
         const double part = ends ? 1.0 - (double)level / (0.8 * (double)levels) : 0.0;
         measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL, settings);
-        assemble(&m, n, level == 0, growth, settings);
+        height += steps[level];
+        assemble(&m, n, level == 0, growth, settings->bend * steps[level] * height, settings);
         if (ends)
             solve_open(&m, x, y, n, ends, x + n, y + n);
         else

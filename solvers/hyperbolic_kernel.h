@@ -4,6 +4,8 @@
 
 typedef struct {
     double dissipation; /* coefficient of the second difference along a level */
+    double even;        /* how far that difference is one of the nodes' index (1), not of arc length (0) */
+    double bend;        /* coefficient of the smoothing by curvature that grows with the height */
     double implicit;    /* 1 + theta: weight of the flux along the new level */
     double volume;      /* weight of one smoothing step of the volumes */
     ptrdiff_t sweeps;   /* such steps a level */

@@ -1,10 +1,12 @@
 """Hyperbolic marching: against circles, whose levels follow a scalar recursion; on airfoils."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from geometry.airfoil import Airfoil
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Topology
 from geometry.boundary import Boundary, polygon_area
 from geometry.errors import InputError, SolverError
 from geometry.families import procedural
@@ -16,9 +18,10 @@ from geometry.sampling import Sampling
 from geometry.topology import o_boundary
 from solvers import hyperbolic as module
 from solvers._hyperbolic import march, scratch_size
+from solvers.guard import guard
 from solvers.hyperbolic import hyperbolic
 
-DISSIPATION, THETA = 0.5, 0.5
+DISSIPATION, THETA, BEND = 0.5, 0.5, 0.04
 
 
 def circle(n: int, radius: float = 0.5) -> Floats:
@@ -61,6 +64,7 @@ def radii_of_levels(n: int, radius: float, steps: Floats) -> list[float]:
         eps = DISSIPATION * growth * step / width
         if level:
             eps *= np.clip((before / width) ** (2 / growth), 0.1, 50.0)
+        eps += BEND * step * steps[: level + 1].sum() / width**2
         bend = 2 - 2 * np.cos(turn)
         advance = (step - eps * bend * r) / (1 + (1 + THETA) * step / width * np.sin(turn) + 2 * eps * bend)
         radii.append(r + advance)
@@ -68,12 +72,13 @@ def radii_of_levels(n: int, radius: float, steps: Floats) -> list[float]:
     return radii
 
 
-@pytest.mark.parametrize("n", [3, 4, 7, 64, 250])
-def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int) -> None:
+@pytest.mark.parametrize(("n", "even"), [(3, 1.0), (4, 0.0), (7, 0.3), (64, 0.0), (250, 1.0)])
+def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int, even: float) -> None:
     steps = growing_steps(1e-4, 3.0, 40)
     levels = np.empty((2, 41, n))
     levels[:, 0] = circle(n)[:-1].T
-    march(levels[0], levels[1], steps, DISSIPATION, 1 + THETA, 0.16, 10, 30, np.empty(scratch_size(n)))
+    knobs = DISSIPATION, even, BEND, 1 + THETA, 0.16, 10, 30
+    march(levels[0], levels[1], steps, *knobs, np.empty(scratch_size(n)))
     expected = np.multiply.outer(radii_of_levels(n, 0.5, steps), circle(n, 1.0)[:-1])
     np.testing.assert_allclose(np.moveaxis(levels, 0, -1), expected, rtol=0, atol=1e-11)
 
@@ -212,3 +217,110 @@ def test_spacings_are_in_chords_of_the_body() -> None:
     box = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
     assert Outline(box).boundary(Sampling(80, 60, topology="o")).chord == 4.0
     assert ellipse(80, 40).chord == pytest.approx(1.0)
+
+
+def c_boundary(name: str = "2412", ni: int = 160, nj: int = 80, **settings: object) -> Boundary:
+    return naca(name).boundary(Sampling(ni, nj, "c", **settings))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["0012", "4415", "23024"])
+def test_a_c_grid_keeps_wall_and_wake_and_has_its_first_cells(name: str) -> None:
+    boundary = c_boundary(name)
+    grid = hyperbolic(boundary, wall_spacing=1e-5).grid
+    assert count_folded(grid.nodes) == 0
+    assert (grid.topology, grid.parts) == ("c", boundary.parts)
+    np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
+    wall = next(part for part in grid.parts if part.name == "wall")
+    height = first_cells(grid.nodes)
+    np.testing.assert_allclose(height[wall.start : wall.stop + 1], 1e-5, rtol=1e-8)
+    behind = np.hypot(*(boundary.south[: wall.start] - boundary.south[wall.start]).T)
+    opened = 1e-5 * (1 + 5 * behind**2 / (behind + 0.3))
+    np.testing.assert_allclose(height[: wall.start], opened, rtol=1e-8)
+
+
+def test_the_ends_of_a_c_grid_stay_on_the_outlet_and_its_far_field_is_as_large_as_asked() -> None:
+    boundary = c_boundary(far_field=12.0)
+    nodes = hyperbolic(boundary, wall_spacing=1e-4).grid.nodes
+    for end in (0, -1):
+        np.testing.assert_allclose(nodes[end, :, 0], boundary.south[end, 0], rtol=1e-12)
+    areas = [
+        polygon_area(np.concatenate([boundary.south[[0]], boundary.south[[-1]], north[::-1]]))
+        for north in (boundary.north, nodes[:, -1])
+    ]
+    assert areas[1] == pytest.approx(areas[0], rel=0.03)
+
+
+def test_a_symmetric_section_has_a_symmetric_c_grid() -> None:
+    nodes = hyperbolic(c_boundary("0012", ni=161), wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(nodes, nodes[::-1] * [1.0, -1.0], atol=1e-9)
+
+
+def test_c_grids_are_nearly_orthogonal_where_o_grids_of_sharp_edges_are_not() -> None:
+    sharp = c_boundary("0012", 250, 100, te="wedge")
+    assert deviation(hyperbolic(sharp, wall_spacing=1e-5).grid.nodes).max() < 5.0
+    ring = naca("0012").boundary(Sampling(250, 100, "o", "curvature", te="wedge"))
+    assert deviation(hyperbolic(ring, wall_spacing=1e-5).grid.nodes).max() > 60.0
+
+
+def test_lines_do_not_run_together_behind_the_edge_of_a_fine_c_grid() -> None:
+    """Without the smoothing that grows with the height they do: cells become 50 degrees skew."""
+    boundary = c_boundary("0012", 600, 150)
+    assert deviation(hyperbolic(boundary, wall_spacing=1e-5).grid.nodes).max() < 10.0
+
+
+def test_a_wake_of_any_direction_ends_on_a_straight_outlet() -> None:
+    body = naca("0012").wedged()
+    turn = np.array([[0.5, np.sqrt(0.75)], [-np.sqrt(0.75), 0.5]])
+    plain = hyperbolic(body.boundary(Sampling(140, 60, "c")), wall_spacing=1e-4).grid.nodes
+    turned = Airfoil(body.curve.points @ turn).boundary(Sampling(140, 60, "c"))
+    found = hyperbolic(turned, wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(found, plain @ turn, atol=1e-6)
+
+
+def square(n: int = 30) -> Floats:
+    side = np.linspace(0.0, 1.0, n, endpoint=False)[:, None]
+    corners = np.array([[1.0, -0.5], [0.0, -0.5], [0.0, 0.5], [1.0, 0.5]])
+    return np.concatenate([a + side * (b - a) for a, b in zip(corners, np.roll(corners, -1, 0), strict=True)])
+
+
+def star(points: int = 5, depth: float = 0.55) -> Floats:
+    angle = np.linspace(0, 2 * np.pi, 2 * points, endpoint=False)
+    radius = np.where(np.arange(2 * points) % 2 == 0, 1.0, depth)
+    return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+BODIES = {
+    "square": square(),
+    "L": np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 0.7], [0.7, 0.7], [0.7, 2.0], [0.0, 2.0]]),
+    "star": star(),
+    "bluff": np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.6], [0.4, 0.6], [0.2, 0.5], [0.0, 0.3]]),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("height", [1e-3, 1e-5])
+def test_bodies_that_are_no_airfoils_get_valid_grids(name: str, height: float) -> None:
+    """Convex corners, re-entrant ones (L, star) and both: by the march, or the guard after it."""
+    boundary = Outline(BODIES[name]).boundary(Sampling(241, 100, topology="o"))
+    solution = hyperbolic(boundary, wall_spacing=height)
+    assert solution.boundary is not None
+    grid, path = guard(solution.grid, solution.boundary)
+    assert count_folded(grid.nodes) == 0
+    np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
+    if not path:
+        np.testing.assert_allclose(first_cells(grid.nodes), height * boundary.chord, rtol=1e-8)
+
+
+@pytest.mark.parametrize("topology", ["o", "c"])
+def test_folded_cells_of_a_march_are_repaired_by_the_guard(topology: Topology) -> None:
+    boundary = naca("0012").boundary(Sampling(121, 50, topology))
+    solution = hyperbolic(boundary, wall_spacing=1e-3)
+    nodes = solution.grid.nodes.copy(order="K")
+    nodes[30, 20] += 2.5 * (nodes[31, 20] - nodes[30, 20])
+    folded = replace(solution.grid, nodes=nodes)
+    assert count_folded(nodes) > 0
+    assert solution.boundary is not None
+    grid, path = guard(folded, solution.boundary)
+    assert path == ("repair",)
+    assert count_folded(grid.nodes) == 0
+    np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
