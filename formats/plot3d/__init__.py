@@ -9,10 +9,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from formats.format import Format, Heights
-from formats.plot3d.read import read_grids as read
-from formats.plot3d.read import sniff
-from formats.plot3d.variant import Variant, parse_variant
-from formats.plot3d.write import write_blocks
+from formats.plot3d.sniff import sniff
+from formats.plot3d.variant import ANY, Variant, parse_variant
 from formats.source import Source
 from geometry.grid import Grid
 
@@ -28,26 +26,36 @@ _TOLD = {
 }
 
 
+def _read(source: Source, variant: Variant = ANY) -> Iterator[Grid]:
+    from formats.plot3d.read import read_grids  # loaded when there is a grid to read
+
+    return read_grids(source, variant)
+
+
 def _format(kind: str, given: Variant | None = None) -> Format:
     """Return the format of a kind, all that `given` says of it on top."""
-    variant = Variant((given or Variant()).words | {kind})
+    variant = Variant((given or ANY).words | {kind})
     # with z and nk = 1: VTK takes a counted two-dimensional float64 file for a three-dimensional float32 one
     solid = variant.one_of("2d", "3d", default="3d" if kind == "binary" else "2d") == "3d"
 
-    def read_grids(source: Source) -> Iterator[Grid]:
-        return read(source, given or Variant())
+    def read_as_told(source: Source) -> Iterator[Grid]:
+        return _read(source, given or ANY)
 
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+        from formats.plot3d.write import write_blocks
+
         write_blocks(path, grids, variant.for_writing(), (0.0,) if solid else ())
 
     def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+        from formats.plot3d.write import write_blocks
+
         write_blocks(path, grids, variant.for_writing(), heights)
 
     return Format(
         name=f"plot3d-{kind}",
         suffixes=_SUFFIXES[kind],
         description=_TOLD[kind],
-        read_grids=read_grids if given else read,
+        read_grids=read_as_told if given else _read,
         write_grids=write_grids,
         write_extruded=write_extruded,
         sniff=sniff,

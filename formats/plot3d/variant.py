@@ -80,3 +80,6 @@ def parse_variant(text: str) -> Variant:
         if len(given) > 1:
             raise InputError(" and ".join(given) + " exclude each other", "give one", source="--plot3d")
     return Variant(frozenset(words))
+
+
+ANY = Variant()

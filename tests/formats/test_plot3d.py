@@ -10,7 +10,8 @@ import vtk
 from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import vtk_to_numpy
 
-from formats.plot3d.read import read_grids, sniff
+from formats.plot3d.read import read_grids
+from formats.plot3d.sniff import sniff
 from formats.registry import format_named
 from formats.source import Source, open_source
 from geometry.arrays import Floats

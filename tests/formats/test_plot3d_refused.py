@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from format_shapes import channel, memory
 
-from formats.plot3d.read import read_grids, sniff
+from formats.plot3d.read import read_grids
+from formats.plot3d.sniff import sniff
 from formats.registry import format_named
 from geometry.errors import InputError
 
