@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
 
-.PHONY: help demo test test-clients fuzz kills lint train bench docs clean
+.PHONY: help demo test test-clients fuzz kills lint train paper paper-quick bench docs clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -14,6 +14,7 @@ help:
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped model again, from procedural airfoils (resumable; about an hour on one core)'
+	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
 	@echo 'make docs    the generated pages and pictures of docs/'
 
@@ -77,6 +78,15 @@ train: $(VENV)/.developing
 	  $(BIN)/meshonet sample-boundary --family procedural --count 6000 --seed 1 --res 257x5 -o train/airfoils.h5
 	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume
 	cp train/airfoil-o.safetensors $(MODEL)
+
+# --- the MeshONet paper from its families to docs/paper: hours (it goes on where it stopped), or minutes
+PAPER = $(MAKE) -C examples/paper MESHONET=$(abspath $(BIN))/meshonet PYTHON=$(abspath $(BIN))/python
+paper: $(VENV)/.developing
+	$(PAPER) OUT=$(abspath paper) PAGES=$(abspath docs/paper)
+
+QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 SEEDS='0 1' SIZES='100 200' SPLITS_semicircle=random
+paper-quick: $(VENV)/.developing
+	$(PAPER) OUT=$(abspath build/paper) PAGES=$(abspath build/paper/pages) $(QUICK)
 
 bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_operator.py --page docs/benchmarks.md

@@ -26,7 +26,7 @@ Model = Annotated[
     typer.Option(
         "--model", metavar="NAME", show_default=False,
         help="strip (airfoil operator), meshonet (the paper's), meshonet-hard (exact boundary), deeponet, "
-        "pod-deeponet, fno1d, fno2d (the baselines), mionet. "
+        "pod-deeponet, fno1d, fno2d (the baselines), mionet, mgnet, meshnet (physics-informed). "
         "[default: meshonet for grids, strip for boundaries]",
     ),
 ]

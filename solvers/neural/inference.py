@@ -63,10 +63,10 @@ def answered(trained: Trained, boundary: Boundary, *, paste: bool = True) -> tup
     The nodes of an O grid's cut are made one either way.
     """
     found = trained.difference(boundary)
-    if trained.model.base == "tfi":
-        from solvers.tfi import tfi
+    if trained.model.base == "harmonic":
+        from solvers.neural.harmonic import extend
 
-        found += tfi(boundary).nodes
+        found += extend(boundary)
     nodes = as_planar(found)
     edges = [(nodes[:, 0], boundary.south), (nodes[:, -1], boundary.north)]
     if boundary.topology == "o":

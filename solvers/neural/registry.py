@@ -22,8 +22,10 @@ OPERATORS: dict[str, tuple[str, str]] = {
     "fno1d": ("fno1d", "FNO1D"),
     "fno2d": ("fno2d", "FNO2D"),
     "mionet": ("mionet", "MIONet"),
+    "mgnet": ("mgnet", "MGNet"),
+    "meshnet": ("mgnet", "MeshNet"),
 }
-"""Module and class of the models that learn from solved grids and answer any boundary of their family."""
+"""Module and class of the models that are trained on solved grids, in the order of the help."""
 
 MODELS = (STRIP, *OPERATORS)
 

@@ -62,6 +62,7 @@ class Trained:
             raise InputError(f"{told}, and this boundary is {boundary.topology}", "use another model")
         ni, nj = boundary.ni, boundary.nj
         inputs = {name: value.astype(np.float32) for name, value in self.model.encode([boundary]).items()}
+        self.model.check(self.weights, inputs)
         if self.model.native:
             return self._splined(inputs, ni, nj)
         if ni * nj > DIRECT:
@@ -125,6 +126,7 @@ def write_trained(
         "topology": frame.topology,
         "ni": frame.ni,
         "nj": frame.nj,
+        "count": frame.count,
         **facts,
     }
     tensors = {key: np.ascontiguousarray(value, dtype=np.float32) for key, value in arrays.items()}
@@ -149,7 +151,7 @@ def load_trained(path: Path) -> Trained:
         raise InputError(told, "use a file made by this version's meshonet train", source=source)
     try:
         topology = header["topology"]
-        frame = Frame(topology, int(header["ni"]), int(header["nj"]))
+        frame = Frame(topology, int(header["ni"]), int(header["nj"]), int(header.get("count", 0)))
         if topology not in TOPOLOGIES or not 2 <= min(frame.ni, frame.nj) <= max(frame.ni, frame.nj) <= 4096:
             raise ValueError("topology or size")
         model = operator(header["model"], topology, header["settings"])

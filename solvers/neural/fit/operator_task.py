@@ -12,11 +12,11 @@ from torch import Tensor, nn
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from solvers.neural.fit.task import Task
+from solvers.neural.harmonic import extend
 from solvers.neural.layers import Arrays, initial
 from solvers.neural.models.model import Frame, Operator
 from solvers.neural.places import rim, square
 from solvers.neural.samples import Samples
-from solvers.tfi import tfi
 
 
 class OperatorTask(Task):
@@ -120,7 +120,7 @@ def base_of(model: Operator, boundary: Boundary) -> Floats:
     """Return what the model's answer is added to (ni, nj, 2)."""
     if model.base == "none":
         return np.zeros((boundary.ni, boundary.nj, 2))
-    return tfi(boundary).nodes
+    return extend(boundary)
 
 
 def _tensor(array: Floats | Sequence[float]) -> Tensor:

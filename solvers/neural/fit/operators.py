@@ -16,9 +16,11 @@ from geometry.quality import count_folded
 from solvers.neural.fit.checkpoint import beside
 from solvers.neural.fit.loop import Progress, fit
 from solvers.neural.fit.operator_task import OperatorTask
+from solvers.neural.fit.physics_task import PhysicsTask
 from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.team import Team
 from solvers.neural.inference import answered
+from solvers.neural.models.mgnet import MGNet
 from solvers.neural.models.model import Frame, Operator
 from solvers.neural.registry import settings_of
 from solvers.neural.samples import Samples
@@ -57,18 +59,22 @@ def train_operator(
     SolverError
         as `solvers.neural.fit.loop.fit`.
     """
-    rows = samples.where("train")
+    rows = np.arange(len(samples)) if model.physics else samples.where("train")
     apart = rows[np.linspace(0, len(rows) - 1, held_out + 2).astype(int)[1:-1]]
     rows = np.setdiff1d(rows, apart)
-    if len(rows) < 2 or len(np.unique(apart)) < held_out:
+    if len(rows) < (1 if model.physics else 2) or len(np.unique(apart)) < held_out:
         raise InputError(f"{len(rows)} grids to train on", "give at least 2, or hold fewer out")
     training = samples.pick(rows)
-    task = OperatorTask(model, training, samples.pick(apart), plan.points, plan.seed, team.device)
+    task: OperatorTask | PhysicsTask
+    if isinstance(model, MGNet):
+        task = PhysicsTask(model, training, plan.points, plan.seed, team.device)
+    else:
+        task = OperatorTask(model, training, samples.pick(apart), plan.points, plan.seed, team.device)
     made = {key: value for key, value in asdict(plan).items() if key not in MACHINE}
     facts = {"model": kind, **settings_of(model), **made, "grids": len(rows), "data": samples.fingerprint()}
     checkpoint = beside(output)
     epoch = fit(task, plan, team, checkpoint=checkpoint, facts=facts, resume=resume, report=report)
-    frame = Frame(training.topology, training.ni, training.nj)
+    frame = Frame(training.topology, training.ni, training.nj, len(training))
     trained = Trained(output.stem, model, frame, task.arrays(), {})
     found = {name: judged(trained, samples.pick(samples.where(name))) for name in ("train", "test")}
     figures: dict[str, Any] = {"epoch": epoch, **{name: told for name, told in found.items() if told}}

@@ -2,11 +2,12 @@
 
 ::
 
-    (x, y) = TFI + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
+    (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
-B is zero on the boundary, so the answer is the boundary's own nodes there, whatever the weights. The branch
-sees both coordinates, since Winslow's equations couple them; the network learns the difference from the
-transfinite interpolation, whose size is s. Of an O grid the lift is periodic in xi, and so is the answer.
+H is the harmonic extension of the boundary and B is zero there, so that the answer has the boundary's own
+nodes, whatever the weights. The branch sees both coordinates, since Winslow's equations couple them; the
+network learns the difference from H, whose size is s. Of an O grid the lift is periodic in xi, and so is the
+answer.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class MeshONetHard(Operator):
     periodic : in xi (an O grid).
     """
 
-    base: ClassVar[Literal["none", "tfi"]] = "tfi"
+    base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
 
     hidden: tuple[int, ...] = (64, 128, 64)

@@ -17,11 +17,12 @@ from solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class Frame:
-    """What a model is built for: topology and the node counts of its training grids."""
+    """What a model is built for: topology, node counts and number of its training grids."""
 
     topology: Topology
     ni: int
     nj: int
+    count: int = 0
 
 
 @dataclass(frozen=True)
@@ -34,13 +35,15 @@ class Operator:
 
     Attributes
     ----------
-    base : what the network's answer is added to: nothing, or the transfinite interpolation.
+    base : what the network's answer is added to: nothing, or the harmonic extension of the boundary.
     native : it answers on the nodes of its training grids only; other grids are splined from those.
+    physics : it learns from Winslow's equations, a network for each geometry.
     interior, boundary : weights of the two parts of its loss.
     """
 
-    base: ClassVar[Literal["none", "tfi"]] = "none"
+    base: ClassVar[Literal["none", "harmonic"]] = "none"
     native: ClassVar[bool] = False
+    physics: ClassVar[bool] = False
     interior: ClassVar[float] = 1.0
     boundary: ClassVar[float] = 1.0
 
@@ -60,6 +63,9 @@ class Operator:
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
         """Return the inputs of a batch of boundaries, each array with the batch first."""
         return {"sensors": np.array([sensors(one, self.sensors) for one in boundaries])}
+
+    def check(self, w: Weights, inputs: Weights) -> None:
+        """Raise InputError for boundaries that the model cannot answer; there are none."""
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) less the base.

@@ -46,7 +46,7 @@ def losses(told: list[Progress]) -> list[float]:
     return [one.loss for one in told]
 
 
-@pytest.mark.parametrize("kind", OPERATORS)
+@pytest.mark.parametrize("kind", [kind for kind in OPERATORS if kind not in ("mgnet", "meshnet")])
 @pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])
 def test_the_loss_falls(tmp_path: Path, kind: str, samples: Samples) -> None:
     told = fit(tmp_path / "m.safetensors", replace(SMALL, epochs=60), samples, kind=kind)

@@ -1,0 +1,197 @@
+"""The pages of docs/paper from the JSON and CSV that meshonet wrote: python tables.py PAGES.
+
+PAGES/results holds one file a case, split and way; what is missing is left out of the tables, so that a run
+can be looked at while it goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from statistics import mean, pstdev
+from typing import Any
+
+import words
+
+FAMILIES = ("arch", "hexagon", "wrench", "semicircle", "airfoil", "hole")
+SPLITS = ("interpolation", "extrapolation", "random")
+WAYS = (
+    ("tfi", "TFI"),
+    ("pde", "PDE (Winslow)"),
+    ("meshonet.raw", "MeshONet, as it answers"),
+    ("meshonet.pasted", "MeshONet, walls pasted"),
+    ("meshonet-hard.raw", "MeshONet-hard"),
+)
+RACERS = ("meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "mionet")
+TIMED = (("tfi", "TFI"), ("pde", "PDE"), ("meshonet", "MeshONet"), ("coarse", None), ("meshonet-hard", None))
+
+
+def main() -> None:
+    """Write every page for which there are results."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("pages", type=Path)
+    parser.add_argument("--machine", default="this machine")
+    options = parser.parse_args()
+    pages: Path = options.pages
+    results = pages / "results"
+    parts = [words.HEAD, words.QUALITY, *quality(results), words.RACE, race(results, pages)]
+    parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
+    parts += [words.SETTINGS, budgets(results)]
+    text = "\n\n".join(part.strip() for part in parts if part)
+    (pages / "README.md").write_text(text + "\n", encoding="utf-8")
+
+
+def quality(results: Path) -> Iterable[str]:
+    """Yield a table for each family: every way on the grids that nobody trained on."""
+    for family in FAMILIES:
+        rows = []
+        for split in SPLITS:
+            for way, name in WAYS:
+                told = summary(results / f"{family}.{split}.{way}.json")
+                if told:
+                    rows.append([split, name, *figures(told)])
+        if rows:
+            head = [
+                "split",
+                "way",
+                "relative L2, median / worst",
+                "boundary off by",
+                "max angle, mean / worst",
+            ]
+            head += ["mean angle", "folded cells (grids)"]
+            yield f"### {family}\n\n{words.PAPER[family]}\n\n{table(head, rows)}"
+
+
+def figures(told: dict[str, Any]) -> list[str]:
+    """Return a row's figures of a summary."""
+    folded = told["folded"]
+    return [
+        f"{told['relative_l2']['median']:.1e} / {told['relative_l2']['max']:.1e}",
+        f"{told['boundary']['max']:.0e}",
+        f"{told['max_angle']['mean']:.1f} / {told['max_angle']['max']:.1f}",
+        f"{told['mean_angle']['mean']:.1f}",
+        f"{folded['sum']:.0f} ({folded['members']} of {told['members']})",
+    ]
+
+
+def race(results: Path, pages: Path) -> str:
+    """Return the table of losses on one budget, and draw them over the shapes seen."""
+    rows, curves = [], {}
+    for case in sorted(
+        {path.name.rsplit(".", 2)[0].rsplit(".", 1)[0] for path in results.glob("*.race*.json")}
+    ):
+        for model in RACERS:
+            runs = [read_log(path) for path in sorted(results.glob(f"{case}.{model}.race*.csv"))]
+            told = [summary(path) for path in sorted(results.glob(f"{case}.{model}.race*.json"))]
+            errors = [one["relative_l2"]["median"] for one in told if one]
+            if not runs or not errors:
+                continue
+            last = [run[-1]["mean_square"] for run in runs]
+            curves[model] = runs
+            seconds = mean(run[-1]["seconds"] for run in runs)
+            spread = f"{mean(errors):.1e} ± {pstdev(errors):.0e}"
+            seen = f"{runs[0][-1]['seen']:,.0f}"
+            rows.append([case, model, seen, str(len(runs)), f"{mean(last):.1e}", spread, f"{seconds:.0f}"])
+    if not rows:
+        return ""
+    draw(curves, pages / "loss.png")
+    head = ["case", "model", "shapes seen", "seeds", "mean square error, end of training"]
+    head += ["relative L2 of test grids", "seconds"]
+    return f"![loss](loss.png)\n\n{table(head, rows)}"
+
+
+def read_log(path: Path) -> list[dict[str, float]]:
+    """Return the rows of a log; ``mean_square`` weighs the parts of the loss as the baselines do."""
+    weights = {"interior": 1.0, "boundary": 1.0}
+    if ".meshonet.race" in path.name:
+        weights = {"interior": 1 / 900.0, "boundary": 1 / 1000.0}
+    with path.open(encoding="utf-8") as file:
+        rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    for row in rows:
+        row["mean_square"] = sum(row[part] * weights[part] for part in weights if part in row)
+    return rows
+
+
+def draw(curves: dict[str, list[list[dict[str, float]]]], path: Path) -> None:
+    """Draw the mean square error of every model and seed over the shapes seen."""
+    import matplotlib as mpl
+
+    mpl.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
+    for k, (model, runs) in enumerate(curves.items()):
+        if model == "meshonet-hard":  # its loss is relative to the difference from the base
+            continue
+        for m, run in enumerate(runs):
+            x, y = [row["seen"] for row in run], [row["mean_square"] for row in run]
+            axes.semilogy(x, y, color=f"C{k}", alpha=0.9 if m == 0 else 0.4, label=model if m == 0 else None)
+    axes.set(xlabel="shapes seen", ylabel="mean square error (interior + boundary)")
+    axes.grid(alpha=0.3)
+    axes.legend()
+    figure.savefig(path, dpi=110, metadata={"Software": None})
+    plt.close(figure)
+
+
+def times(results: Path) -> str:
+    """Return the refinement table: seconds from boundary to grid, the paper's beside ours."""
+    sizes = sorted({int(path.name.split(".")[2]) for path in results.glob("time.*.json")})
+    rows = []
+    for way, paper in TIMED:
+        told = {n: one(results / f"time.{way}.{n}.json") for n in sizes}
+        cells = [f"{found['seconds']['grid']:.4f}" if (found := told[n]) else "-" for n in sizes]
+        rows.append([words.TIMED[way], *cells])
+        if paper:
+            rows.append([f"{paper}, the paper's", *(words.SECONDS[paper].get(n, "-") for n in sizes)])
+    return table(["way", *(f"{n}²" for n in sizes)], rows) if sizes else ""
+
+
+def maps(pages: Path) -> str:
+    """Return a table of pictures."""
+    ways = ("tfi", "pde", "meshonet", "meshonet-hard")
+    rows = []
+    for family in FAMILIES:
+        found = [
+            f"![{family}]({family}.{way}.png)" if (pages / f"{family}.{way}.png").exists() else "-"
+            for way in ways
+        ]
+        if any(cell != "-" for cell in found):
+            rows.append([family, *found])
+    return table(["", "TFI", "PDE", "MeshONet, walls pasted", "MeshONet-hard"], rows) if rows else ""
+
+
+def budgets(results: Path) -> str:
+    """Return what each model was given: the last row of its log."""
+    rows = []
+    for path in sorted(results.glob("*.csv")):
+        log = read_log(path)
+        if log and ".race" not in path.name:
+            last = log[-1]
+            rows.append([path.stem, f"{last['epoch']:.0f}", f"{last['seen']:,.0f}", f"{last['seconds']:.0f}"])
+    return table(["run", "epochs", "shapes seen", "seconds (of the last process)"], rows) if rows else ""
+
+
+def summary(path: Path) -> dict[str, Any]:
+    """Return a summary that `quality --summary --json` wrote, nothing when there is none."""
+    return one(path).get("summary", {})
+
+
+def one(path: Path) -> dict[str, Any]:
+    """Return the JSON object of a file, nothing when there is none."""
+    if not path.exists() or not path.read_text(encoding="utf-8").strip():
+        return {}
+    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
+    return found
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,148 @@
+"""Training of physics-informed networks, all geometries of a dataset at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from geometry.errors import InputError
+from solvers.neural.fit.task import Task
+from solvers.neural.layers import Arrays, initial
+from solvers.neural.models.mgnet import MGNet
+from solvers.neural.models.model import Frame
+from solvers.neural.places import rim, square
+from solvers.neural.samples import Samples
+
+
+class PhysicsTask(Task):
+    """Networks of `MGNet` or `MeshNet` on the geometries of `samples`.
+
+    Parameters
+    ----------
+    points : places drawn for a step, inside (anywhere, not only at nodes) and on the boundary (at nodes);
+    None
+        takes every node.
+    """
+
+    parts: ClassVar[tuple[str, ...]] = ("winslow", "boundary", "data")
+
+    def __init__(
+        self, model: MGNet, samples: Samples, points: tuple[int, int] | None, seed: int, device: torch.device
+    ) -> None:
+        super().__init__()
+        self.model, self.points, self.seed, self.count = model, points, seed, len(samples)
+        frame = Frame(samples.topology, samples.ni, samples.nj, len(samples))
+        for name, value in initial(model.shapes(frame), np.random.default_rng([seed, 0])).items():
+            self.register_parameter(name, nn.Parameter(torch.tensor(value, dtype=torch.float32)))
+        fixed = model.fixed(samples, samples.nodes)
+        self.fixed = {key: torch.tensor(v, dtype=torch.float32).to(device) for key, v in fixed.items()}
+        where = square(samples.ni, samples.nj)
+        scaled = (samples.nodes.reshape(len(samples), -1, 2) - fixed["fixed/centre"][:, None]) / fixed[
+            "fixed/size"
+        ][:, None]
+        on = rim(samples.ni, samples.nj, samples.topology)
+        known = np.flatnonzero(_known(model, samples.ni, samples.nj) & ~on)
+        self.places = torch.tensor(where, dtype=torch.float32).to(device)
+        self.nodes = torch.tensor(scaled, dtype=torch.float32).to(device)
+        self.inside, self.outside = np.flatnonzero(~on), np.flatnonzero(on)
+        self.known = torch.from_numpy(known).to(device)
+        self.to(device)
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the parts of the loss over the geometries `rows`."""
+        net = {name: value[rows] for name, value in self.named_parameters()}
+        inner, outer = self._drawn(step)
+        found = self._plain(net, self.places[outer])
+        boundary = ((found - self.nodes[rows][:, outer]) ** 2).sum(-1).mean()
+        winslow = (self._residual(net, inner) ** 2).sum(-1).mean()
+        data = 0.0 * boundary
+        if len(self.known):
+            found = self._plain(net, self.places[self.known])
+            data = ((found - self.nodes[rows][:, self.known]) ** 2).sum(-1).mean()
+        return torch.stack([winslow, self.model.rim * boundary, self.model.data * data])
+
+    def arrays(self) -> Arrays:
+        """Return what is trained and what is fixed, by name."""
+        trained = {name: value.detach().cpu().numpy() for name, value in self.named_parameters()}
+        return {**trained, **{name: value.cpu().numpy() for name, value in self.fixed.items()}}
+
+    def _drawn(self, step: int) -> tuple[Tensor, Tensor]:
+        """Return places inside (p, 2) and numbers of nodes on the boundary."""
+        device = self.places.device
+        if self.points is None:
+            return self.places[torch.from_numpy(self.inside).to(device)], torch.from_numpy(self.outside).to(
+                device
+            )
+        rng = np.random.default_rng([self.seed, 1, step])
+        inner = torch.tensor(rng.random((self.points[0], 2)), dtype=torch.float32).to(device)
+        outer = self.outside[rng.integers(0, len(self.outside), self.points[1])]
+        return inner, torch.from_numpy(outer).to(device)
+
+    def _plain(self, net: dict[str, Tensor], points: Tensor) -> Tensor:
+        h = self.model.features(torch, points)[None]
+        return _layers(net, [h])[0]
+
+    def _residual(self, net: dict[str, Tensor], points: Tensor) -> Tensor:
+        """Return the left side of Winslow's equations (batch, p, 2)."""
+        h = self.model.finite
+        if h > 0:
+            X = self._differences(net, points, h)
+        else:
+            X = _layers(net, [f[None] for f in self.model.slopes(torch, points)])[1:]
+        Xx, Xe, Xxx, Xxe, Xee = X
+        alpha, gamma = (Xe**2).sum(-1, keepdim=True), (Xx**2).sum(-1, keepdim=True)
+        beta = (Xx * Xe).sum(-1, keepdim=True)
+        return alpha * Xxx - 2.0 * beta * Xxe + gamma * Xee
+
+    def _differences(self, net: dict[str, Tensor], points: Tensor, h: float) -> Sequence[Tensor]:
+        """Return the five derivatives by central differences of step h."""
+        steps = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)]
+        at = torch.cat(
+            [points + h * torch.tensor(s, dtype=points.dtype, device=points.device) for s in steps]
+        )
+        o, e, w, n, s, ne, se, nw, sw = self._plain(net, at).chunk(9, dim=1)
+        first = ((e - w) / (2 * h), (n - s) / (2 * h))
+        return (*first, (e - 2 * o + w) / h**2, (ne - se - nw + sw) / (4 * h**2), (n - 2 * o + s) / h**2)
+
+
+def _layers(net: dict[str, Tensor], h: list[Tensor]) -> list[Tensor]:
+    """Return the network's answer (batch, p, 2), and its derivatives when `h` has those of the features.
+
+    With z = h W + b and t = tanh z: t_a = (1 - t^2) z_a, t_ab = (1 - t^2) z_ab - 2 t (1 - t^2) z_a z_b.
+    """
+    depth = sum(name.endswith("weight") for name in net)
+    for k in range(depth):
+        weight, bias = net[f"net/{k}/weight"], net[f"net/{k}/bias"]
+        z = [part @ weight for part in h]
+        z[0] = z[0] + bias
+        if k == depth - 1:
+            return z
+        t = torch.tanh(z[0])
+        if len(z) == 1:
+            h = [t]
+            continue
+        slope = 1.0 - t * t
+        bend = -2.0 * t * slope
+        _, a, b, aa, ab, bb = z
+        second = [slope * aa + bend * a * a, slope * ab + bend * a * b, slope * bb + bend * b * b]
+        h = [t, slope * a, slope * b, *second]
+    return h
+
+
+def _known(model: MGNet, ni: int, nj: int) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Return (ni * nj,) which nodes are known: those of auxiliary lines and of a coarse grid."""
+    known = np.zeros((ni, nj), dtype=bool)
+    for axis, n in ((0, ni), (1, nj)):
+        if model.lines:
+            lines = np.round(np.linspace(0, n - 1, model.lines + 2)).astype(int)[1:-1]
+            known[lines if axis == 0 else slice(None), lines if axis == 1 else slice(None)] = True
+    if model.coarse:
+        if not 3 <= model.coarse <= min(ni, nj):
+            raise InputError(f"coarse={model.coarse}", f"use 3 to {min(ni, nj)}", source="--set")
+        rows, columns = (np.round(np.linspace(0, n - 1, model.coarse)).astype(int) for n in (ni, nj))
+        known[np.ix_(rows, columns)] = True
+    return known.reshape(-1)

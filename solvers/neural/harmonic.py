@@ -1,0 +1,105 @@
+"""The harmonic extension of a boundary: x and y that solve Laplace's equation in a rectangle or a ring.
+
+::
+
+    quad   u = corners, bilinear + sum over sides, k of b_k sin(k pi xi) sinh(k pi a (1 - eta)) / sinh(k pi a)
+    o      u = means, linear + sum over walls, k of c_k exp(2 pi i k xi) sinh(k T (1 - eta)) / sinh(k T)
+
+with eta measured from the side that has the coefficients. a is the height of the rectangle over its length,
+as the sides' lengths say; T = log(outer length / inner length), so that a ring between two circles comes out
+as Winslow's equations have it. Kinks of the boundary do not reach inside, as they do by transfinite
+interpolation, so what a network has to add is smooth.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from geometry.boundary import Boundary
+
+FAR = 37.0
+"""exp(-37) is the precision of a double: modes that have decayed so far are left out."""
+
+
+def extend(boundary: Boundary) -> Floats:
+    """Return the nodes (ni, nj, 2) of the extension; those on the boundary are the boundary's own.
+
+    Examples
+    --------
+    >>> side = np.linspace(0.0, 1.0, 5)
+    >>> zero, one = np.zeros(5), np.ones(5)
+    >>> edges = [(side, zero), (side, one), (zero, side), (one, side)]
+    >>> square = Boundary(*(np.stack(edge, axis=1) for edge in edges))
+    >>> extend(square)[1, 2].tolist()
+    [0.25, 0.5]
+    """
+    nodes = _ring(boundary) if boundary.topology == "o" else _rectangle(boundary)
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    nodes[0], nodes[-1] = (nodes[0], nodes[0]) if boundary.topology == "o" else (boundary.west, boundary.east)
+    return nodes
+
+
+def _rectangle(b: Boundary) -> Floats:
+    height = (_length(b.west) + _length(b.east)) / (_length(b.south) + _length(b.north))
+    xi, eta = np.linspace(0.0, 1.0, b.ni)[:, None], np.linspace(0.0, 1.0, b.nj)[:, None]
+    low, high = (1.0 - xi) * b.south[0] + xi * b.south[-1], (1.0 - xi) * b.north[0] + xi * b.north[-1]
+    left, right = (1.0 - eta) * low[0] + eta * high[0], (1.0 - eta) * low[-1] + eta * high[-1]
+    nodes = (1.0 - eta)[None] * low[:, None] + eta[None] * high[:, None]
+    across = nodes.swapaxes(0, 1)
+    for into, side, start, ratio in (
+        (nodes, b.south, low, height),
+        (nodes[:, ::-1], b.north, high, height),
+        (across, b.west, left, 1.0 / height),
+        (across[:, ::-1], b.east, right, 1.0 / height),
+    ):
+        n, rows = len(side), into.shape[1]
+        k = np.arange(1, n - 1)
+        sines = np.sin(np.pi * np.outer(np.arange(n), k) / (n - 1))
+        _add(
+            into,
+            sines,
+            2.0 / (n - 1) * (sines.T @ (side - start)),
+            np.asarray(np.pi * ratio * k, float),
+            rows,
+        )
+    return nodes
+
+
+def _ring(b: Boundary) -> Floats:
+    height = float(np.log(_length(b.north) / _length(b.south)))
+    n = b.ni - 1
+    k = np.arange(1, n // 2 + 1)
+    eta = np.linspace(0.0, 1.0, b.nj)[:, None]
+    mean, far = b.south[:-1].mean(axis=0), b.north[:-1].mean(axis=0)
+    nodes = np.broadcast_to((1.0 - eta) * mean + eta * far, (b.ni, b.nj, 2)).copy()
+    angle = 2.0 * np.pi * np.outer(np.arange(b.ni) % n, k) / n
+    waves = np.concatenate([np.cos(angle), -np.sin(angle)], axis=1)
+    for into, side in ((nodes, b.south), (nodes[:, ::-1], b.north)):
+        c: Complexes = np.fft.rfft(side[:-1], axis=0)[1:] * (2.0 / n)
+        if n % 2 == 0:
+            c[-1] *= 0.5
+        _add(into, waves, np.concatenate([c.real, c.imag]), np.concatenate([height * k] * 2), b.nj)
+    return nodes
+
+
+def _add(into: Floats, waves: Floats, b: Floats, rate: Floats, rows: int) -> None:
+    """Add the modes `waves` (n, k) with coefficients b (k, 2) at the first row to rows 1 .. of `into`.
+
+    Rows are taken in blocks that double, each with the modes that reach its first row.
+    """
+    first = 1
+    while first < rows:
+        last = min(2 * first, rows)
+        eta = np.arange(first, last) / (rows - 1)
+        reach = np.flatnonzero(rate * eta[0] < FAR)
+        r = rate[reach, None]
+        fade = (np.exp(-r * eta) - np.exp(-r * (2.0 - eta))) / -np.expm1(-2.0 * r)
+        some = waves[:, reach] if len(reach) < waves.shape[1] else waves
+        for d in (0, 1):
+            into[:, first:last, d] += some @ (b[reach, d : d + 1] * fade)
+        first = last
+
+
+def _length(side: Floats) -> float:
+    return float(np.hypot(*np.diff(side, axis=0).T).sum())

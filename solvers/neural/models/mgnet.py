@@ -1,0 +1,125 @@
+"""MGNet: a network for each geometry, trained on Winslow's equations and the boundary, without solved grids.
+
+::
+
+    (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta - 1)
+    loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
+
+in units of each geometry's own size. The networks of all geometries of a dataset are stacked and trained
+together. A trained file answers the geometries it was trained on, at any resolution, and no others: that is
+what operators are for. Derivatives are carried through the layers exactly, or taken by central differences.
+Chen et al., MGNet, Engineering with Computers 38 (2022) 4409; an improved method, arXiv 2210.09546
+(auxiliary lines).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.errors import InputError
+from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
+from solvers.neural.models.model import Frame, Operator
+from solvers.neural.places import sensors
+from solvers.neural.samples import Samples
+
+SAME = 1e-4
+"""Largest distance of a sensor, over the geometry's size, at which two geometries are one."""
+
+
+@dataclass(frozen=True)
+class MGNet(Operator):
+    """Dense networks with tanh, one a geometry.
+
+    Parameters
+    ----------
+    width, depth : of the hidden layers.
+    rim : weight of the boundary in the loss.
+    data : weight of known nodes in the loss, where there are any.
+    finite : step of central differences; 0 for exact derivatives.
+    lines : auxiliary lines of either direction whose nodes are known from the solved grids; 0 for none.
+    coarse : nodes a direction of a coarse grid whose nodes are known from the solved grids; 0 for none.
+    periodic : in xi (an O grid).
+    """
+
+    physics: ClassVar[bool] = True
+
+    width: int = 40
+    depth: int = 4
+    rim: float = 1000.0
+    data: float = 1000.0
+    finite: float = 0.0
+    lines: int = 0
+    coarse: int = 0
+    periodic: bool = False
+
+    def shapes(self, frame: Frame) -> Shapes:
+        """Return the shapes of what is trained."""
+        sizes = (3 if self.periodic else 2, *[self.width] * self.depth, 2)
+        return dense_shapes("net", sizes, stacked=frame.count)
+
+    def fixed(self, samples: Samples, targets: Floats) -> Arrays:
+        """Return sensors, centre and size of every geometry."""
+        edges = samples.boundaries()
+        outlines = [np.concatenate([b.south, b.north, b.west, b.east]) for b in edges]
+        centre = np.array([0.5 * (o.min(axis=0) + o.max(axis=0)) for o in outlines])
+        size = np.array([0.5 * np.ptp(o, axis=0).max() for o in outlines])
+        seen = np.array([sensors(b, self.sensors) for b in edges])
+        return {"fixed/sensors": seen, "fixed/centre": centre, "fixed/size": size[:, None]}
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+        """Return coordinates (batch, p, 2)."""
+        which = self.which(w, inputs["sensors"])
+        net = {key: value[which] for key, value in w.items()}
+        scaled = dense(xp, net, "net", self.features(xp, points)[None])
+        return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
+
+    def which(self, w: Weights, seen: Any) -> Any:
+        """Return the number of the network of each geometry, the nearest by its sensors."""
+        return ((seen[:, None] - w["fixed/sensors"][None]) ** 2).sum(-1).sum(-1).argmin(1)
+
+    def check(self, w: Weights, inputs: Weights) -> None:
+        """Raise InputError when a geometry is none of those trained on."""
+        seen = inputs["sensors"]
+        k = self.which(w, seen)
+        away = np.sqrt(((seen - w["fixed/sensors"][k]) ** 2).sum(-1)).max(axis=1) / w["fixed/size"][k, 0]
+        if away.max() > SAME:
+            known = len(w["fixed/sensors"])
+            told = f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
+            raise InputError(told, "train it on this one too: it has a network for each geometry")
+
+    def features(self, xp: Any, points: Any) -> Any:
+        """Return what the networks see at places (p, 2)."""
+        xi, eta = points[..., :1], points[..., 1:]
+        if not self.periodic:
+            return 2.0 * points - 1.0
+        turn = 2.0 * np.pi
+        return xp.concatenate([xp.sin(turn * xi), xp.cos(turn * xi), 2.0 * eta - 1.0], -1)
+
+    def slopes(self, xp: Any, points: Any) -> Sequence[Any]:
+        """Return the features (p, features), then their derivatives by xi, eta, xi xi, xi eta, eta eta."""
+        f = self.features(xp, points)
+        zero, two = 0.0 * f[:, :1], 0.0 * f[:, :1] + 2.0
+        if not self.periodic:
+            none = 0.0 * f
+            first = (xp.concatenate([two, zero], -1), xp.concatenate([zero, two], -1))
+            return (f, *first, none, none, none)
+        s, c, turn = f[:, :1], f[:, 1:2], 2.0 * np.pi
+        along = xp.concatenate([turn * c, -turn * s, zero], -1)
+        bend = xp.concatenate([-(turn**2) * s, -(turn**2) * c, zero], -1)
+        return (f, along, xp.concatenate([zero, zero, two], -1), bend, 0.0 * f, 0.0 * f)
+
+
+@dataclass(frozen=True)
+class MeshNet(MGNet):
+    """MGNet with the nodes of a coarse solved grid among what it learns from.
+
+    Chen et al., Developing a novel structured mesh generation method based on deep neural networks, Physics
+    of Fluids 35 (2023) 097151.
+    """
+
+    coarse: int = 11
