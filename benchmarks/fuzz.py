@@ -18,6 +18,7 @@ import sys
 import time
 import traceback
 import tracemalloc
+import warnings
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -70,6 +71,7 @@ def attack(name: str, seconds: float, seed: int) -> dict[str, object]:
     seeds = [good(name), *(data for _, data in corpus(name))]
     FAILURES.mkdir(exist_ok=True)
     suspect = FAILURES / f"{name}-{os.getpid()}"
+    warnings.simplefilter("error")
     stop = time.monotonic() + seconds
     while time.monotonic() < stop:
         data = mutate(random.choice(goods if random.random() < 0.7 else seeds), random)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from formats.cgns_nodes import NAME_LENGTH, Node, child, root
 from formats.facts import facts_of
 from formats.format import Format, Heights
+from formats.hdf5_file import created
 from formats.patches import Role, cut, patches, roles
 from formats.source import Source
 from formats.words import words
@@ -73,14 +74,12 @@ def is_adf(head: bytes) -> bool:
 
 
 def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> None:
-    import h5py
-
     given = iter(grids)
     first = next(given, None)
     if first is None:
         raise InputError("there is no grid to write", "check the input")
     dimension = 3 if heights else 2
-    with h5py.File(path, "w", track_order=True, libver=("earliest", "v108")) as file:
+    with created(path, track_order=True, libver=("earliest", "v108")) as file:
         base = child(root(file), "Base", "CGNSBase_t", np.full(2, dimension, np.int32))
         child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
         zones: set[str] = set()

@@ -57,9 +57,7 @@ class _Stream:
         self._at += length
         if self._binary:
             return np.frombuffer(piece, dtype)
-        if kind != "f8" and not (np.abs(piece) < 2**53).all():
-            raise InputError("has a number where a count or a tag should be", "write the file again")
-        return np.asarray(piece if kind == "f8" else piece.astype(np.int64))
+        return np.asarray(piece if kind == "f8" else _whole(piece))
 
     def one(self, kind: str) -> int:
         """Return the next whole number."""
@@ -90,7 +88,7 @@ def nodes(section: bytes, version: str, binary: bool, order: str) -> Nodes:
     count = stream.line()
     if not binary:
         rows = stream.take("f8", 4 * count).reshape(-1, 4)
-        return Nodes(rows[:, 0].astype(np.int64), rows[:, 1:])
+        return Nodes(_whole(rows[:, 0]), rows[:, 1:])
     raw = stream.take("i1", 28 * count)
     rows = raw.view(np.dtype([("tag", order + "i4"), ("point", order + "f8", 3)]))
     return Nodes(rows["tag"].astype(np.int64), rows["point"].astype(np.float64).reshape(-1, 3))
@@ -192,6 +190,13 @@ def physical_tags(section: bytes, binary: bool, order: str) -> dict[tuple[int, i
             if groups:
                 found[dimension, tag] = abs(groups[0])
     return found
+
+
+def _whole(values: Floats) -> Indices:
+    """Return counts and tags that text gave as floats."""
+    if not (np.abs(values) < 2**53).all():
+        raise InputError("has no number that can be a count or a tag in its place", "write the file again")
+    return values.astype(np.int64)
 
 
 def _bounded(count: int, stream: _Stream) -> int:

@@ -28,6 +28,7 @@ from formats.edges import boundary_of, usable
 from formats.facts import plain
 from formats.format import Format
 from formats.hdf5_check import Checked, checked
+from formats.hdf5_file import created
 from formats.source import Source
 from geometry.arrays import SIDES, Floats
 from geometry.boundary import Boundary
@@ -59,9 +60,8 @@ class Writer:
     """
 
     def __init__(self, path: Path, kind: Kind, parameter_names: Sequence[str] = ()) -> None:
-        import h5py
-
-        self._file = h5py.File(path, "w")
+        self._made = created(path)
+        self._file = self._made.__enter__()
         self._file.attrs.update(format=kind, version=VERSION)
         self._data: dict[str, h5py.Dataset] = {}
         self._count = 0
@@ -75,7 +75,7 @@ class Writer:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._file.close()
+        self._made.__exit__(kind, error, trace)
 
     def append(self, sample: Boundary | Grid, *, parameters: Floats | None = None, split: str = "") -> None:
         """Add one sample.
