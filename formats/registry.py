@@ -167,7 +167,9 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     InputError
         a source that cannot be opened, is of no known format, or is not right; named with its place.
     """
-    if text.lower().startswith(_DESIGNATION) and not Path(text).exists():
+    if _is_designation(text):
+        if fmt:
+            format_named(fmt)
         from geometry.naca import naca
 
         yield naca(text[len(_DESIGNATION) :])
@@ -192,6 +194,12 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     InputError
         as `read_shapes`; also a file that holds boundaries only.
     """
+    if _is_designation(text):
+        raise InputError(
+            "is an airfoil, not a grid",
+            f"make a grid of it first: meshonet infer {text} -o grid.vts",
+            source=text,
+        )
     source = open_source(text)
     found = _selectable(source, format_of(source, fmt))
     with _blamed(source):
@@ -204,6 +212,10 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
             )
         else:
             raise _unreadable(found)
+
+
+def _is_designation(text: str) -> bool:
+    return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
 
 
 class _blamed:  # noqa: N801  (a context manager; contextlib's form would swallow the generator's own close)

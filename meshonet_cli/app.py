@@ -83,14 +83,18 @@ def run(arguments: Sequence[str]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
     except BrokenPipeError:
-        _silence_stdout()
-        return 0
+        return _unread()
+    except SystemExit as stop:
+        if isinstance(stop.__context__, BrokenPipeError):  # the parser's own way with it, which exits with 1
+            return _unread()
+        raise
     except Exception as error:  # the last place: whatever it is, the user gets a line and not a traceback
         if debug:
             import traceback
 
             traceback.print_exc()
-        print(f"error: {_told(error)}", file=sys.stderr)  # noqa: T201
+        name = f"meshonet {meant[0].name}" if meant else "meshonet"
+        print(f"error: {_told(error, name)}", file=sys.stderr)  # noqa: T201
         return int(getattr(error, "exit_code", BAD_INPUT))
     return _interrupted() if code == INTERRUPTED else int(code or 0)
 
@@ -108,14 +112,14 @@ def main() -> NoReturn:
     sys.exit(code)
 
 
-def _told(error: Exception) -> str:
+def _told(error: Exception, name: str) -> str:
     from meshonet_cli.report import explained
 
     usage = getattr(error, "format_message", None)
     if usage is None:
         return explained(error)
     context = getattr(error, "ctx", None)
-    asked = f"{context.command_path} --help" if context else "meshonet --help"
+    asked = f"{context.command_path} --help" if context else f"{name} --help"
     message = " ".join(usage().split()).rstrip(".")
     return f"{message[:1].lower()}{message[1:]}; see {asked}"
 
@@ -123,6 +127,12 @@ def _told(error: Exception) -> str:
 def _interrupted() -> int:
     print("interrupted", file=sys.stderr)  # noqa: T201
     return INTERRUPTED
+
+
+def _unread() -> int:
+    """Return the exit code when whoever read our output has gone: that is no error of ours."""
+    _silence_stdout()
+    return 0
 
 
 def _silence_stdout() -> None:

@@ -92,6 +92,8 @@ def read_layers(
     if (y_plus is None) != (reynolds is None):
         missing, given = ("--reynolds", "--y-plus") if reynolds is None else ("--y-plus", "--reynolds")
         raise InputError(f"{given} without {missing}", f"give {missing} as well")
+    if y_plus is None and chord_fraction != 0.5:
+        raise InputError("--chord-fraction without --y-plus", "give --y-plus and --reynolds as well")
     note = ""
     if y_plus is not None and reynolds is not None:
         wall_spacing = first_cell(y_plus, reynolds, chord_fraction)

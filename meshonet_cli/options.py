@@ -282,3 +282,22 @@ def either(sources: list[str] | None, family: str | None) -> None:
 
         problem = "both a source and --family" if sources else "neither a source nor --family"
         raise InputError(problem, "give one of them, see meshonet sample-boundary --help")
+
+
+def only_with(needed: str, given: bool, **others: object) -> None:
+    """Raise InputError when an option that needs another one is given (not None) without it.
+
+    Parameters
+    ----------
+    needed : the other option.
+    given : whether it is there.
+    others : values by option, dashes as underscores.
+    """
+    if given:
+        return
+    for name, value in others.items():
+        if value is not None:
+            from geometry.errors import InputError
+
+            option = "--" + name.replace("_", "-")
+            raise InputError(f"{option} without {needed}", f"give {needed} as well, or drop {option}")

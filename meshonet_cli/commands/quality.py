@@ -45,13 +45,13 @@ def quality(
         ),
     ] = None,
     pair: Annotated[
-        Literal["auto", "name", "order"],
+        Literal["auto", "name", "order"] | None,
         typer.Option(
-            "--pair", metavar="auto|name|order",
+            "--pair", metavar="auto|name|order", show_default=False,
             help="Which grid of OTHER goes with which: auto takes the only one for each, goes by names where "
-            "they are known, else by order.",
+            "they are known, else by order. [default: auto]",
         ),
-    ] = "auto",
+    ] = None,
     summary: Annotated[
         bool, typer.Option("--summary", help="One table (or JSON object) over all grids, a row each.")
     ] = False,
@@ -66,11 +66,12 @@ def quality(
     from meshonet_cli.grading import grade_grids
     from meshonet_cli.session import Session
 
+    o.only_with("--compare", other is not None, pair=pair)
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [metrics_file(per_cell)] if per_cell else []
     return grade_grids(
         grid, session, parse_gates(fail_on),
-        fmt=from_format, other=other, pairing=pair, profile=profile, summary=summary, outputs=outputs,
+        fmt=from_format, other=other, pairing=pair or "auto", profile=profile, summary=summary, outputs=outputs,
     )
 # fmt: on

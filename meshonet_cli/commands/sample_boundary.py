@@ -89,6 +89,8 @@ def sample_boundary(
     from meshonet_cli.session import Session
 
     o.either(source, family)
+    drawn = {"range": spread, "split": split, "count": None if count == 1 else count, "seed": seed or None}
+    o.only_with("--family", family is not None, **drawn)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes}
     sampling = o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths)

@@ -51,11 +51,15 @@ def test_commands_join_through_pipes(tmp_path: Path, three_h5: Path) -> None:
 
 
 def test_a_reader_that_stops_early_is_no_error(tmp_path: Path, three_h5: Path) -> None:
-    line = f"{sys.executable} -m meshonet_cli quality {three_h5.parent}/g.h5 | head -1"
+    line = f"{sys.executable} -m meshonet_cli quality {three_h5.parent}/g.h5 | (sleep 0.1; head -1)"
     subprocess.run(command("tfi", str(three_h5), "-o", f"{tmp_path}/g.h5"), env=environment(), check=True)
-    done = subprocess.run(["bash", "-c", line], capture_output=True, env=environment())
-    assert done.stderr == b""
+    shell = ["bash", "-o", "pipefail", "-c", line]
+    done = subprocess.run(shell, capture_output=True, env=environment())
+    assert (done.returncode, done.stderr) == (0, b"")
     assert b"20 x 10" in done.stdout or b"21 x 11" in done.stdout
+    gone = line.replace("(sleep 0.1; head -1)", "sleep 0")  # nobody reads at all
+    done = subprocess.run([*shell[:-1], gone], capture_output=True, env=environment())
+    assert (done.returncode, done.stderr) == (0, b"")
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

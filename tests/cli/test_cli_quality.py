@@ -128,6 +128,12 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
         (("--per-cell", "cells.h5"), "only a .vts file holds metrics; name it FILE.vts"),
         (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
+        (("--pair", "name"), "--pair without --compare; give --compare as well, or drop --pair"),
+        (("--profile",), "option '--profile' requires an argument; see meshonet quality --help"),
+        (
+            ("naca:0012",),
+            "naca:0012: is an airfoil, not a grid; make a grid of it first: meshonet infer naca:0012",
+        ),
         (("--compare", "grid.vts", "--pair", "luck"), "'luck' is not one of 'auto', 'name', 'order'"),
         (("--profile", "gambit"), "'gambit' is not one of 'openfoam', 'pointwise', 'verdict', 'viscous'"),
         (("--plot", "-", "--json"), "standard output has the table; write to a file"),

@@ -242,6 +242,7 @@ def test_growth_takes_the_rows_it_needs(meshonet: Meshonet, command: str) -> Non
             ("--y-plus", "1", "--reynolds", "2e3", "--chord-fraction", "0.1"),
             "--chord-fraction: a Reynolds number of 200 at 0.1 of the chord; use a larger part",
         ),
+        (("--chord-fraction", "0.3"), "--chord-fraction without --y-plus; give --y-plus and --reynolds"),
         (("--growth", "1.2"), "--growth without a first cell; give --wall-spacing, --y-plus or --spacing"),
         (
             ("--wall-spacing", "1e-5", "--growth", "0.2"),

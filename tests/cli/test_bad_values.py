@@ -1,0 +1,56 @@
+"""Every option of every command, given nonsense: exit code 2, a line that says what to do, nothing written."""
+
+from pathlib import Path
+
+import pytest
+from conftest import Meshonet, dataset, duct
+
+from meshonet_cli.app import application
+
+INPUTS = {
+    "sample-boundary": ("naca:0012", "--res", "41x11", "-o", "made.h5"),
+    "tfi": ("naca:0012", "--res", "41x11", "-o", "made.vts"),
+    "solve-pde": ("naca:0012", "--res", "41x11", "-o", "made.vts"),
+    "infer": ("naca:0012", "--res", "41x11", "-o", "made.vts"),
+    "quality": ("grid.vts",),
+    "convert": ("grid.vts", "made.vts"),
+    "plot": ("grid.vts", "-o", "made.png"),
+    "models": (),
+}
+"""What each command does well with; train loads a library of its own first, and has tests of its own."""
+
+NONSENSE = ("some words", "-7", "nan", "1e400", "9" * 30, "", "\udcff")
+TAKES_WORDS = ("--output", "--log-csv")
+"""Options that name a file or folder, and may be called anything."""
+
+
+def options(command: str) -> list[str]:
+    """Every option of a command that takes a value."""
+    parameters = application().commands[command].params
+    return [p.opts[-1] for p in parameters if p.opts[-1].startswith("--") and not p.is_flag]
+
+
+CASES = [(command, option) for command in INPUTS for option in options(command) if option not in TAKES_WORDS]
+
+
+def test_no_command_is_left_out() -> None:
+    assert {*INPUTS, "train"} == set(application().commands)
+
+
+@pytest.mark.parametrize(("command", "option"), CASES)
+def test_nonsense_gets_a_line(meshonet: Meshonet, tmp_path: Path, command: str, option: str) -> None:
+    meshonet("tfi", dataset(tmp_path / "duct.h5", "quad", duct()), "-o", "grid.vts", "-q")
+    refused = 0
+    for value in NONSENSE:
+        before = {path.name for path in tmp_path.iterdir()}
+        done = meshonet(command, *INPUTS[command], option, value)
+        told = f"{command} {option} {value!r}: {done.err}"
+        assert "internal error" not in done.err, told
+        assert done.code in (0, 2), told
+        if done.code == 2:
+            refused += 1
+            assert done.err.startswith("error: "), told
+            assert done.err.count("\n") == 1, told
+            assert ";" in done.err, told  # what to do comes after what is wrong
+            assert {path.name for path in tmp_path.iterdir()} == before, told
+    assert refused >= 4, f"{command} {option} takes nearly anything"
