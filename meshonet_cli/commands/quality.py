@@ -72,6 +72,7 @@ def quality(
     outputs += [metrics_file(per_cell)] if per_cell else []
     return grade_grids(
         grid, session, parse_gates(fail_on),
-        fmt=from_format, other=other, pairing=pair or "auto", profile=profile, summary=summary, outputs=outputs,
+        fmt=from_format, other=other, pairing=pair or "auto", profile=profile, summary=summary,
+        outputs=outputs,
     )
 # fmt: on

@@ -1,4 +1,4 @@
-"""Every option of every command, given nonsense: exit code 2, a line that says what to do, nothing written."""
+"""Every option of every command, given nonsense: exit code 2, a line with the remedy, nothing written."""
 
 from pathlib import Path
 

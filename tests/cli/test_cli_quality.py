@@ -100,6 +100,19 @@ def test_a_boundary_is_no_grid(meshonet: Meshonet, duct_h5: Path) -> None:
     assert "holds boundaries, not grids; make grids of them first" in done.err
 
 
+def test_an_airfoil_is_no_grid(meshonet: Meshonet) -> None:
+    told = (
+        "naca:0012: is an airfoil, not a grid; make a grid of it first: meshonet infer naca:0012 -o grid.vts"
+    )
+    for words in (
+        ("quality", "naca:0012"),
+        ("convert", "naca:0012", "g.vts"),
+        ("plot", "naca:0012", "-o", "g.png"),
+    ):
+        done = meshonet(*words)
+        assert (done.code, done.err) == (2, f"error: {told}\n")
+
+
 def test_per_cell_metrics_are_cell_data(meshonet: Meshonet, folded_vts: Path) -> None:
     vtk = pytest.importorskip("vtk")
     from vtk.util.numpy_support import vtk_to_numpy
@@ -130,10 +143,6 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
         (("--compare", "missing.vts"), "missing.vts: no such file"),
         (("--pair", "name"), "--pair without --compare; give --compare as well, or drop --pair"),
         (("--profile",), "option '--profile' requires an argument; see meshonet quality --help"),
-        (
-            ("naca:0012",),
-            "naca:0012: is an airfoil, not a grid; make a grid of it first: meshonet infer naca:0012",
-        ),
         (("--compare", "grid.vts", "--pair", "luck"), "'luck' is not one of 'auto', 'name', 'order'"),
         (("--profile", "gambit"), "'gambit' is not one of 'openfoam', 'pointwise', 'verdict', 'viscous'"),
         (("--plot", "-", "--json"), "standard output has the table; write to a file"),
