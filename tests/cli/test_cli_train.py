@@ -123,6 +123,28 @@ def test_from_a_family_to_an_error(meshonet: Meshonet, arches_h5: str) -> None:
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_compile_goes_through_the_compiler(
+    meshonet: Meshonet, arches_h5: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import torch
+
+    compiled = []
+
+    def compiler(step: object, **_: object) -> object:
+        compiled.append(step)
+        return step
+
+    monkeypatch.setattr(torch, "compile", compiler)
+    words = ("train", arches_h5, *BRIEF, "--quiet")
+    assert meshonet(*words, "-o", "plain.safetensors").code == 0
+    assert compiled == []
+    assert meshonet(*words, "--compile", "-o", "compiled.safetensors").code == 0
+    assert compiled
+    plain, same = arrays("plain.safetensors"), arrays("compiled.safetensors")
+    assert all(np.array_equal(plain[key], same[key]) for key in plain)
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
 def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, arches_h5: str) -> None:
     meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, "--quiet")
     done = meshonet("infer", "naca:2412", "--model", "m.safetensors", "-o", "g.vts")
