@@ -64,6 +64,32 @@ class StripNetwork:
         return np.asarray(self._project(h) + spectral(self._spectral_out, h))
 
 
+def misfit(weights: Mapping[str, Reals]) -> str:
+    """Return what is wrong with the names and shapes of some weights, or nothing."""
+    try:
+        width, inputs = weights["lift.weight"].shape[0] // 2, weights["lift.weight"].shape[1]
+        outputs = weights["project.weight"].shape[0]
+        wanted: dict[str, tuple[int, ...]] = {
+            "lift.weight": (2 * width, inputs, 1), "lift.bias": (2 * width,),
+            "project.weight": (outputs, width, 1), "project.bias": (outputs,),
+            "spectral_out.weight": (weights["spectral_out.weight"].shape[0], width, outputs, 2),
+        }  # fmt: skip
+        for n in range(sum(name.startswith("conv.") for name in weights) // 2):
+            modes = weights[f"spectral.{n}.weight"].shape[0]
+            wanted |= {
+                f"conv.{n}.weight": (2 * width, width, TAPS), f"conv.{n}.bias": (2 * width,),
+                f"expand.{n}.weight": (width, width, 1), f"expand.{n}.bias": (width,),
+                f"spectral.{n}.weight": (modes, width, width, 2),
+            }  # fmt: skip
+    except (KeyError, IndexError) as error:
+        return f"array {error} is missing or has too few axes"
+    for name in [*wanted, *weights]:
+        has, wants = weights[name].shape if name in weights else None, wanted.get(name)
+        if has != wants or not width:
+            return f"array {name!r:.60} has shape {has} in place of {wants}"
+    return ""
+
+
 def gelu(x: Reals) -> Reals:
     """Return the Gaussian error linear unit in its tanh form. Hendrycks & Gimpel, arXiv 1606.08415."""
     y = x * x

@@ -14,7 +14,7 @@ import numpy as np
 from geometry.arrays import Complexes, Floats
 from geometry.errors import InputError
 from solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
-from solvers.neural.network import Reals, StripNetwork
+from solvers.neural.network import Reals, StripNetwork, misfit
 from solvers.neural.strip import LEVELS
 
 DEFAULT = "airfoil-o"
@@ -78,7 +78,7 @@ def _load(path: str) -> Model:
     try:
         if header["kind"] != KIND or int(header["encoding"]) != VERSION:
             raise InputError(
-                f"it holds {header['kind']!r}, encoding {header['encoding']}",
+                f"it holds {str(header['kind'])[:60]!r}, encoding {str(header['encoding'])[:20]}",
                 f"use a model of encoding {VERSION} or train one",
                 source=path,
             )
@@ -86,14 +86,19 @@ def _load(path: str) -> Model:
         scale = float(header["scale"])
         inputs = tensors["lift.weight"].shape[1]
         outputs = tensors["project.weight"].shape[0]
-    except (KeyError, IndexError, ValueError, TypeError) as error:
+    except (KeyError, IndexError, ValueError, TypeError, OverflowError) as error:
         raise InputError(
             f"its header or arrays lack {error}", "use a file made by meshonet train", source=path
         ) from None
     if basis.shape != (outputs // 2, LEVELS - 2) or inputs != CHANNELS + SCALARS or not np.isfinite(scale):
         raise InputError("its arrays do not fit this version's network", "train it again", source=path)
     weights: dict[str, Reals] = {name: array.astype(np.float32) for name, array in tensors.items()}
-    return Model(header.get("name", Path(path).stem), StripNetwork(weights), basis, scale, header)
+    problem = misfit(weights)
+    if problem:
+        raise InputError(problem, "use a file made by meshonet train", source=path)
+    name = header.get("name")
+    called = name if isinstance(name, str) and name.isprintable() else Path(path).stem
+    return Model(called, StripNetwork(weights), basis, scale, header)
 
 
 def kind_of(path: Path) -> str:
@@ -103,7 +108,7 @@ def kind_of(path: Path) -> str:
             length = int.from_bytes(file.read(8), "little")
             head = json.loads(file.read(min(length, LARGEST)))
         return str(json.loads(head["__metadata__"][HEADER])["kind"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return ""
 
 
@@ -119,7 +124,7 @@ def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, Floats]]:
         with safe_open(path, framework="numpy") as file:
             header = json.loads((file.metadata() or {}).get(HEADER, "{}"))
             tensors = {key: file.get_tensor(key) for key in file.keys()}  # noqa: SIM118 - not a mapping
-    except (SafetensorError, OSError, ValueError, TypeError) as error:
+    except (SafetensorError, OSError, ValueError, TypeError, RecursionError) as error:
         raise InputError(
             f"not a safetensors file ({error})", "use a file made by meshonet train", source=str(path)
         ) from None

@@ -63,12 +63,39 @@ def test_other_files_are_refused(tmp_path: Path, content: bytes, told: str) -> N
         ({"encoding": "one"}, "lack"),
         ({"encoding": None}, "lack"),
         ({"scale": "nan"}, "do not fit"),
+        ({"encoding": 1e400}, "lack"),
     ],
 )
 def test_foreign_headers_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
     save_file(tensors(), tmp_path / "m.safetensors", metadata=header(**changes))
     with pytest.raises(InputError, match=told):
         load_model(str(tmp_path / "m.safetensors"))
+
+
+@pytest.mark.parametrize("name", sorted(tensors()))
+def test_an_array_that_is_missing_or_of_another_shape_is_named(name: str, tmp_path: Path) -> None:
+    without = {key: array for key, array in tensors().items() if key != name}
+    save_file(without, tmp_path / "without.safetensors", metadata=header())
+    with pytest.raises(InputError, match=r"lack|missing|in place of|do not fit"):
+        load_model(str(tmp_path / "without.safetensors"))
+    for k, array in enumerate((tensors()[name][..., None], tensors()[name].T[1:].T, tensors()[name].ravel())):
+        if array.shape == tensors()[name].shape:
+            continue
+        odd = tensors() | {name: np.ascontiguousarray(array)}
+        save_file(odd, tmp_path / f"{k}.safetensors", metadata=header())
+        with pytest.raises(InputError, match=r"lack|missing|in place of|do not fit"):
+            load_model(str(tmp_path / f"{k}.safetensors"))
+
+
+def test_a_header_of_brackets_is_refused(tmp_path: Path) -> None:
+    save_file(tensors(), tmp_path / "m.safetensors", metadata={HEADER: "[" * 5000})
+    with pytest.raises(InputError, match="not a safetensors file"):
+        load_model(str(tmp_path / "m.safetensors"))
+
+
+def test_a_name_with_escapes_is_not_taken_over(tmp_path: Path) -> None:
+    save_file(tensors(), tmp_path / "m.safetensors", metadata=header(name="\x1b[2J"))
+    assert load_model(str(tmp_path / "m.safetensors")).name == "m"
 
 
 def test_arrays_of_other_shapes_or_not_finite_are_refused(tmp_path: Path) -> None:
