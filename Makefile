@@ -90,7 +90,8 @@ paper-quick: $(VENV)/.developing
 
 bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_operator.py --page docs/benchmarks.md
-	for name in tfi elliptic variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done
+	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md
+	for name in tfi variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done
 
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py

@@ -30,7 +30,10 @@ YPlus = Annotated[
 ]
 Reynolds = Annotated[
     float | None,
-    typer.Option("--reynolds", metavar="RE", show_default=False, help="Reynolds number of the chord."),
+    typer.Option(
+        "--reynolds", metavar="RE", show_default=False,
+        help="Reynolds number of the chord; of a four-sided domain, of the extent of its south side.",
+    ),
 ]
 ChordFraction = Annotated[
     float,

@@ -171,14 +171,25 @@ class WithWalls:
         heights = self.heights(boundary)
         if heights.any and self.unused.get("--refine") is not None:
             raise InputError("--refine with first cells of given heights", "use a finer --res instead")
-        solution = self._solved(boundary, heights)
-        if not heights.any:
-            return solution
+        if not heights.any and not self.edges.slide:
+            return self._solved(boundary, heights)
+        return self._walled(boundary, heights)
+
+    def _walled(self, boundary: Boundary, heights: Heights) -> Solution:
+        """Return the grid of `boundary` with layers; all that takes is told as the grid's time."""
+        from time import perf_counter
+
+        from solvers.elliptic import steger_sorenson  # noqa: F401  (loaded before the clock starts)
+        from solvers.walls import slide  # noqa: F401
         from solvers.walls.spread import spread
 
-        solution = spread(solution, solution.boundary or boundary, heights)
-        note = self.layers.note if self.layers else ""
-        return replace(solution, notes=(note, *solution.notes)) if note else solution
+        begun = perf_counter()
+        solution = self._solved(boundary, heights)
+        if heights.any:
+            solution = spread(solution, solution.boundary or boundary, heights)
+        spent = {**solution.seconds, "grid": perf_counter() - begun}
+        note = (self.layers.note,) if self.layers and self.layers.note else ()
+        return replace(solution, notes=(*note, *solution.notes), seconds=spent)
 
     def _solved(self, boundary: Boundary, heights: Heights) -> Solution:
         """Return the grid of `boundary` with even rows: wall nodes slid, or lines turned, as they are to be.
@@ -192,7 +203,8 @@ class WithWalls:
             slide = channel and boundary.sampled
         if slide:
             return self._slid(boundary)
-        if self.name == "steger-sorenson" or (channel and self._whole_function() is solve_function()):
+        fewer = getattr(self._whole_function(), "__module__", "") in ("solvers.coarse", "solvers.refine")
+        if (channel or self.name == "steger-sorenson") and not fewer:
             return self._turned(boundary, heights)
         return self.method(boundary)
 
@@ -224,10 +236,9 @@ class WithWalls:
 
         sides = {side: height for side in SIDES if (height := getattr(heights, side))}
         angle = 90.0 if self.edges.angle is None else self.edges.angle
-        settings = getattr(self._whole(), "keywords", {})
-        if self._whole_function() in (solve_function(), solve_steger_sorenson):
-            return solve_steger_sorenson(boundary, **settings, heights=sides, angle=angle)
-        return self.method(boundary)
+        own = self._whole_function() in (solve_function(), solve_steger_sorenson)
+        settings = self._whole().keywords if own else {}  # type: ignore[attr-defined]
+        return solve_steger_sorenson(boundary, **settings, heights=sides, angle=angle)
 
     def heights(self, boundary: Boundary) -> Heights:
         """Return the heights in the unit of `boundary`.

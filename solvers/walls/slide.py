@@ -34,6 +34,9 @@ STRAIGHT = np.sin(np.radians(0.05))
 RELAXATION = 0.7
 """Part of the linear answer that a round moves by."""
 
+RAMP = 0.03
+"""Part of a wall, next to its ends and kinks, over which sliding sets in."""
+
 ROOM = 0.4
 """Part by which a round may change a step between wall nodes."""
 
@@ -106,7 +109,7 @@ def _slid(
     for _ in range(2):
         levels.cycle()
     waves = _waves(m)
-    relaxation, part = RELAXATION, 0.0
+    relaxation = RELAXATION
     for _ in range(ROUNDS):
         leans = _leans(nodes, curves, arcs)
         lean = float(np.sqrt(np.mean(np.square(leans))))
@@ -114,15 +117,14 @@ def _slid(
             break
         if lean < least:
             best, least = (arcs[0].copy(), arcs[1].copy()), lean
-        elif relaxation > 0.1 and part == relaxation:
+        elif relaxation > 0.1:
             relaxation *= 0.8
         if max(np.abs(one).max() for one in leans) < STRAIGHT:
             break
         apart = float(np.hypot(*(nodes[:, -1] - nodes[:, 0]).T).mean())
         moves = _answer(leans, arcs, waves, apart)
-        part = min(relaxation, _part(moves, arcs))
         for k, curve in enumerate(curves):
-            arcs[k] += part * moves[k]
+            arcs[k] = _moved(arcs[k], relaxation * moves[k])
             edge = curve.at(arcs[k])
             edge[[0, -1]] = nodes[[0, -1], -k]
             _move_wall(nodes, edge, k)
@@ -139,17 +141,20 @@ def _between(edge: Floats, places: Floats) -> Floats:
 
 
 def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> list[Floats]:
-    """Return the sine (m,) of the angle by which lines lean along each wall, away from its normal."""
+    """Return the sine (m,) of the angle by which lines lean along each wall, away from its normal.
+
+    Less and less next to ends and kinks, where lines may not be able to stand upright.
+    """
     leans = []
     for curve, arc, rows in zip(curves, arcs, ((0, 1, 2), (-1, -2, -3)), strict=True):
         a, b, c = (nodes[:, j] for j in rows)
         first, second = np.hypot(*(b - a).T)[:, None], np.hypot(*(c - b).T)[:, None]
         out = (b - a) / first
         direction = out + (out - (c - b) / second) * first / (first + second)
-        leans.append((direction * curve.tangent(arc)).sum(axis=1) / np.hypot(*direction.T))
-        for kink in _inner_corners(curve):
-            leans[-1][np.abs(arc - kink) < 1e-9 * curve.length] = 0.0
-        leans[-1][[0, -1]] = 0.0
+        lean = (direction * curve.tangent(arc)).sum(axis=1) / np.hypot(*direction.T)
+        fixed = np.concatenate([[0.0], _inner_corners(curve), [curve.length]])
+        away = np.abs(arc[:, None] - fixed).min(axis=1)
+        leans.append(lean * np.clip(away / (RAMP * curve.length), 0.0, 1.0))
     return leans
 
 
@@ -173,11 +178,12 @@ def _answer(leans: list[Floats], arcs: list[Floats], waves: Floats, apart: float
     return np.pad(both + contrary, 1), np.pad(both - contrary, 1)
 
 
-def _part(moves: tuple[Floats, Floats], arcs: list[Floats]) -> float:
-    """Return the largest part of the displacements, at most 1, that changes no step by more than `ROOM`."""
-    pairs = zip(moves, arcs, strict=True)
-    change = max(float((np.abs(np.diff(move)) / np.diff(arc)).max()) for move, arc in pairs)
-    return min(1.0, ROOM / max(change, 1e-300))
+def _moved(arcs: Floats, move: Floats) -> Floats:
+    """Return arcs (m,) displaced by `move` (m,), no step changed by more than `ROOM` before all fit."""
+    steps = np.diff(arcs)
+    steps = steps * (1.0 + np.clip(np.diff(move) / steps, -ROOM, ROOM))
+    moved = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.asarray(moved * (arcs[-1] / moved[-1]))
 
 
 def _move_wall(nodes: Floats, edge: Floats, k: int) -> None:

@@ -114,11 +114,11 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
     ratio = fill_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
-    if boundary.topology == "quad":
+    if boundary.topology == "o":
+        out[-1] = out[0]
+    else:
         for i, edge in ((0, boundary.west), (-1, boundary.east)):
             out[i] = edge_in_layers(edge, count, *ends, heights)
-    else:
-        out[-1] = out[0]
     return out, ratio
 
 

@@ -279,6 +279,17 @@ def test_in_a_channel_the_walls_are_south_and_north(meshonet: Meshonet, duct_h5:
     np.testing.assert_allclose(steps[:, [1, 2, -2, -3]], 1e-4, rtol=1e-3)
 
 
+@pytest.mark.parametrize("command", LAYER_COMMANDS)
+def test_y_plus_in_a_channel_counts_in_its_length(meshonet: Meshonet, duct_h5: Path, command: str) -> None:
+    words = ("--y-plus", "1", "--reynolds", "6e6", "--res", "61x81", "-o", "g.h5")
+    done = meshonet(command, duct_h5, *words)
+    assert "Cf = (2 log10(Re x/c) - 0.65)^-2.3 (Schlichting" in done.err
+    (grid,) = read_grids("g.h5")
+    friction = (2 * np.log10(3e6) - 0.65) ** -2.3
+    first = np.linalg.norm(grid.nodes[:, [1, -2]] - grid.nodes[:, [0, -1]], axis=-1)
+    np.testing.assert_allclose(first, 2.0 / (6e6 * np.sqrt(friction / 2)), rtol=1e-8)
+
+
 def test_no_march_makes_a_channel(meshonet: Meshonet, duct_h5: Path) -> None:
     words = (duct_h5, "--wall-spacing", "1e-3", "--method", "hyperbolic", "-o", "g.vts")
     done = meshonet("solve-pde", *words)
