@@ -39,9 +39,9 @@ HEAD = """# The elliptic solvers, measured
 <!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md -->
 
 Processor seconds of one thread on {processor}, other programs at work; float64.
-*default* stops at discretisation level; *rate* is the factor by which a cycle shrinks the residual, on average
-to 1e-8. *doubles a node*: the most memory in use while solving, the grid included. *folded*: as it leaves the
-solver; then what the guard made of it.
+*default* stops at discretisation level; *rate* is the factor by which a cycle shrinks the residual, on
+average to 1e-8. *doubles a node*: the most memory in use while solving, the grid included. *folded*: as it
+leaves the solver; then what the guard made of it.
 """
 
 OTHERS = """
