@@ -1,0 +1,76 @@
+"""`make paper`: meshonet commands and nothing else make the results, and the tables say what those hold."""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAPER = ROOT / "examples" / "paper"
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="needs make")
+def test_results_are_made_of_meshonet_commands(tmp_path: Path) -> None:
+    words = [
+        "make",
+        "-n",
+        "-C",
+        str(PAPER),
+        f"OUT={tmp_path}/out",
+        f"PAGES={tmp_path}/pages",
+        "MESHONET=meshonet",
+    ]
+    lines = subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
+    lines = [line for line in lines if not re.match(r"make(\[\d+\])?: ", line)]
+    others = [line for line in lines if not re.match(r"(meshonet|mkdir -p|rm -f) ", line)]
+    assert others == [
+        "python3 tables.py " + str(tmp_path / "pages") + " --machine '" + others[0].split("'")[1] + "'"
+    ]
+    text = "\n".join(lines)
+    for family in ("arch", "hexagon", "wrench", "semicircle", "airfoil", "hole"):
+        assert f"--family {family} --count 36 --res 101" in text
+    for model in ("meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "mionet"):
+        for seed in (0, 1, 2):
+            assert re.search(rf"train \S+ --model {model} --epochs 1000 --seed {seed} ", text)
+    assert len(re.findall(r"--epochs 15000 ", text)) == 24
+    for size in (100, 200, 400, 800, 1600, 3200):
+        assert f"sample-boundary --family arch --range 0.15:0.15 --count 1 --res {size} " in text
+
+
+def statistics(value: float) -> dict[str, float]:
+    return {
+        "min": value,
+        "median": value,
+        "mean": value,
+        "p90": value,
+        "max": 2 * value,
+        "sum": 7,
+        "members": 3,
+    }
+
+
+def test_tables_say_what_the_results_hold(tmp_path: Path) -> None:
+    results = tmp_path / "results"
+    results.mkdir()
+    columns = ("relative_l2", "boundary", "max_angle", "mean_angle", "folded")
+    told = {"summary": {"members": 6, **{name: statistics(0.0123) for name in columns}}}
+    for name in ("wrench.extrapolation.meshonet.pasted", "arch.interpolation.deeponet.race0"):
+        (results / f"{name}.json").write_text(json.dumps(told))
+    rows = (
+        "epoch,seen,loss,interior,boundary,rate,seconds\n1,30,2,1.5,0.5,0.001,0.1\n2,60,1,0.75,0.25,0.001,7\n"
+    )
+    (results / "arch.interpolation.deeponet.race0.csv").write_text(rows)
+    (results / "time.tfi.100.json").write_text(json.dumps({"seconds": {"grid": 0.00042}}))
+    subprocess.run([sys.executable, str(PAPER / "tables.py"), str(tmp_path)], check=True)
+    page = (tmp_path / "README.md").read_text()
+    assert "| extrapolation | MeshONet, walls pasted | 1.2e-02 / 2.5e-02 | 2e-02 |" in page
+    assert "| 7 (3 of 6) |" in page
+    assert "| arch.interpolation | deeponet | 60 | 1 | 1.0e+00 | 1.2e-02 ± 0e+00 | 7 |" in page
+    assert "| TFI (`tfi`) | 0.0004 |" in page
+    assert "| TFI, the paper's | 0.087 |" in page
+    assert "### hexagon" not in page, "what is missing is left out"
+    assert (tmp_path / "loss.png").stat().st_size > 5000
