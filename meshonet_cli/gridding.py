@@ -117,7 +117,8 @@ class Recipe:
         folded = count_folded(grid.nodes)
         if folded and not self.allow_invalid:
             cells = (grid.ni - 1) * (grid.nj - 1)
-            problem = f"{folded} of {cells} cells are folded; use --repair, solve-pde or --allow-invalid"
+            remedy = "use --repair (infer: --answer valid), solve-pde or --allow-invalid"
+            problem = f"{folded} of {cells} cells are folded; {remedy}"
             raise NoValidGridError(problem, worst_cells(grid.nodes))
         return grid, ()
 
