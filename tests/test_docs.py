@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -61,6 +62,25 @@ def test_the_readmes_commands_run_in_their_order(tmp_path: Path) -> None:
         done = subprocess.run(shell, shell=True, cwd=tmp_path, capture_output=True, text=True, timeout=120)  # noqa: S602
         gated = "--fail-on" in line and done.returncode == 1
         assert done.returncode == 0 or gated, f"{line}\n{done.stderr}"
+
+
+def page_commands(name: str) -> list[str]:
+    blocks = re.findall(r"```\n(.*?)```", (ROOT / "docs" / name).read_text(), flags=re.DOTALL)
+    return [line for block in blocks for line in block.splitlines() if line.startswith("meshonet ")]
+
+
+@pytest.mark.parametrize("page", ["quality.md", "grid-convergence.md"])
+def test_the_commands_of_a_page_run(page: str, tmp_path: Path) -> None:
+    shutil.copy(ROOT / "examples" / "grid-convergence" / "ellipse.csv", tmp_path)
+    program = f"{shlex.quote(sys.executable)} -m meshonet_cli"
+    before = ["meshonet tfi ellipse.csv --res 41x21 -o grid.vts"]
+    before += [f"meshonet tfi grid.vts -o {name}.h5" for name in ("predicted", "solved")]
+    commands = page_commands(page)
+    assert commands
+    for line in [*before, *commands]:
+        shell = re.sub(r"\bmeshonet (?=[a-z])", f"{program} ", line)
+        done = subprocess.run(shell, shell=True, cwd=tmp_path, capture_output=True, text=True, timeout=120)  # noqa: S602
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
 
 
 def test_the_example_makefile_grids_a_folder_and_judges_it(tmp_path: Path) -> None:
