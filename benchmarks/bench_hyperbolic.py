@@ -28,36 +28,64 @@ from formats.registry import read_shapes
 from geometry.arrays import Floats
 from geometry.errors import MeshonetError
 from geometry.families import procedural
+from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from geometry.sampling import Sampling
 from solvers.hyperbolic import hyperbolic
 
 SEED = 20_000_003
-SIZES = ((250, 100, 1e-5), (400, 150, 1e-5), (800, 200, 1e-5), (250, 120, 1e-6))
+SIZES = (
+    (250, 100, 1e-5),
+    (400, 150, 1e-5),
+    (800, 200, 1e-5),
+    (250, 120, 1e-6),
+    (400, 150, 1e-6),
+    (800, 200, 1e-6),
+)
 HEAD = """# Marched grids for boundary layers
 
 <!-- made by benchmarks/bench_hyperbolic.py -->
 
-`solve-pde --wall-spacing H`: wall nodes by curvature, far field at 15 chords, H in chords. *first cell*:
-largest relative error over all wall nodes. *off 90*: deviation of every corner of every cell from a right
-angle in degrees, the largest and, *away*, the largest farther than 3 cells from the trailing edge; then the
-mean. *growth*: largest relative step between neighbouring cells along (xi) and away from (eta) the wall.
-Groups: median over the shapes / 90th percentile. *ms*: from the file (or boundary, for procedural ones) to
-nodes in memory, wall clock, best of 3 (procedural: once), on {machine}.
+`solve-pde --wall-spacing H`: wall nodes by curvature, far field at 15 chords, H in chords. Nodes of C grids
+count both sides of the wake, so that 250 of them leave about 140 for the wall; blunt edges are closed by a
+wedge. *first cell*: largest relative error over all wall nodes. *off 90*: deviation of every corner of
+every cell from a right angle in degrees, the largest and, *away*, the largest farther than 3 cells from the
+trailing edge; then the mean. *growth*: largest relative step between neighbouring cells along (xi) and away
+from (eta) the wall. Groups: median over the shapes / 90th percentile. *CPU ms*: processor time from the
+file (or boundary, for procedural ones) to nodes in memory, best of 3 (procedural: once), one thread of
+{machine}, with other programs at work.
 
-A sharp edge puts an angle near 180 degrees into one line of any O grid. Measured by the same formula,
-Construct2D's O grid of NACA 0012, 250x100, first cell 1e-5, which has its edge rounded too, is off by 18.7 at
-most and by 3.5 on average, that of LS(1)-0417 by 24.8 and 3.3.
+A sharp edge puts an angle near 180 degrees into one line of any O grid: it gets a C grid unless told
+otherwise.
+
+![C grid around NACA 2412, trailing edge](img/c-grid-edge.png)
+"""
+CONSTRUCT2D = """
+## Construct2D
+
+The same figures of Construct2D's hyperbolic grids, 250x100, first cell 1e-5, all corners of all cells (its
+own figure leaves obtuse ones out). It rounds blunt edges: its O grids compare with ours with the edge
+rounded.
+
+| grid | off 90, largest / mean | ours |
+| --- | --- | --- |
+| O, NACA 0012, blunt | 18.7 / 3.5 | {0} |
+| O, LS(1)-0417, blunt | 24.8 / 3.3 | see the blunt, rounded files |
+| C, NACA 0012, sharp | 14.2 / 1.8 | {1} |
+
+Its growth is 0.10 to 0.18 along and 0.13 away from the wall, its first cell exact, its time 150 to 270 ms at
+250x100 and 1.24 s at 500x200.
 """
 
 
 @dataclass(frozen=True)
 class Case:
-    """A shape made anew for every timing, and how its trailing edge is taken."""
+    """A shape made anew for every timing, how its trailing edge is taken, and the kind of grid."""
 
     name: str
     make: Callable[[], Any]
     te: str
+    topology: str = "o"
 
 
 def main() -> None:
@@ -70,17 +98,17 @@ def main() -> None:
     groups = {
         "NACA 0012, blunt edge rounded": [Case("0012", reader("naca:0012"), "round")],
         "NACA 0012, blunt edge exact": [Case("0012", reader("naca:0012"), "exact")],
+        "NACA 0012, C": [Case("0012", reader("naca:0012"), "wedge", "c")],
     }
     if options.files:
         groups |= of_files(sorted(options.files.glob("*.dat")))
-    rows = [
-        "| shapes | nodes | H | folded | first cell | off 90 | away | mean | growth xi | growth eta | ms |"
-    ]
-    rows.append("| --- " * 11 + "|")
+    heads = "shapes|nodes|H|folded|first cell|off 90|away|mean|growth xi|growth eta|CPU ms"
+    rows = [f"| {heads.replace('|', ' | ')} |", "| --- " * 11 + "|"]
     for name, cases in groups.items():
         rows += [row(name, cases, *size) for size in SIZES]
     rows += [procedural_row(options.count, *size) for size in SIZES]
-    page = "\n".join([HEAD.format(machine=machine()), *rows, ""])
+    ours = [angles(groups[name][0]) for name in ("NACA 0012, blunt edge rounded", "NACA 0012, C")]
+    page = "\n".join([HEAD.format(machine=machine()), *rows, CONSTRUCT2D.format(*ours)])
     print(page)
     if options.page:
         options.page.write_text(page)
@@ -99,12 +127,24 @@ def of_files(paths: list[Path]) -> dict[str, list[Case]]:
             (blunt if reader(str(path))().blunt else sharp).append(path)
         except MeshonetError:
             continue  # surfaces that cross: there is no grid to measure
-    kinds = (("blunt, rounded", blunt, "round"), ("blunt, exact", blunt, "exact"), ("sharp", sharp, "exact"))
+    kinds = (
+        ("files, C", [*blunt, *sharp], "wedge", "c"),
+        ("sharp files, C", sharp, "exact", "c"),
+        ("blunt, rounded files", blunt, "round", "o"),
+        ("blunt, exact files", blunt, "exact", "o"),
+        ("sharp files", sharp, "exact", "o"),
+    )
     return {
-        f"{len(found)} {kind} files": [Case(path.stem, reader(str(path)), te) for path in found]
-        for kind, found, te in kinds
+        f"{len(found)} {kind}": [Case(path.stem, reader(str(path)), te, topology) for path in found]
+        for kind, found, te, topology in kinds
         if found
     }
+
+
+def angles(case: Case) -> str:
+    """Return the largest and the mean deviation of one shape at 250x100, first cell 1e-5."""
+    found = measured(case, 250, 100, 1e-5)
+    return f"{found[2]:.1f} / {found[4]:.2f}"
 
 
 def row(name: str, cases: list[Case], ni: int, nj: int, first: float) -> str:
@@ -119,9 +159,9 @@ def procedural_row(count: int, ni: int, nj: int, first: float) -> str:
     table = []
     for _ in range(count):
         edges = procedural.boundary(rng, ni, nj)
-        begun = time.perf_counter()
+        begun = time.process_time()
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
-        table.append([*figures(nodes, first * edges.chord), 1e3 * (time.perf_counter() - begun)])
+        table.append([*figures(nodes, first * edges.chord, 0), 1e3 * (time.process_time() - begun)])
     return line(f"{count} procedural, any wall spacing law", np.array(table), ni, nj, first)
 
 
@@ -136,18 +176,19 @@ def line(name: str, table: Floats, ni: int, nj: int, first: float) -> str:
 
 def measured(case: Case, ni: int, nj: int, first: float) -> list[float]:
     """Return folded cells, error of the first cell, three angles, two growths and milliseconds."""
-    sampling = Sampling(ni, nj, spacing="curvature", te=case.te)  # type: ignore[arg-type]
+    sampling = Sampling(ni, nj, case.topology, "curvature", te=case.te)  # type: ignore[arg-type]
     spent = []
     for _ in range(3):
-        begun = time.perf_counter()
+        begun = time.process_time()
         edges = case.make().boundary(sampling)
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
-        spent.append(1e3 * (time.perf_counter() - begun))
-    return [*figures(nodes, first * edges.chord), min(spent)]
+        spent.append(1e3 * (time.process_time() - begun))
+    wake = wake_nodes(edges.south) if edges.topology == "c" else 0
+    return [*figures(nodes, first * edges.chord, wake), min(spent)]
 
 
-def figures(nodes: Floats, first: float) -> list[float]:
-    """Return folded cells, relative error of the first cell, deviations and growths of an O grid."""
+def figures(nodes: Floats, first: float, wake: int) -> list[float]:
+    """Return folded cells, error of the first cell, deviations, growths; `wake` nodes make it a C."""
     corners = [nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]]
     off = np.zeros(corners[0].shape[:2])
     total = 0.0
@@ -158,9 +199,13 @@ def figures(nodes: Floats, first: float) -> list[float]:
         off, total = np.maximum(off, deviation), total + deviation.mean()
     along = np.hypot(*np.moveaxis(np.diff(nodes, axis=0), -1, 0))
     away = np.hypot(*np.moveaxis(np.diff(nodes, axis=1), -1, 0))
-    error = np.abs(away[:, 0] / first - 1.0).max()
-    turns = [off.max(), off[3:-3].max(), 0.25 * total]
-    return [count_folded(nodes), error, *turns, growth(np.vstack([along[-1:], along])), growth(away.T)]
+    edge = max(wake - 1, 0)
+    error = np.abs(away[edge : len(away) - edge, 0] / first - 1.0).max()
+    cell = np.arange(len(off)) + 0.5
+    far = np.minimum(np.abs(cell - edge), np.abs(cell - (len(off) - edge))) > 3
+    turns = [off.max(), off[far].max(), 0.25 * total]
+    closed = along if wake else np.vstack([along[-1:], along])
+    return [count_folded(nodes), error, *turns, growth(closed), growth(away.T)]
 
 
 def growth(sizes: Floats) -> float:

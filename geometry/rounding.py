@@ -22,6 +22,8 @@ _CAP = 5e-3
 _PULL = 0.6
 """Where the control points of the fillet are between its ends (0) and the corner (1)."""
 _POINTS = 24
+_TURN = 0.4
+"""How many nodes of a rounded base follow its turning, for each that follows its length."""
 _NEAR = 0.1
 """Chords from the corner within which the surface is given by points taken from the curve."""
 
@@ -55,6 +57,34 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     corners = len(lower) + np.searchsorted(arcs, corner_arcs)
     rounded = Curve(points, closed=True, corners=corners)
     return rounded, float(rounded.knots[len(lower)])
+
+
+def half_round(curve: Curve, end: float, cells: int) -> Floats:
+    """Return distances (cells + 1,) along a rounded base, from its middle to where the rounding ends.
+
+    Nodes are shared out by length and by turning together, the latter averaged over two cells to each side:
+    without it the cells where the base turns most are the skewest of the grid, by half of what they turn.
+
+    Parameters
+    ----------
+    curve : of `rounded_base`.
+    end : arc length at which the rounding ends.
+    cells : at least 3.
+    """
+    per_cell = 64
+    n = per_cell * cells
+    s = np.linspace(0.0, end, n + 1)
+    way = curve.tangent(np.clip(s, 1e-9 * end, None))
+    turn = np.abs(np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))))
+    reach = 2 * per_cell
+    padded = np.concatenate([turn[reach - 1 :: -1], turn, np.full(reach, turn[-per_cell:].mean())])
+    total = np.concatenate([[0.0], np.cumsum(padded)])
+    turn = total[2 * reach :] - total[: -2 * reach]  # over two cells to each side
+    weight = 1.0 + _TURN * turn[:n] / max(float(turn[:n].mean()), 1e-12)
+    count = np.concatenate([[0.0], np.cumsum(weight)])
+    distances = np.interp(np.arange(cells + 1.0), count * (cells / count[-1]), s)
+    distances[0], distances[-1] = 0.0, end
+    return np.asarray(distances)
 
 
 def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:

@@ -21,6 +21,7 @@ from geometry.arrays import Floats
 from geometry.conformal import conformal_knots
 from geometry.curves import Curve
 from geometry.errors import InputError
+from geometry.rounding import half_round
 from geometry.sampling import Sampling, TanhLaw
 from geometry.size_field import arcs_by_curvature
 from geometry.stretch import on_corners
@@ -29,7 +30,7 @@ _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
 grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
 _BASE_GROWTH = 1.15
-_ROUND_CELLS = 12
+_ROUND_CELLS = 14
 """Fewest cells on half a rounded base, when there are 16 times as many in all."""
 _BASE_SHARE = 0.35
 """Largest part of all cells that goes to the base."""
@@ -63,6 +64,8 @@ class Plan:
     base_step: float
     te: float
     le: float
+    base: Floats | None = None
+    """Distances (half + 1,) from the middle of a rounded base."""
 
 
 def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
@@ -124,7 +127,7 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if plan.half == 0:
         arcs = sides
     else:
-        base = _half_base(plan, stations.half_base)
+        base = _half_base(plan, stations.half_base) if plan.base is None else plan.base
         arcs = np.concatenate([base[:-1], sides, stations.curve.length - base[-2::-1]])
     return _on_inner_corners(arcs, stations)
 
@@ -149,6 +152,9 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
             step = stations.half_base / half
         plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
         plan = replace(plan, te=step)
+        if stations.rounded and half > 2 and not wanted_te:
+            base = half_round(stations.curve, stations.half_base, half)
+            plan = replace(plan, te=float(base[-1] - base[-2]), base=base)
     plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
     side = min(stations.nose - stations.lower, stations.upper - stations.nose)
     if plan.te + plan.le >= side:

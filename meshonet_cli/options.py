@@ -98,7 +98,7 @@ WakeNodes = Annotated[
     typer.Option(
         "--wake-nodes", metavar="N", show_default=False,
         help="Nodes of a C grid's wake, the trailing edge included; its cells grow by one ratio from that "
-        "at the edge. [default: so many that they grow by about 13 %]",
+        "at the edge. [default: about a fifth of NI]",
     ),
 ]
 TrailingEdge = Annotated[

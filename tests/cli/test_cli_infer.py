@@ -66,3 +66,25 @@ def test_mistakes_get_a_line(meshonet: Meshonet, body_h5: Path, words: tuple[str
     assert told in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "topology"), [(("--te", "wedge"), "c"), ((), "o"), (("--te", "wedge", "--topology", "o"), "o")]
+)
+def test_thin_cells_at_a_sharp_edge_are_marched_from_wall_and_wake(
+    meshonet: Meshonet, words: tuple[str, ...], topology: str
+) -> None:
+    given = ("naca:0012", "--wall-spacing", "1e-4", "--res", "140x60", "--json", "-o", "g.vts")
+    told = meshonet("infer", *given, *words).only
+    assert (told["topology"], told["method"], told["folded"]) == (topology, "hyperbolic", 0)
+    (grid,) = read_grids("g.vts")
+    names = {part.name for part in grid.parts}
+    assert names == ({"wall", "wake", "farfield"} if topology == "c" else {"wall", "farfield"})
+
+
+def test_c_grids_without_a_first_cell_are_elliptic_and_the_report_says_so(meshonet: Meshonet) -> None:
+    told = meshonet("infer", "naca:0012", "--topology", "c", "--res", "120x40", "--json", "-o", "g.vts").only
+    assert told["folded"] == 0
+    assert told["topology"] == "c"
+    assert told["method"] in ("winslow", "variational")
+    assert any("no shipped model makes c grids" in note for note in told["notes"])

@@ -72,3 +72,13 @@ def test_what_has_no_trailing_edge_or_no_such_law_is_refused() -> None:
         Outline(np.eye(3)[:, :2]).boundary(Sampling(20, 20, topology="o", te="round"))
     with pytest.raises(InputError, match="trailing edge 'blade' is not known; use auto/exact/round/wedge"):
         Sampling(te="blade")  # type: ignore[arg-type]
+
+
+def test_nodes_of_a_rounded_base_share_its_turning_and_sizes_change_slowly() -> None:
+    """By length alone one cell turns by 16 degrees, which is the worst angle of the grid twice over."""
+    wall = naca("0012").boundary(Sampling(250, 20, "o", "curvature", te="round")).south
+    step = np.diff(np.vstack([wall, wall[1:3]]), axis=0)
+    way = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    assert np.degrees(np.abs(np.diff(way))).max() < 12.5
+    size = np.hypot(*step.T)
+    assert np.abs(np.log(size[1:] / size[:-1])).max() < np.log(1.12)
