@@ -31,6 +31,10 @@ COARSEST = 17
 COARSEST_AROUND = 65
 """The same around a body."""
 
+NEXT = 201
+"""Nodes along a direction of the finest copy at the most. One nearly as fine as the grid itself would cost more than
+it saves, and sweeps around kinks reach further from a coarse one."""
+
 STILL = 1e-4
 """Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
 
@@ -108,6 +112,7 @@ def _nested(
         now = levels[-1].ni, levels[-1].nj
         counts = (n // 2 + 1 if n > least else n for n, least in zip(now, coarsest, strict=True))
         levels.append(thinned(levels[-1], *counts))
+    levels = levels[:1] + [level for level in levels[1:] if max(level.ni, level.nj) <= NEXT]
     last = len(levels) - 1
     nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most if last == 0 else MOST)
     for k in range(last - 1, -1, -1):
