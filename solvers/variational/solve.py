@@ -32,8 +32,10 @@ COARSEST_AROUND = 65
 """The same around a body."""
 
 NEXT = 201
-"""Nodes along a direction of the finest copy at the most. One nearly as fine as the grid itself would cost more than
-it saves, and sweeps around kinks reach further from a coarse one."""
+"""Nodes along a direction of the finest copy at the most.
+
+One nearly as fine as the grid itself would cost more than it saves, and sweeps around kinks reach less far.
+"""
 
 STILL = 1e-4
 """Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""

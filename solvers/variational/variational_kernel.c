@@ -322,6 +322,7 @@ int descent_step(Descent *d)
     remember(d, factor);
     memcpy(d->gradient, d->fresh, (size_t)n * sizeof *d->gradient);
     memcpy(d->steepest, d->turned, (size_t)n * sizeof *d->steepest);
-    d->idle = factor * largest < d->still ? d->idle + 1 : 0;
+    /* a step cut short says nothing of the distance to the minimum */
+    d->idle = factor * largest < d->still && (factor > 0.4 || largest < d->still) ? d->idle + 1 : 0;
     return d->idle == IDLE ? SETTLED : GOES_ON;
 }
