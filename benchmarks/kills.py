@@ -46,6 +46,8 @@ COMMANDS = {
     "convert to SU2": ("convert a.vts out.su2", "out.su2"),
     "convert to Gmsh": ("convert a.vts out.msh", "out.msh"),
     "convert to OpenFOAM": ("convert a.vts case/case.foam", "case"),
+    "convert to blocks": ("convert a.vts b.vts out.vtm", "out"),
+    "convert to HDF5": ("convert a.vts out.h5", "out.h5"),
     "plot": ("plot a.vts -o out.png", "out.png"),
     "train": ("train strips.h5 -o out.safetensors --epochs 2 --batch 4 --held-out 4", "out."),
     "models": ("models --json", "none"),

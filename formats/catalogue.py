@@ -14,6 +14,28 @@ _PAGE = """# Formats
 *Many*: one file holds several.
 
 """
+_REST = """
+**Boundaries out of meshes and drawings** (Gmsh, SU2, DXF): their lines are joined to closed curves. One
+curve is a domain (its corners are those of the quadrilaterals, or the four places where names change) or a
+body; two, one in the other, are a body in its far field; several beside each other are a shape each. Names
+of physical groups, markers and layers become names of parts. A mesh of quadrilaterals that is structured
+gives back its nodes bit for bit. Meshes of three dimensions are refused. DXF needs `pip install
+'meshonet[dxf]'`.
+
+**Plot3D** is told apart by its length and its cells: count or none, two or three dimensions, iblank,
+records, byte order, float32 or float64, planes along any index, `r*v`, commas and D exponents. Where two
+readings fit, the one whose cells all turn one way counts; `--plot3d WORDS` (or `--from plot3d:WORDS` in any
+command) says it, and chooses what is written: `--plot3d fortran,big,single`. iblank is told of and not
+kept.
+
+**Planes**: a file of three dimensions is read when it is one plane, or copies of one along any index; a
+truly three-dimensional one is refused with its dims.
+
+**Not read**: CGNS in ADF containers (`adf2hdf` turns them into HDF5), `.vts` compressed with LZ4 (write it
+with zlib; LZMA is read), Gmsh meshes other than 2.2 and 4.1, binary DXF.
+
+Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/naca0012-su2`.
+"""
 _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it is")
 
 
@@ -39,7 +61,7 @@ def plain() -> str:
 
 def page() -> str:
     """Return ``docs/formats.md``."""
-    return f"{_PAGE}{markdown()}\n"
+    return f"{_PAGE}{markdown()}\n{_REST}"
 
 
 def _row(found: Format) -> tuple[str, ...]:

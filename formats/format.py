@@ -33,6 +33,7 @@ class Format:
     sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
     names_parts : whether names of parts and the topology survive in it.
     many : whether one file holds several grids or boundaries.
+    one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that a stream holds none.
     fills_folder : whether the file is the mark of a folder whose other files are written with it, so that a
         folder holds one and a stream none.
@@ -49,6 +50,7 @@ class Format:
     sniff: Callable[[bytes], bool] | None = None
     names_parts: bool = False
     many: bool = False
+    one_size: bool = False
     beside: bool = False
     fills_folder: bool = False
 

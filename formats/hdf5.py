@@ -270,4 +270,5 @@ FORMAT = Format(
     sniff=sniff,
     names_parts=True,
     many=True,
+    one_size=True,
 )

@@ -125,7 +125,8 @@ def _streamed(
         made = None
         with session.member(item.label, item.source):
             result = future.result()
-            size = _same_size(result[0], size)
+            if destination.format.one_size:
+                size = _same_size(result[0], size)
             made = result
         if made is None:
             continue

@@ -122,6 +122,20 @@ def test_iblank_is_told_of(meshonet: Meshonet, grid_vts: Path) -> None:
     assert "warning: grid.p3d: iblank marks nodes (1 with 0, 1 with 2); they are kept as ord" in done.err
 
 
+@pytest.mark.parametrize("name", ["both.p3d", "both.bin", "both.cgns", "both.vtm"])
+def test_grids_of_different_sizes_are_blocks_of_one_file(
+    meshonet: Meshonet, grid_vts: Path, name: str
+) -> None:
+    meshonet("tfi", "naca:0012", "--res", "31x9", "-o", "other.vts")
+    assert meshonet("convert", grid_vts, "other.vts", "-o", name).code == 0
+    assert [(grid.ni, grid.nj) for grid in read_grids(name)] == [(41, 15), (31, 9)]
+    assert meshonet("convert", name, "again.cgns").code == 0
+    assert [(grid.ni, grid.nj) for grid in read_grids("again.cgns")] == [(41, 15), (31, 9)]
+    done = meshonet("convert", grid_vts, "other.vts", "-o", "both.h5")
+    assert done.code == 2
+    assert "31x9 o does not fit a dataset of 41x15 o" in done.err
+
+
 def test_planes_say_how_many_layers(meshonet: Meshonet, grid_vts: Path) -> None:
     assert meshonet("convert", grid_vts, "grid3d.p3d", "--extrude", "1", "--planes", "5").code == 0
     text = Path("grid3d.p3d").read_text().split()

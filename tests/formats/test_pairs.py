@@ -1,0 +1,62 @@
+"""From every format that is read to every one that is written and read again, nothing is lost."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from format_shapes import c_grid, channel, ring
+
+from formats.registry import format_named, formats, read_grids, read_shapes
+from geometry.boundary import Boundary
+from geometry.grid import Grid
+from geometry.parts import Part
+
+BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
+AS_BOUNDARIES = [
+    row.name for row in formats() if row.write_grids and row.read_shapes and row.read_grids is None
+]
+
+
+def through(name: str, grid: Grid, folder: Path) -> Path:
+    record = format_named(name)
+    path = folder / f"grid{record.suffixes[0]}"
+    assert record.write_grids is not None
+    record.write_grids(path, [grid])
+    return path
+
+
+@pytest.mark.parametrize("make", [channel, ring, c_grid])
+@pytest.mark.parametrize("first", BOTH_WAYS)
+def test_a_grid_goes_through_two_formats_bit_for_bit(first: str, make: type[Grid], tmp_path: Path) -> None:
+    grid = make()
+    (tmp_path / "one").mkdir()
+    (between,) = read_grids(str(through(first, grid, tmp_path / "one")), first)
+    for second in BOTH_WAYS:
+        folder = tmp_path / second
+        folder.mkdir()
+        (back,) = read_grids(str(through(second, between, folder)), second)
+        assert np.array_equal(back.nodes.view(np.uint64), grid.nodes.view(np.uint64)), second
+        assert back.topology == grid.topology
+        if format_named(first).names_parts and format_named(second).names_parts:
+            assert (back.parts, back.name) == (grid.parts, grid.name)
+
+
+@pytest.mark.parametrize("second", AS_BOUNDARIES)
+@pytest.mark.parametrize("make", [channel, ring])
+def test_a_mesh_gives_the_boundary_of_its_grid_from_any_format(
+    second: str, make: type[Grid], tmp_path: Path
+) -> None:
+    plain = [Part(part.name.replace(" ", "-"), part.side, part.start, part.stop) for part in make().parts]
+    grid = Grid(make().nodes, make().topology, tuple(plain), "plain")
+    for first in BOTH_WAYS:
+        folder = tmp_path / first
+        folder.mkdir()
+        (between,) = read_grids(str(through(first, grid, folder)), first)
+        (back,) = read_shapes(str(through(second, between, folder)))
+        assert isinstance(back, Boundary)
+        assert np.array_equal(back.south, grid.nodes[:, 0])
+        assert np.array_equal(back.north, grid.nodes[:, -1])
+        if format_named(first).names_parts:
+            assert {part for part in back.parts if part.name not in ("south", "north")} == set(plain)
