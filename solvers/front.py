@@ -69,6 +69,11 @@ class Front:
         last = levels[:, -1].T
         return _radius(last) if self._closed else self._far(last)
 
+    def curved(self, radius: float) -> float:
+        """Return the part of a level of that radius that is a circle: all of it, or half of one and no sides."""
+        half = math.pi * radius
+        return 1.0 if self._closed else half / (half + 2.0 * self._behind)
+
     def nodes(self, levels: Floats) -> Floats:
         """Return `levels` (2, m, n) as nodes (ni, m, 2)."""
         n = levels.shape[2]

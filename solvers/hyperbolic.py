@@ -32,7 +32,7 @@ from solvers.solution import Solution
 
 _FADE = 12.0
 """Rows over which the correction of the first cell fades out."""
-_REACHED = 0.01
+_REACHED = 0.015
 """How near, as a part, the far field must come to the distance asked for."""
 _MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
@@ -187,7 +187,7 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings, co
         settings.sweeps,
         round(0.75 * cells),
     )
-    distance = _distance_to_march(front.inner, front.outer, first, cells, knobs[3], constant)
+    distance = _distance_to_march(front, first, cells, settings, constant)
     for _ in range(4):
         steps = growing_steps(first, distance, cells, constant)
         march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
@@ -204,20 +204,26 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings, co
 
 
 def _distance_to_march(
-    inner: float, outer: float, first: float, cells: int, implicit: float, constant: int
+    front: Front, first: float, cells: int, settings: MarchSettings, constant: int
 ) -> float:
-    """Return the sum of the steps that lead from a circle of radius `inner` to one of radius `outer`.
+    """Return the sum of the steps that lead from the radius of the body to that of the far field.
 
-    Around a circle a step s leads from r to r + s/(1 + f s/r), f being the weight of the flux along a level.
+    Around a circle of n nodes a step s leads from r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the weight of
+    the flux along a level, e = 2π ε/n + b h/r the dissipation. Along the straight sides of a C it leads to r + s.
     """
-    distance = outer - inner
+    distance = front.outer - front.inner
+    around = 2.0 * math.pi * settings.dissipation / len(front.start())
     for _ in range(8):
-        r = inner
+        r, height = front.inner, 0.0
         for step in growing_steps(first, distance, cells, constant).tolist():
-            r += step / (1.0 + implicit * step / r)
-        if abs(r - outer) < 1e-3 * outer:
+            height += step
+            slow = min(around + settings.bend * height / r, 0.1)
+            part = step * (1.0 - slow) / (1.0 + (1.0 + settings.theta + 2.0 * slow) * step / r)
+            curved = front.curved(r)
+            r += curved * part + (1.0 - curved) * step
+        if abs(r - front.outer) < 1e-3 * front.outer:
             break
-        distance *= (outer - inner) / (r - inner)
+        distance *= (front.outer - front.inner) / (r - front.inner)
     return distance
 
 
