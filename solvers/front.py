@@ -70,7 +70,7 @@ class Front:
         return _radius(last) if self._closed else self._far(last)
 
     def curved(self, radius: float) -> float:
-        """Return the part of a level of that radius that is a circle: all of it, or half of one and no sides."""
+        """Return the part of a level of that radius that is a circle: all, or all but the sides of a C."""
         half = math.pi * radius
         return 1.0 if self._closed else half / (half + 2.0 * self._behind)
 

@@ -208,8 +208,9 @@ def _distance_to_march(
 ) -> float:
     """Return the sum of the steps that lead from the radius of the body to that of the far field.
 
-    Around a circle of n nodes a step s leads from r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the weight of
-    the flux along a level, e = 2π ε/n + b h/r the dissipation. Along the straight sides of a C it leads to r + s.
+    Around a circle of n nodes a step s leads from r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the weight
+    of the flux along a level, e = 2π ε/n + b h/r the dissipation. Along the straight sides of a C it leads to
+    r + s.
     """
     distance = front.outer - front.inner
     around = 2.0 * math.pi * settings.dissipation / len(front.start())
