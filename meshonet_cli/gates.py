@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from geometry.errors import InputError
 from geometry.metrics import NAMES
 from geometry.quality import Quality
 
 _COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
+NO_MORE: Mapping[str, float] = MappingProxyType({})
 _STATISTICS = ("min", "mean", "max", "p01", "p99")
 _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
 
@@ -23,7 +25,8 @@ class Gate:
     Parameters
     ----------
     text : as the user wrote it.
-    metric : a metric of `geometry.metrics`, or ``folded``, the count of folded cells.
+    metric : a metric of `geometry.metrics`, ``folded``, the count of folded cells, or a figure that the
+        command has beside them.
     statistic : min, mean, max, p01 or p99 of the metric over all cells.
     compare : ``>``, ``>=``, ``<`` or ``<=``.
     limit : in the metric's unit.
@@ -35,17 +38,21 @@ class Gate:
     compare: str
     limit: float
 
-    def broken(self, quality: Quality) -> str | None:
-        """Return what to tell the user when `quality` fulfils the condition, else None."""
-        value = quality.folded if self.metric == "folded" else getattr(quality[self.metric], self.statistic)
+    def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
+        """Return what to tell the user when `quality`, or a figure of `more`, fulfils it, else None."""
+        summed = self.metric in NAMES
+        if summed:
+            value = getattr(quality[self.metric], self.statistic)
+        else:
+            value = quality.folded if self.metric == "folded" else more[self.metric]
         if not _COMPARE[self.compare](value, self.limit):
             return None
-        what = "folded" if self.metric == "folded" else f"{self.metric}.{self.statistic}"
+        what = f"{self.metric}.{self.statistic}" if summed else self.metric
         return f"{what} is {value:.6g}, and --fail-on '{self.text}'"
 
 
-def parse_gate(text: str) -> Gate:
-    """Return the gate that `text` describes.
+def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
+    """Return the gate that `text` describes; `more` are figures beside the metrics, without statistics.
 
     Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
 
@@ -71,19 +78,18 @@ def parse_gate(text: str) -> Gate:
             source="--fail-on",
         )
     metric, statistic, compare = found[1], found[2], found[3]
-    if metric not in (*NAMES, "folded"):
-        raise InputError(
-            f"metric {metric!r} is not known", "use one of folded, " + ", ".join(NAMES), source="--fail-on"
-        )
-    if statistic and (statistic not in _STATISTICS or metric == "folded"):
-        known = "no statistic with folded" if metric == "folded" else "one of " + ", ".join(_STATISTICS)
+    if metric not in (*NAMES, "folded", *more):
+        known = "use one of " + ", ".join(("folded", *NAMES, *more))
+        raise InputError(f"metric {metric!r} is not known", known, source="--fail-on")
+    if statistic and (statistic not in _STATISTICS or metric not in NAMES):
+        known = "one of " + ", ".join(_STATISTICS) if metric in NAMES else f"no statistic with {metric}"
         raise InputError(f"statistic {statistic!r} is not known", f"use {known}", source="--fail-on")
     return Gate(text, metric, statistic or ("max" if compare in (">", ">=") else "min"), compare, limit)
 
 
-def parse_gates(texts: Iterable[str] | None) -> tuple[Gate, ...]:
-    """Return the gates of all ``--fail-on`` options."""
-    return tuple(parse_gate(text) for text in texts or ())
+def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
+    """Return the gates of all ``--fail-on`` options, which may name figures of `more` too."""
+    return tuple(parse_gate(text, more) for text in texts or ())
 
 
 def need_percentiles(gates: Iterable[Gate]) -> bool:

@@ -82,6 +82,12 @@ class Grade(Timed):
         return row | (self.comparison.figures() if self.comparison else {})
 
 
+COMPARED = (
+    "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
+)  # fmt: skip
+"""Figures of a comparison, in the order of `Comparison.figures`; gates may name them."""
+
+
 @dataclass(frozen=True)
 class Comparison:
     """How far a grid is from another one, and how its angles compare."""
@@ -162,7 +168,8 @@ def grade_grids(
                 session.done += 1
             else:
                 session.show(grade)
-            session.gate(item.label, [told for gate in gates if (told := gate.broken(grade.quality))])
+            more = grade.comparison.figures() if grade.comparison else {}
+            session.gate(item.label, [told for gate in gates if (told := gate.broken(grade.quality, more))])
             session.gate(item.label, problems(grade.judgement) if grade.judgement else [])
     if rows and summary:
         session.conclude(Total(rows))

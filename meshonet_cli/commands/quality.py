@@ -12,7 +12,7 @@ EXAMPLES = (
     "meshonet quality grid.vts --profile openfoam",
     "meshonet quality grid.vts --per-cell metrics.vts",
     "meshonet quality grid.vts --compare other.vts",
-    "meshonet quality grids/*.vts --compare grid.vts --summary",
+    "meshonet quality grids/*.vts --compare grid.vts --summary --fail-on 'relative_l2>0.01'",
 )
 
 
@@ -63,7 +63,7 @@ def quality(
     """Measure grids: folded cells, angles, skewness."""
     from meshonet_cli.drawing import Picture, metrics_file, picture_file
     from meshonet_cli.gates import parse_gates
-    from meshonet_cli.grading import grade_grids
+    from meshonet_cli.grading import COMPARED, grade_grids
     from meshonet_cli.session import Session
 
     o.only_with("--compare", other is not None, pair=pair)
@@ -71,7 +71,7 @@ def quality(
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [metrics_file(per_cell)] if per_cell else []
     return grade_grids(
-        grid, session, parse_gates(fail_on),
+        grid, session, parse_gates(fail_on, COMPARED if other else ()),
         fmt=from_format, other=other, pairing=pair or "auto", profile=profile, summary=summary,
         outputs=outputs,
     )

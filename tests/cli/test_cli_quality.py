@@ -9,6 +9,7 @@ from conftest import Meshonet, dataset, duct
 from formats.registry import read_grids
 from geometry.metrics import NAMES
 from geometry.quality import per_cell
+from meshonet_cli.grading import COMPARED
 
 
 @pytest.fixture
@@ -218,6 +219,21 @@ def test_summary_is_one_table_over_all(meshonet: Meshonet, three_h5: Path) -> No
     alone = meshonet("quality", "t.h5", "--summary").out
     assert "max angle" in alone
     assert "rel L2" not in alone
+
+
+def test_gates_look_at_comparisons(meshonet: Meshonet, three_h5: Path) -> None:
+    meshonet("tfi", three_h5, "-o", "t.h5")
+    meshonet("solve-pde", three_h5, "-o", "s.h5")
+    words = ("quality", "t.h5", "--compare", "s.h5", "--summary", "--fail-on")
+    done = meshonet(*words, "relative_l2>0.01")
+    assert done.code == 1
+    assert "gate not met: t.h5[high]: relative_l2 is 0." in done.err
+    assert "t.h5[flat]" not in done.err
+    assert meshonet(*words, "boundary>1e-12").code == 0
+    without = meshonet("quality", "t.h5", "--fail-on", "relative_l2>0.01")
+    assert (without.code, "metric 'relative_l2' is not known" in without.err) == (2, True)
+    told = meshonet(*words[:-2], "--json", "--fail-on", "max>9").objects[0]["compare"]
+    assert set(COMPARED) <= set(told)
 
 
 def test_a_summary_leaves_out_what_failed_and_keeps_gates(meshonet: Meshonet, three_h5: Path) -> None:

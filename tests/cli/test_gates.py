@@ -41,6 +41,19 @@ def test_what_is_no_gate_is_refused_with_an_example(text: str) -> None:
         parse_gate(text)
 
 
+def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
+    gate = parse_gate("relative_l2>1e-2", ("relative_l2",))
+    quality = measure(parallelogram())
+    assert gate.broken(quality, {"relative_l2": 0.009}) is None
+    assert (
+        gate.broken(quality, {"relative_l2": 0.02}) == "relative_l2 is 0.02, and --fail-on 'relative_l2>1e-2'"
+    )
+    with pytest.raises(InputError, match="statistic 'mean' is not known; use no statistic with relative_l2"):
+        parse_gate("relative_l2.mean>1e-2", ("relative_l2",))
+    with pytest.raises(InputError, match="metric 'relative_l2' is not known; use one of folded, max_angle"):
+        parse_gate("relative_l2>1e-2")
+
+
 @pytest.mark.parametrize(
     ("text", "broken"),
     [
