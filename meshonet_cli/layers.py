@@ -21,6 +21,14 @@ WallSpacing = Annotated[
         "layers, marched from the wall. In a four-sided domain off south and north, in its own unit.",
     ),
 ]
+WallHeight = Annotated[
+    float | None,
+    typer.Option(
+        "--wall-spacing", metavar="H", show_default=False,
+        help="Height of the first cell at every wall node: around a body in chords, in a four-sided domain "
+        "off south and north in its own unit.",
+    ),
+]
 YPlus = Annotated[
     float | None,
     typer.Option(

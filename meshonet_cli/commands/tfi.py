@@ -4,10 +4,13 @@ from typing import Annotated, Literal
 
 import typer
 
+from meshonet_cli import layers as layer
 from meshonet_cli import options as o
+from meshonet_cli import walls as wall
 
 EXAMPLES = (
     "meshonet tfi duct.csv --res 80x40 -o duct.vts",
+    "meshonet tfi duct.csv --res 80x40 --spacing-south 1e-3 --growth 1.5 -o layers.vts",
     "meshonet sample-boundary naca:2412 -o - | meshonet tfi - -o - | meshonet quality -",
 )
 BlendingName = Literal["arclength", "linear"]
@@ -25,6 +28,16 @@ def tfi(
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
     te_spacing: o.TeSpacing = None,
+    wall_spacing: layer.WallHeight = None,
+    y_plus: layer.YPlus = None,
+    reynolds: layer.Reynolds = None,
+    chord_fraction: layer.ChordFraction = 0.5,
+    growth: layer.Growth = None,
+    constant_layers: wall.ConstantLayers = None,
+    spacing_south: wall.SpacingSouth = None,
+    spacing_north: wall.SpacingNorth = None,
+    spacing_west: wall.SpacingWest = None,
+    spacing_east: wall.SpacingEast = None,
     te: o.TrailingEdge = "auto",
     far_field: o.FarField = 15.0,
     wake: o.Wake = None,
@@ -52,11 +65,14 @@ def tfi(
     from meshonet_cli.gridding import Recipe, interpolated, make_grids
     from meshonet_cli.session import Session
 
+    layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
+    sides = (spacing_south, spacing_north, spacing_west, spacing_east)
+    edges = wall.read_edges(sides, constant_layers, growth, res, layers)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes}
     recipe = Recipe(
         o.sampling(res, topology, spacing, corners, normalise=normalise, **lengths),
-        partial(interpolated, blending=blending),
+        wall.WithWalls("tfi", partial(interpolated, blending=blending), layers, edges),
         allow_invalid,
         parse_gates(fail_on),
         repair,

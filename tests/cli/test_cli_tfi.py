@@ -281,3 +281,31 @@ def test_json_stays_valid_when_names_are_odd(meshonet: Meshonet, tmp_path: Path)
     assert made.parent == Path("out")
     assert "\x1b" not in made.name
     assert json.loads(done.out)["output"] == str(made)
+
+
+def test_first_cells_are_as_high_as_asked(meshonet: Meshonet, duct_h5: Path) -> None:
+    heights = ("--spacing-south", "1e-3", "--spacing-north", "2e-3", "--spacing-west", "4e-3")
+    words = ("--spacing-east", "5e-3", "--constant-layers", "2", "--res", "41x41", "-o", "g.h5")
+    told = meshonet("tfi", duct_h5, *heights, *words, "--json").only
+    assert (told["method"], told["folded"]) == ("tfi", 0)
+    (grid,) = read_grids("g.h5")
+    first = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
+    np.testing.assert_allclose(first[:, 0], 1e-3, rtol=1e-8)
+    np.testing.assert_allclose(first[:, -1], 2e-3, rtol=1e-8)
+
+
+LAYERS = [("--wall-spacing", "1e-3"), ("--y-plus", "50", "--reynolds", "1e5", "--chord-fraction", "0.4")]
+
+
+@pytest.mark.parametrize("words", LAYERS)
+def test_walls_of_channels_and_bodies_have_layers(
+    meshonet: Meshonet, duct_h5: Path, body_h5: Path, words: tuple[str, ...]
+) -> None:
+    more = ("--growth", "1.3", "-o", "g.h5")
+    for source in (duct_h5, body_h5):
+        assert meshonet("tfi", source, *words, *more).code == 0
+        (grid,) = read_grids("g.h5")
+        steps = np.linalg.norm(np.diff(grid.nodes, axis=1), axis=-1)
+        np.testing.assert_allclose(steps[:, 0], steps[0, 0], rtol=1e-8)
+        assert steps[:, 1:].max() / steps[:, 0].max() > 1
+        assert (steps[:, 1:] / steps[:, :-1]).max() < 1.3001

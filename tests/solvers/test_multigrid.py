@@ -1,5 +1,7 @@
 """One sweep, one residual, one restriction: the compiled kernels against plain numpy."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from solver_shapes import arch, hole, naca
@@ -7,6 +9,7 @@ from solver_shapes import arch, hole, naca
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from solvers.elliptic.multigrid import Multigrid, Settings
+from solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from solvers.elliptic.winslow import metric_terms, residual
 from solvers.tfi import tfi
 
@@ -122,3 +125,14 @@ def test_settings_choose_the_coarsest_level() -> None:
     for coarsest, count in ((16, 4), (32, 3), (200, 1)):
         levels = Multigrid(tfi(boundary).nodes.copy(order="K"), edges, False, Settings(coarsest=coarsest))
         assert len(levels.levels) == count
+
+
+@pytest.mark.parametrize("method", [solve, solve_thomas_middlecoff])
+def test_solving_takes_six_numbers_a_node_at_the_most(method) -> None:  # type: ignore[no-untyped-def]
+    """The grid included; with control functions too, as they are products."""
+    boundary = arch(401, 401)
+    tracemalloc.start()
+    method(boundary)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 6 * 8 * 401**2

@@ -1,0 +1,91 @@
+"""Boundaries that have no grid: every way to one ends with 2 or 3, one line, and nothing written."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Meshonet, dataset, duct
+
+Edges = dict[str, np.ndarray]
+
+
+def straight() -> Edges:
+    return duct(31, 21, bump=0.0)
+
+
+def crossing() -> Edges:
+    """The floor rises through the roof."""
+    edges = straight()
+    edges["south"][1:-1, 1] += 1.4 * np.exp(-30 * (edges["south"][1:-1, 0] - 1) ** 2)
+    return edges
+
+
+def touching() -> Edges:
+    """One node of the floor lies on the roof."""
+    edges = straight()
+    edges["south"][15, 1] = 1.0
+    return edges
+
+
+def backwards() -> Edges:
+    """A third of the floor runs the other way."""
+    edges = straight()
+    edges["south"][10:21, 0] = edges["south"][10:21, 0][::-1]
+    return edges
+
+
+def without_a_number() -> Edges:
+    edges = straight()
+    edges["south"][5, 0] = np.nan
+    return edges
+
+
+def repeated() -> Edges:
+    edges = straight()
+    edges["south"][5] = edges["south"][6]
+    return edges
+
+
+def clockwise() -> Edges:
+    edges = straight()
+    edges["south"], edges["north"] = edges["north"], edges["south"]
+    for side in ("west", "east"):
+        edges[side] = edges[side][::-1]
+    return edges
+
+
+FOLDED = "cells stay folded after repair, winslow and tfi; use more nodes, another topology or corners"
+CASES: dict[Callable[[], Edges], tuple[int, str]] = {
+    crossing: (3, FOLDED),
+    touching: (3, FOLDED),
+    backwards: (3, FOLDED),
+    without_a_number: (2, "south node 5 is not finite; check the input for NaN or infinity"),
+    repeated: (2, "south nodes 5 and 6 are the same point"),
+    clockwise: (2, "runs clockwise or has no area; swap south and north or reverse the edges"),
+}
+WAYS = [
+    ("--method", "winslow"),
+    ("--method", "thomas-middlecoff"),
+    ("--method", "steger-sorenson"),
+    ("--wall-spacing", "1e-4"),
+    ("--wall-spacing", "1e-4", "--slide"),
+    ("--spacing-west", "1e-3", "--constant-layers", "2"),
+]
+
+
+@pytest.mark.parametrize("make", CASES, ids=lambda make: make.__name__)
+@pytest.mark.parametrize("words", WAYS, ids=" ".join)
+def test_no_grid_no_file_one_line(
+    meshonet: Meshonet, tmp_path: Path, make: Callable[[], Edges], words: tuple[str, ...]
+) -> None:
+    source = dataset(tmp_path / "bad.h5", "quad", make())
+    done = meshonet("solve-pde", source, *words, "-o", "g.vts")
+    code, told = CASES[make]
+    assert done.code == code
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert "Traceback" not in done.err
+    assert not Path("g.vts").exists()
+    if code == 3:
+        assert "worst cells: (i=" in done.err
