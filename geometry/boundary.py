@@ -23,7 +23,7 @@ from geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
 from geometry.curves import Curve, resample_like
 from geometry.errors import InputError
 from geometry.origin import UNKNOWN, Origin
-from geometry.parts import Part, check_parts, known_parts
+from geometry.parts import Part, check_parts, known_parts, wake_nodes
 from geometry.sampling import Sampling
 
 
@@ -41,7 +41,8 @@ class Boundary:
     wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
         body between the nodes.
     chord : the length that spacings are given in: the chord of an airfoil, the largest extent of another
-        body. 0 stands for the distance of the first node of `south` from the one farthest from it.
+        body. 0 stands for the distance of the first node of `south`, a wake left out, from the one farthest
+        from it.
     sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
     notes : sentences a user should read, such as that an outline was changed.
     origin : the numbers that made it and what it is kept for, of a sample of a dataset.
@@ -80,7 +81,9 @@ class Boundary:
                     f"{one} has {n} nodes and {other} has {m}", "opposite edges need equal counts"
                 )
         if not self.chord:
-            farthest = np.hypot(*(self.south - self.south[0]).T).max()
+            behind = max(wake_nodes(self.south) - 1, 0) if self.topology == "c" else 0
+            body = self.south[behind : self.ni - behind]
+            farthest = np.hypot(*(body - body[0]).T).max()
             object.__setattr__(self, "chord", float(farthest))
         self._check_corners()
         object.__setattr__(

@@ -165,3 +165,8 @@ def test_what_cannot_be_made_is_named(settings: dict[str, object], told: str) ->
 
 def test_normalised_naca_sections_make_c_grids() -> None:
     assert naca("4415").boundary(Sampling(120, 40, "c", normalise=True)).topology == "c"
+
+
+def test_the_chord_of_a_boundary_from_elsewhere_is_that_of_the_body_not_of_the_wake() -> None:
+    boundary = c()
+    assert replace(boundary, chord=0.0).chord == pytest.approx(SHARP.chord, rel=1e-3)
