@@ -28,7 +28,7 @@ from solvers.coarse import evaluate, thinned
 from solvers.elliptic.control import Controls, Factors
 from solvers.elliptic.multigrid import Multigrid
 from solvers.elliptic.solve import check_settings, solve
-from solvers.elliptic.wall_control import ControlledEdge
+from solvers.elliptic.wall_control import ControlledEdge, layers_at
 from solvers.solution import Solution
 
 FEW = 129
@@ -47,7 +47,8 @@ CLOSE = 0.002
 """Error (sine of an angle, logarithm of a height; root mean square) at which correction stops."""
 
 THINNEST = 0.5
-"""Thinnest first cell that sources are to hold, in even ones; below, `solvers.walls.spread` takes over."""
+"""Thinnest first cells that sources are to hold, in those of Winslow's solution; below that
+`solvers.walls.spread` takes over."""
 
 RELAXATION = 0.5
 """Part of the linear answer by which sources are corrected."""
@@ -90,12 +91,12 @@ def solve_steger_sorenson(
     asked = _asked(boundary, heights, angle)
     begun = time.perf_counter()
     start = initial.nodes if initial is not None else solve(boundary).grid.nodes
-    edges = _edges(boundary, asked, angle)
+    edges = _edges(boundary, asked, angle, start)
     counts = min(boundary.ni, FEW), min(boundary.nj, FEW)
     if counts != (boundary.ni, boundary.nj) and initial is None:
         small = thinned(boundary, *counts)
-        few = _edges(small, asked, angle)
         nodes = solve(small).grid.nodes.copy(order="K")
+        few = _edges(small, asked, angle, nodes)
         _seek(nodes, small, few, ROUNDS[0])
         for edge, coarse in zip(edges, few, strict=True):
             edge.taken_from(coarse)
@@ -123,16 +124,17 @@ def _asked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float
     return asked
 
 
-def _edges(boundary: Boundary, asked: Mapping[str, float], angle: float) -> list[ControlledEdge]:
-    """Return the edges under control, with heights that sources can hold."""
+def _edges(
+    boundary: Boundary, asked: Mapping[str, float], angle: float, nodes: Floats
+) -> list[ControlledEdge]:
+    """Return the edges under control, with heights that sources can hold beside those of `nodes`."""
     found = []
+    closed = boundary.topology == "o"
     for side, height in asked.items():
-        sides = ("west", "east") if side in ("south", "north") else ("south", "north")
         count = boundary.nj if side in ("south", "north") else boundary.ni
-        lengths = [float(np.hypot(*np.diff(getattr(boundary, other), axis=0).T).sum()) for other in sides]
-        even = 0.5 * sum(lengths) / (count - 1)
-        held = max(height, THINNEST * even) if height else 0.0
-        closed = boundary.topology == "o"
+        edge, first, _ = layers_at(nodes, side)
+        free = float(np.median(np.hypot(*(first - edge).T)))
+        held = max(height, THINNEST * free) if height else 0.0
         found.append(ControlledEdge(side, getattr(boundary, side), count, angle, held, closed))
     return found
 

@@ -57,7 +57,7 @@ class ControlledEdge:
 
         (n,) each, less and less towards corners and ends of the edge, where lines cannot stand as asked.
         """
-        a, b, c = _layers(nodes, self.side)
+        a, b, c = layers_at(nodes, self.side)
         first, second = np.hypot(*(b - a).T), np.hypot(*(c - b).T)
         out = (b - a) / first[:, None]
         direction = out + (out - (c - b) / second[:, None]) * (first / (first + second))[:, None]
@@ -70,7 +70,7 @@ class ControlledEdge:
     def correct(self, nodes: Floats, relaxation: float) -> None:
         """Change the sources against what is wrong with `nodes`."""
         lean, high = self.errors(nodes)
-        a, b, _ = _layers(nodes, self.side)
+        a, b, _ = layers_at(nodes, self.side)
         up = np.hypot(*(b - a).T)
         before, after = self._steps, self._steps
         beside = np.empty(len(up))
@@ -114,7 +114,7 @@ def _away_from(curve: Curve, n: int, periodic: bool) -> Floats:
     return np.clip(distance / max(3.0, RAMP * n), 0.0, 1.0)
 
 
-def _layers(nodes: Floats, side: str) -> tuple[Floats, Floats, Floats]:
+def layers_at(nodes: Floats, side: str) -> tuple[Floats, Floats, Floats]:
     """Return the nodes of an edge and of the two lines next to it, (n, 2) each."""
     if side in ("west", "east"):
         nodes = np.swapaxes(nodes, 0, 1)
