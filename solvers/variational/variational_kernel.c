@@ -12,6 +12,7 @@
 
 #define TRIES 25   /* lengths of a step that are tried */
 #define IDLE 3     /* small changes in a row that count as standing still; one may come from a short step */
+#define GAIN 1e-4  /* part of the value that such a change wins at the most */
 #define CHUNK 2048 /* values of every row of the table that are read together */
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj)
@@ -314,15 +315,20 @@ int descent_step(Descent *d)
             break;
         factor *= shorter(value - d->value, factor * slope);
     }
-    if (tries == TRIES)
-        return STUCK;
+    if (tries == TRIES) { /* what is remembered misleads, or nothing helps */
+        const int state = d->count > 0 ? GOES_ON : STUCK;
+        d->count = 0;
+        return state;
+    }
+    const double gain = d->value - value;
     memcpy(d->z, d->full, 2 * (size_t)nodes * sizeof *d->z);
     d->value = value, d->smallest = low;
     descent_precondition(d, d->fresh, d->turned);
     remember(d, factor);
     memcpy(d->gradient, d->fresh, (size_t)n * sizeof *d->gradient);
     memcpy(d->steepest, d->turned, (size_t)n * sizeof *d->steepest);
-    /* a step cut short says nothing of the distance to the minimum */
-    d->idle = factor * largest < d->still && (factor > 0.4 || largest < d->still) ? d->idle + 1 : 0;
+    /* small steps that still gain, or that were cut short, say nothing of the distance to the minimum */
+    const int small = factor * largest < d->still && (factor > 0.4 || largest < d->still);
+    d->idle = small && gain < GAIN * value ? d->idle + 1 : 0;
     return d->idle == IDLE ? SETTLED : GOES_ON;
 }
