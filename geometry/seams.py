@@ -6,6 +6,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.grid import Grid
+from geometry.parts import wake_nodes
 
 
 def wake_cells(grid: Grid) -> int:
@@ -16,11 +17,7 @@ def wake_cells(grid: Grid) -> int:
     """
     if grid.topology != "c":
         return 0
-    south = grid.nodes[:, 0]
-    half = south[: grid.ni // 2]
-    differs = (half != south[::-1][: len(half)]).any(axis=1)
-    nodes = int(np.argmax(differs)) if differs.any() else 0
-    return max(nodes - 1, 0)
+    return max(wake_nodes(grid.nodes[:, 0]) - 1, 0)
 
 
 def beyond_seam(grid: Grid) -> Floats:
