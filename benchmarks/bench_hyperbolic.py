@@ -76,9 +76,9 @@ rounded.
 Its growth is 0.10 to 0.18 along and 0.13 away from the wall, its first cell exact, its time 150 to 270 ms at
 250x100 and 1.24 s at 500x200.
 
-The procedural shapes have walls spaced by every law, some with neighbours three times as large. At 800x200 that
-leaves folded cells for the guard to repair, and first cells that are not as asked, which the report tells. With
-curvature spacing, the default here, no file has either.
+The procedural shapes have walls spaced by every law, some with neighbours three times as large. At 800x200
+that leaves folded cells for the guard to repair, and first cells that are not as asked, which the report
+tells. With curvature spacing, the default here, no file has either.
 """
 
 
