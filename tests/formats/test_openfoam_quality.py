@@ -23,7 +23,7 @@ def shaken() -> Grid:
 @pytest.mark.parametrize("name", ["quad", "o", "c"])
 def test_check_mesh_says_the_same(tmp_path: Path, name: str) -> None:
     grid = {"quad": shaken, "o": lambda: ring(33, 17), "c": lambda: c_grid(33, 33, 17)}[name]()
-    write_extruded(tmp_path / "case.foam", [grid], 0.1)
+    write_extruded(tmp_path / "case.foam", [grid], (0.0, 0.1))
     done = subprocess.run(
         ["checkMesh", "-case", str(tmp_path)],
         capture_output=True,
