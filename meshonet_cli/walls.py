@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from solvers.walls.heights import Heights
 
 SIDES = ("south", "north", "west", "east")
+UPRIGHT = 0.3
+"""Degrees by which lines may lean at walls whose nodes have slid."""
 Method: TypeAlias = "Callable[..., Solution]"
 
 # fmt: off
@@ -202,7 +204,8 @@ class WithWalls:
         if slide is None:
             slide = channel and boundary.sampled
         if slide:
-            return self._slid(boundary)
+            solution = self._slid(boundary)
+            return self._upright(solution, heights) if channel else solution
         fewer = getattr(self._whole_function(), "__module__", "") in ("solvers.coarse", "solvers.refine")
         if (channel or self.name == "steger-sorenson") and not fewer:
             return self._turned(boundary, heights)
@@ -230,6 +233,16 @@ class WithWalls:
         else:
             solution = self.method(slid)
         return replace(solution, boundary=slid, notes=(*solution.notes, told))
+
+    def _upright(self, solution: Solution, heights: Heights) -> Solution:
+        """Return `solution`, its wall nodes slid; where lines still lean, sources turn them."""
+        from solvers.elliptic.steger_sorenson import largest_lean
+
+        slid = solution.boundary
+        if slid is None or largest_lean(solution.grid.nodes, slid) < UPRIGHT:
+            return solution
+        turned = self._turned(slid, heights)
+        return replace(turned, boundary=slid, notes=(*solution.notes, *turned.notes))
 
     def _turned(self, boundary: Boundary, heights: Heights) -> Solution:
         from solvers.elliptic.steger_sorenson import solve_steger_sorenson

@@ -109,6 +109,14 @@ def solve_steger_sorenson(
     return replace(solution, seconds={"grid": time.perf_counter() - begun}, notes=notes)
 
 
+def largest_lean(nodes: Floats, boundary: Boundary) -> float:
+    """Return by how many degrees lines of a quad grid lean at south and north, but next to corners."""
+    sides = ("south", "north")
+    edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
+    sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)
+    return float(np.degrees(np.arcsin(min(sine, 1.0))))
+
+
 def _asked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> dict[str, float]:
     """Return the heights by side, once all is checked."""
     if boundary.topology == "c":
