@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 SIDES = ("south", "north", "west", "east")
 UPRIGHT = 0.3
 """Degrees by which lines may lean at walls whose nodes have slid."""
+LEANING = 1.0
+"""Degrees by which they may lean when sources have turned them."""
 Method: TypeAlias = "Callable[..., Solution]"
 
 # fmt: off
@@ -205,7 +207,7 @@ class WithWalls:
             slide = channel and boundary.sampled
         if slide:
             solution = self._slid(boundary)
-            return self._upright(solution, heights) if channel else solution
+            return self._upright(solution, boundary, heights) if channel else solution
         fewer = getattr(self._whole_function(), "__module__", "") in ("solvers.coarse", "solvers.refine")
         if (channel or self.name == "steger-sorenson") and not fewer:
             return self._turned(boundary, heights)
@@ -234,15 +236,23 @@ class WithWalls:
             solution = self.method(slid)
         return replace(solution, boundary=slid, notes=(*solution.notes, told))
 
-    def _upright(self, solution: Solution, heights: Heights) -> Solution:
-        """Return `solution`, its wall nodes slid; where lines still lean, sources turn them."""
+    def _upright(self, solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
+        """Return `solution`, its wall nodes slid; where lines still lean, sources turn them.
+
+        Where that does not do, sources with the nodes of `boundary` as they were, if those do better.
+        """
         from solvers.elliptic.steger_sorenson import largest_lean
 
         slid = solution.boundary
         if slid is None or largest_lean(solution.grid.nodes, slid) < UPRIGHT:
             return solution
         turned = self._turned(slid, heights)
-        return replace(turned, boundary=slid, notes=(*solution.notes, *turned.notes))
+        turned = replace(turned, boundary=slid, notes=(*solution.notes, *turned.notes))
+        lean = largest_lean(turned.grid.nodes, slid)
+        if lean < LEANING:
+            return turned
+        kept = self._turned(boundary, heights)
+        return kept if largest_lean(kept.grid.nodes, boundary) < lean else turned
 
     def _turned(self, boundary: Boundary, heights: Heights) -> Solution:
         from solvers.elliptic.steger_sorenson import solve_steger_sorenson
