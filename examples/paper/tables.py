@@ -34,10 +34,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("pages", type=Path)
     parser.add_argument("--machine", default="this machine")
+    parser.add_argument("--note", default="", help="what a reader should know of this run")
     options = parser.parse_args()
     pages: Path = options.pages
     results = pages / "results"
-    parts = [words.HEAD, words.QUALITY, *quality(results), words.RACE, race(results, pages)]
+    parts = [words.HEAD, options.note, words.CLAIMS, claims(results)]
+    parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
     parts += [words.SETTINGS, budgets(results)]
     text = "\n\n".join(part.strip() for part in parts if part)
@@ -63,6 +65,39 @@ def quality(results: Path) -> Iterable[str]:
             ]
             head += ["mean angle", "folded cells (grids)"]
             yield f"### {family}\n\n{words.PAPER[family]}\n\n{table(head, rows)}"
+
+
+def claims(results: Path) -> str:
+    """Return what the figures say of the paper's claims about quality, a row a case and split."""
+    rows = []
+    for family in FAMILIES:
+        for split in SPLITS:
+            ways = ("tfi", "pde", "meshonet.pasted", "meshonet-hard.raw")
+            found = {way: summary(results / f"{family}.{split}.{way}.json") for way in ways}
+            if not all(found[way] for way in ways[:3]):
+                continue
+            angles = {way: told["max_angle"]["mean"] for way, told in found.items() if told}
+            folded = {way: told["folded"]["sum"] for way, told in found.items() if told}
+            paper = "meshonet.pasted"
+            told = [
+                "below"
+                if angles[paper] < angles[way] - 0.1
+                else "above"
+                if angles[paper] > angles[way] + 0.1
+                else "equal"
+                for way in ("tfi", "pde")
+            ]
+            hard = f"{folded[ways[3]]:.0f}" if ways[3] in folded else "-"
+            rows.append([family, split, *told, f"{folded[paper]:.0f}", hard])
+    head = [
+        "case",
+        "split",
+        "max angle against TFI",
+        "against PDE",
+        "folded, walls pasted",
+        "folded, MeshONet-hard",
+    ]
+    return table(head, rows) if rows else ""
 
 
 def figures(told: dict[str, Any]) -> list[str]:

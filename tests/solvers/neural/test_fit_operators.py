@@ -220,8 +220,26 @@ def test_a_device_that_is_not_there_is_refused() -> None:
     assert team("auto").device.type == "cpu"
 
 
-def test_half_precision_and_compilation_train_too(tmp_path: Path) -> None:
+def test_half_precision_trains_too(tmp_path: Path) -> None:
     whole = losses(fit(tmp_path / "m.safetensors"))
     mixed = losses(fit(tmp_path / "m.safetensors", replace(SMALL, amp=True)))
     assert mixed != whole
     assert mixed[-1] == pytest.approx(whole[-1], rel=0.2)
+
+
+def test_a_compiled_step_is_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Compiling takes a minute, so torch's compiler is stood in for by one that counts."""
+    steps: list[int] = []
+
+    def compiler(task: Task) -> object:
+        def step(rows: torch.Tensor, done: int) -> torch.Tensor:
+            steps.append(done)
+            return task(rows, done)
+
+        return step
+
+    monkeypatch.setattr(torch, "compile", compiler)
+    whole = losses(fit(tmp_path / "m.safetensors"))
+    assert not steps
+    assert losses(fit(tmp_path / "m.safetensors", replace(SMALL, compiled=True))) == whole
+    assert len(steps) == 24
