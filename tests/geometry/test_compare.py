@@ -61,3 +61,14 @@ def test_the_boundary_has_a_distance_of_its_own(node: tuple[int, int], on_it: bo
     moved = lattice(5, 4)
     moved[node] += [0.03, 0.04]
     assert compare(Grid(moved), Grid(lattice(5, 4))).boundary == pytest.approx(0.05 if on_it else 0.0)
+
+
+def test_the_cut_of_an_o_grid_is_no_boundary() -> None:
+    angle = -2 * np.pi * np.arange(9) / 8
+    ring = np.stack([np.outer(f(angle), np.linspace(1, 2, 5)) for f in (np.cos, np.sin)], axis=-1)
+    ring[-1] = ring[0]
+    moved = ring.copy()
+    moved[[0, -1], 1:-1] += 0.05
+    assert compare(Grid(moved, "o"), Grid(ring, "o")).boundary == 0.0
+    moved[3, 0] += 0.03
+    assert compare(Grid(moved, "o"), Grid(ring, "o")).boundary == pytest.approx(0.03 * 2**0.5)
