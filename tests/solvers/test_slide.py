@@ -86,7 +86,7 @@ def test_random_channels() -> None:
     rng = np.random.default_rng(4)
     x = np.linspace(0, 4, 141)
     level = np.sin(np.pi * x / 4) ** 2  # walls level at both ends
-    for _ in range(12):
+    for _ in range(6):
         waves = [
             sum(rng.normal(0, 0.05) * np.sin((k + 1) * x + rng.uniform(0, 6)) for k in range(4)) for _ in "ab"
         ]
