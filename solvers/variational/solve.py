@@ -119,8 +119,16 @@ def _nested(
     nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most if last == 0 else MOST)
     for k in range(last - 1, -1, -1):
         nodes = _evaluated(nodes, levels[k])
+        started = nodes.copy(order="K") if max(nodes.shape) > NEXT else None
         limits = (still, most) if k == 0 else (LOOSER * still, MOST)
         iterations, valid = descend(nodes, weights, *limits, periodic=periodic)
+        if (
+            started is not None
+            and _angles(started, boundary.topology)[0] < _angles(nodes, boundary.topology)[0]
+        ):
+            nodes = (
+                started  # kinks of the boundary reach further inside a grid that is not yet at its minimum
+            )
     return nodes, weights, iterations, valid
 
 

@@ -60,6 +60,13 @@ def test_angles_are_better_than_winslows(make, gain: float, n: int) -> None:  # 
         assert np.array_equal(edge, getattr(boundary, side))
 
 
+def test_kinks_do_not_reach_into_large_grids() -> None:
+    boundary = hexagon(300, 300)
+    reference, found = angle(winslow(boundary).grid.nodes), angle(solve(boundary).grid.nodes)
+    assert found.max <= reference.max + 0.2  # 135 is the boundary's own angle
+    assert found.mean < reference.mean - 7
+
+
 def test_largest_angles_are_far_below_winslows() -> None:
     assert angle(solve(bump(65, 65)).grid.nodes).max < 138
     assert angle(solve(wrench(65, 65)).grid.nodes).max < 138
