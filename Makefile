@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
-KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.[ch]' -o -name 'clones.h')
+KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.c' -o -name '*.h')
 
 .PHONY: help demo test test-clients fuzz kills lint train paper paper-quick bench docs clean
 
