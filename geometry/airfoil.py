@@ -197,6 +197,10 @@ class Airfoil:
         if topology == "auto":
             sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
             topology = "c" if sampling.viscous and sharp else "o"
+        if topology == "o" and (sampling.wake or sampling.wake_nodes) and not sampling.viscous:
+            raise InputError(
+                "an O grid has no wake", "leave --wake out, or add --topology c", source=self.name
+            )
         notes: tuple[str, ...] = ()
         if te == "wedge" and self.blunt:
             length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord

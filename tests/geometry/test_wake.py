@@ -1,6 +1,7 @@
 """C boundaries: the wake is one line used both ways, leaves along the bisector, and the far field is a C."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -170,3 +171,10 @@ def test_normalised_naca_sections_make_c_grids() -> None:
 def test_the_chord_of_a_boundary_from_elsewhere_is_that_of_the_body_not_of_the_wake() -> None:
     boundary = c()
     assert replace(boundary, chord=0.0).chord == pytest.approx(SHARP.chord, rel=1e-3)
+
+
+@pytest.mark.parametrize("asked", [{"wake": 5.0}, {"wake_nodes": 20}])
+def test_a_wake_asked_of_an_o_grid_is_not_ignored(asked: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match="an O grid has no wake; leave --wake out, or add --topology c"):
+        naca("0012").boundary(Sampling(ni=60, nj=20, topology="o", **asked))
+    naca("0012").boundary(Sampling(ni=60, nj=20, viscous=True, **asked))  # auto: some of a batch are C grids
