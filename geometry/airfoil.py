@@ -197,7 +197,7 @@ class Airfoil:
         if topology == "auto":
             sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
             topology = "c" if sampling.viscous and sharp else "o"
-        if topology == "o" and (sampling.wake or sampling.wake_nodes) and not sampling.viscous:
+        if topology == "o" and (sampling.wake or sampling.wake_nodes):
             raise InputError(
                 "an O grid has no wake", "leave --wake out, or add --topology c", source=self.name
             )
@@ -212,7 +212,7 @@ class Airfoil:
             return body._c_boundary(sampling, self, notes)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
-        radius, nj = sampling.far_field * body.chord, sampling.nj or DEFAULT_NJ
+        radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
         found = o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit)
         return replace(found, notes=notes) if notes else found
 
@@ -223,7 +223,7 @@ class Airfoil:
                 "a C grid needs a sharp trailing edge", "close it with --te wedge, or use topology o"
             )
         chord, ni = given.chord, sampling.ni or DEFAULT_NI
-        length = (sampling.wake or sampling.far_field) * chord
+        length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord
         cells = wake_cells(ni, sampling.wake_nodes, step, length)
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
@@ -239,7 +239,7 @@ class Airfoil:
             sampling.nj or DEFAULT_NJ,
             wake,
             centre,
-            sampling.far_field * chord,
+            sampling.radius * chord,
             axis=axis,
             curve=self.curve,
             name=given.name,

@@ -131,7 +131,13 @@ class Boundary:
 
         Given nodes are used as they are when the counts are absent or equal; others resample the
         curves through the nodes, corners kept.
+
+        Raises
+        ------
+        InputError
+            `sampling` asks for anything else: another topology, a spacing, a far field ...
         """
+        self._check_asked(sampling)
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
         if (ni, nj) == (self.ni, self.nj):
             return self
@@ -146,6 +152,34 @@ class Boundary:
         }
         parts = tuple(_rescaled(part, self, ni, nj) for part in self.parts)
         return replace(self, **edges, parts=parts, sensors=None, sampled=True)
+
+    def _check_asked(self, sampling: Sampling) -> None:
+        """Raise InputError when `sampling` asks for what given edges do not leave open."""
+        if sampling.topology not in ("auto", self.topology):
+            raise InputError(
+                f"edges of topology {self.topology} do not make topology {sampling.topology}",
+                "leave --topology out, or give the shape instead of its edges",
+                source=self.name,
+            )
+        implied = "curvature" if sampling.viscous else "auto"  # thin cells ask for that law by themselves
+        asked = {
+            "--spacing": sampling.spacing not in ("auto", implied),
+            "--le-spacing": sampling.le_spacing is not None,
+            "--te-spacing": sampling.te_spacing is not None,
+            "--far-field": sampling.far_field is not None,
+            "--corners": sampling.corners is not None,
+            "--te": sampling.te != "auto",
+            "--wake": sampling.wake is not None,
+            "--wake-nodes": sampling.wake_nodes is not None,
+            "--normalise": sampling.normalise,
+        }
+        for option, given in asked.items():
+            if given:
+                raise InputError(
+                    f"{option} says how a shape becomes edges, and these are edges already",
+                    f"leave {option} out, or give the shape",
+                    source=self.name,
+                )
 
     def _check_corners(self) -> None:
         corners = (

@@ -103,7 +103,19 @@ class Outline:
             raise InputError("only an airfoil can be normalised", "leave --normalise out", source=self.name)
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None:
+            if sampling.topology == "o":
+                raise InputError(
+                    "an O grid has no corners",
+                    "leave --corners out, or add --topology quad",
+                    source=self.name,
+                )
             topology = "quad"
+        if topology == "quad" and sampling.far_field is not None:
+            raise InputError(
+                "a four-sided domain has no far field",
+                "leave --far-field out, or add --topology o",
+                source=self.name,
+            )
         if topology == "quad" and sampling.spacing == "conformal":
             raise InputError("conformal spacing needs a body in a far field", "use another", source=self.name)
         return self._quad(sampling) if topology == "quad" else self._body(sampling)
@@ -188,7 +200,7 @@ class Outline:
         wall[-1] = wall[0]
         box = np.stack([curve.points.min(axis=0), curve.points.max(axis=0)])
         extent = float(np.ptp(box, axis=0).max())
-        return o_boundary(wall, nj, box.mean(axis=0), sampling.far_field * extent, curve, self.name, extent)
+        return o_boundary(wall, nj, box.mean(axis=0), sampling.radius * extent, curve, self.name, extent)
 
     def _clockwise(self) -> Curve:
         """Return the curve clockwise from the rightmost place, the middle of a straight right side."""

@@ -19,6 +19,7 @@ TRAILING_EDGES: tuple[TrailingEdge, ...] = get_args(TrailingEdge)
 
 DEFAULT_NI = 200
 DEFAULT_NJ = 100
+DEFAULT_FAR_FIELD = 15.0
 MOST_NODES = 100_000
 
 
@@ -34,7 +35,8 @@ class Sampling:
     spacing : law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
         (``tanh`` where a cell is asked for), and ``uniform`` elsewhere.
     le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
-    far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent.
+    far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent;
+        None is `DEFAULT_FAR_FIELD`, and all that shapes without one take.
     corners : the points, counted from 0, that become the corners of a quad domain.
     te : blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
         closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
@@ -56,7 +58,7 @@ class Sampling:
     spacing: Spacing = "auto"
     le_spacing: float | None = None
     te_spacing: float | None = None
-    far_field: float = 15.0
+    far_field: float | None = None
     corners: tuple[int, int, int, int] | None = None
     normalise: bool = False
     te: TrailingEdge = "auto"
@@ -75,10 +77,8 @@ class Sampling:
         for name, size in (("le_spacing", self.le_spacing), ("te_spacing", self.te_spacing)):
             if size is not None and not 0 < size <= 0.2:
                 raise InputError(f"{name} is {size:g} chords", "use more than 0 and at most 0.2")
-        if not 1.0 < self.far_field <= 1e6:
-            raise InputError(
-                f"the far field is at {self.far_field:g} chords", "use more than 1 and at most 1e6"
-            )
+        if not 1.0 < self.radius <= 1e6:
+            raise InputError(f"the far field is at {self.radius:g} chords", "use more than 1 and at most 1e6")
         if self.wake is not None and not 0.5 <= self.wake <= 1e6:
             raise InputError(f"the wake is {self.wake:g} chords long", "use 0.5 to 1e6")
         if self.wake_nodes is not None and not 3 <= self.wake_nodes <= MOST_NODES:
@@ -89,6 +89,11 @@ class Sampling:
             raise InputError(
                 f"corners {self.corners} are not four different points", "give four point indices"
             )
+
+    @property
+    def radius(self) -> float:
+        """Radius of the far field in chords."""
+        return DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
 
 
 def spacing_uniform(n: int) -> Floats:

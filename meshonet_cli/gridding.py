@@ -67,7 +67,7 @@ class Recipe:
         clock = Clock()
         boundary = item.what.boundary(self.sampling)
         if self.refine:
-            boundary = item.what.boundary(finer(self.sampling, boundary, 2**self.refine))
+            boundary = item.what.boundary(finer(self.sampling, item.what, boundary, 2**self.refine))
         clock.lap("boundary")
         recorder = Recorder()
         with listening(recorder) if self.history else contextlib.nullcontext():
@@ -149,10 +149,10 @@ def make_grids(
         members.append((report.item.label, report.history))
         _tell(recipe, session, report, path)
 
-    with whole_file(recipe.history) if recipe.history else contextlib.nullcontext() as file:
-        with listening(Live(session.status)) if session.live else contextlib.nullcontext():
-            deliver(found, recipe.grid, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
-        if file is not None:
+    with listening(Live(session.status)) if session.live else contextlib.nullcontext():
+        deliver(found, recipe.grid, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+    if recipe.history and members:
+        with whole_file(recipe.history) as file:
             write(file, members)
     return session.finish()
 
@@ -165,10 +165,14 @@ def _tell(recipe: Recipe, session: Session, report: Report, path: str) -> None:
     session.gate(report.item.label, [told for gate in recipe.gates if (told := gate.broken(report.quality))])
 
 
-def finer(sampling: Sampling, boundary: Boundary, k: int) -> Sampling:
-    """Return `sampling` with `k` times the cells of `boundary`, those along the wake of a C included."""
+def finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
+    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those along a wake included.
+
+    Edges that were given share their nodes out as they are.
+    """
     wakes = [part.stop - part.start for part in boundary.parts if part.name == "wake"]
-    nodes = k * wakes[0] + 1 if boundary.topology == "c" and wakes else sampling.wake_nodes
+    made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
+    nodes = k * wakes[0] + 1 if made else sampling.wake_nodes
     return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
 
 

@@ -84,7 +84,11 @@ TeSpacing = Annotated[
     ),
 ]
 FarField = Annotated[
-    float, typer.Option("--far-field", metavar="R", help="Distance of the far field, in chords.")
+    float | None,
+    typer.Option(
+        "--far-field", metavar="R", show_default=False,
+        help="Distance of the far field, in chords. [default: 15]",
+    ),
 ]
 Wake = Annotated[
     float | None,

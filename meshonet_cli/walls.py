@@ -289,7 +289,7 @@ class WithWalls:
         from geometry.errors import InputError
         from meshonet_cli.layers import march
 
-        for option, value in self.unused.items():
+        for option, value in {**self.unused, "--slide": self.edges.slide or None}.items():
             if value is not None:
                 raise InputError(f"{option} is of no use to a grid marched from the wall", f"drop {option}")
         return march(boundary, layers, self.edges.constant)

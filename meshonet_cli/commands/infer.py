@@ -56,7 +56,7 @@ def infer(
     growth: layer.Growth = None,
     constant_layers: wall.ConstantLayers = None,
     te: o.TrailingEdge = "auto",
-    far_field: o.FarField = 15.0,
+    far_field: o.FarField = None,
     wake: o.Wake = None,
     wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
@@ -81,7 +81,11 @@ def infer(
     from solvers.neural.inference import infer as operate
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
-    unused = {"--model": model, "--polish": None if polish == "auto" else polish}
+    unused = {
+        "--model": model,
+        "--polish": None if polish == "auto" else polish,
+        "--answer": None if answer == "valid" else answer,
+    }
     edges = wall.read_edges((), constant_layers, growth, res, layers)
     solver = partial(operate, model=model, polish=o.polish_steps(polish), answer=answer)
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}

@@ -71,7 +71,7 @@ def sample_boundary(
     le_spacing: o.LeSpacing = None,
     te_spacing: o.TeSpacing = None,
     te: o.TrailingEdge = "auto",
-    far_field: o.FarField = 15.0,
+    far_field: o.FarField = None,
     wake: o.Wake = None,
     wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",

@@ -106,7 +106,7 @@ def solve_pde(
     spacing_west: wall.SpacingWest = None,
     spacing_east: wall.SpacingEast = None,
     te: o.TrailingEdge = "auto",
-    far_field: o.FarField = 15.0,
+    far_field: o.FarField = None,
     wake: o.Wake = None,
     wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
@@ -150,6 +150,8 @@ def solve_pde(
             edges,
             {
                 "--tol": tol,
+                "--max-cycles": max_cycles,
+                "--history": history,
                 "--initial": initial,
                 "--coarse": None if coarse == "auto" else coarse,
                 "--refine": refine or None,

@@ -39,7 +39,7 @@ def tfi(
     spacing_west: wall.SpacingWest = None,
     spacing_east: wall.SpacingEast = None,
     te: o.TrailingEdge = "auto",
-    far_field: o.FarField = 15.0,
+    far_field: o.FarField = None,
     wake: o.Wake = None,
     wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
