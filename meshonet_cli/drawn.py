@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 
 import numpy as np
 
@@ -20,7 +21,8 @@ from meshonet_cli.session import Session
 NODES = 101
 """Nodes along xi and eta when nobody says, as in the paper."""
 
-PROCEDURAL = "procedural"
+RANDOM = {"procedural": "procedural", "four-sided": "four_sided"}
+"""Modules in `geometry.families` of shapes that have no parameter, by the family's name."""
 
 
 @dataclass(frozen=True)
@@ -29,12 +31,14 @@ class Draw:
 
     Parameters
     ----------
-    family : one of the paper's six, or None for random airfoils.
+    kind : name of the family.
+    family : one of the paper's six, or None for random shapes.
     low, high : range of the parameter.
     seed, index : make the random numbers of this member, whichever others are drawn.
     split : what it is kept for.
     """
 
+    kind: str
     family: Family | None
     low: float
     high: float
@@ -45,7 +49,7 @@ class Draw:
     @property
     def name(self) -> str:
         """Family and number."""
-        return f"{self.family.name if self.family else PROCEDURAL}-{self.index}"
+        return f"{self.kind}-{self.index}"
 
     @property
     def parameter(self) -> float:
@@ -57,9 +61,9 @@ class Draw:
         """Return the boundary with the node counts of `sampling`."""
         ni, nj = sampling.ni or NODES, sampling.nj or NODES
         if self.family is None:
-            from geometry.families.procedural import boundary
-
-            return boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
+            module = import_module(f"geometry.families.{RANDOM[self.kind]}")
+            drawn: Boundary = module.boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
+            return drawn
         origin = Origin((("parameter", self.parameter),), self.split)
         return replace(self.family.boundary(self.parameter, ni, nj), origin=origin)
 
@@ -80,13 +84,13 @@ def draws(
     InputError
         no such family, a range that is none or leaves the family's, members that cannot be split.
     """
-    if name not in (*FAMILIES, PROCEDURAL):
-        known = "use one of " + ", ".join((*FAMILIES, PROCEDURAL))
+    if name not in (*FAMILIES, *RANDOM):
+        known = "use one of " + ", ".join((*FAMILIES, *RANDOM))
         raise InputError(f"family {name!r} is not known", known, source="--family")
-    kind = None if name == PROCEDURAL else family(name)
+    kind = None if name in RANDOM else family(name)
     low, high = _range(spread, kind)
     session.batch = count > 1
-    every = [Draw(kind, low, high, seed, index) for index in range(count)]
+    every = [Draw(name, kind, low, high, seed, index) for index in range(count)]
     kept = _kept(every, kind, way, seed)
 
     def members() -> Iterator[Item[Draw]]:
@@ -101,7 +105,7 @@ def _kept(every: Sequence[Draw], kind: Family | None, way: str | None, seed: int
     if way is None:
         return [""] * len(every)
     if kind is None:
-        raise InputError("random airfoils have no parameter to split by", "leave it out", source="--split")
+        raise InputError("random shapes have no parameter to split by", "leave it out", source="--split")
     try:
         return split([draw.parameter for draw in every], way, seed=seed, low=kind.to_low)
     except InputError as error:
@@ -112,7 +116,7 @@ def _kept(every: Sequence[Draw], kind: Family | None, way: str | None, seed: int
 def _range(text: str | None, kind: Family | None) -> tuple[float, float]:
     if kind is None:
         if text is not None:
-            raise InputError("random airfoils have no parameter", "leave it out", source="--range")
+            raise InputError("random shapes have no parameter", "leave it out", source="--range")
         return 0.0, 1.0
     if text is None:
         return kind.low, kind.high

@@ -131,7 +131,7 @@ def test_a_family_gives_101_nodes_and_names(meshonet: Meshonet) -> None:
         (("--family", "arch", "--range", "2:1"), "--range: '2:1' is not a range; use A:B with A <= B"),
         (("--family", "arch", "--range", "a:b"), "--range: 'a:b' is not a range"),
         (("--family", "arch", "--range", "5:90"), "--range: 5:90 leaves what height"),
-        (("--family", "procedural", "--range", "0:1"), "--range: random airfoils have no parameter"),
+        (("--family", "procedural", "--range", "0:1"), "--range: random shapes have no parameter"),
         (("naca:0012", "--family", "arch"), "both a source and --family; give one of them"),
         (("naca:0012", "--range", "0:1"), "--range without --family; give --family as well, or drop --range"),
         (("naca:0012", "--split", "random"), "--split without --family; give --family as well"),
@@ -189,7 +189,7 @@ def test_splits_that_cannot_be_are_refused(meshonet: Meshonet) -> None:
     for words, told in (
         (("--family", "arch", "--count", "2", "--split", "random"), "--split: 2 members cannot be split"),
         (("--family", "arch", "--count", "9", "--split", "x"), "--split: split 'x' is not known; use interp"),
-        (("--family", "procedural", "--count", "9", "--split", "random"), "--split: random airfoils have no"),
+        (("--family", "procedural", "--count", "9", "--split", "random"), "--split: random shapes have no"),
     ):
         done = meshonet("sample-boundary", *words, "-o", "b.h5")
         assert done.code == 2

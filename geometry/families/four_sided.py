@@ -1,0 +1,164 @@
+"""Four-sided domains nobody drew, to train and test operators on.
+
+Between moved corners run sides that are straight, wavy, bowed, kinked, bumped or bulged by an arc of a
+circle; some domains are bent around a centre or warped as a whole. Nodes are spaced evenly or clustered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from geometry.boundary import Boundary
+from geometry.simple import find_crossing
+
+FINE = 601
+"""Points of a side before nodes are placed on it."""
+
+CHECKED = 65
+"""Nodes of a side at which a domain is judged, whatever its node counts: a seed is one shape at any size."""
+
+LEAST, MOST = np.radians(20.0), np.radians(174.0)
+"""Angles of the four corners."""
+
+LEAST_AREA = 0.05
+
+CORNERS = np.array([0.0, 1.0, 1.0 + 1.0j, 1.0j])
+ENDS = ((0, 1), (3, 2), (0, 3), (1, 2))
+"""Corners where south, north, west and east begin and end."""
+
+
+def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
+    """Return a random quad boundary of a simple outline, its corners open by 20 to 174 degrees."""
+    while True:
+        sides = _sides(rng)
+        laws = [_law(rng) for _ in sides]
+        if _usable([_placed(side, law, CHECKED) for side, law in zip(sides, laws, strict=True)]):
+            break
+    counts = ni, ni, nj, nj
+    nodes = [_points(_placed(*each)) for each in zip(sides, laws, counts, strict=True)]
+    south, north, west, east = nodes
+    west[[0, -1]], east[[0, -1]] = (south[0], north[0]), (south[-1], north[-1])
+    return Boundary(south, north, west, east, "quad")
+
+
+def _sides(rng: np.random.Generator) -> list[Complexes]:
+    """Return south, north, west and east, (FINE,) each."""
+    corners = CORNERS + rng.normal(0, 0.13, 4) + 1j * rng.normal(0, 0.13, 4)
+    stretch = np.exp(0.5 * rng.uniform(-0.9, 0.9))
+    corners = corners.real * stretch + 1j * corners.imag / stretch
+    swing = rng.choice([0.35, 0.7, 1.0], p=[0.4, 0.35, 0.25])
+    sides = [_side(corners[a], corners[b], swing, rng) for a, b in ENDS]
+    if rng.random() < 0.35:
+        sides = _bent(sides, rng)
+    if rng.random() < 0.25:
+        middle = np.concatenate(sides).mean()
+        by = rng.normal(0, 0.12) * np.exp(2j * np.pi * rng.random())
+        sides = [(side - middle) + by * (side - middle) ** 2 for side in sides]
+    return sides
+
+
+def _side(a: complex, b: complex, swing: float, rng: np.random.Generator) -> Complexes:
+    """Return a curve from `a` to `b`, one or two deflections off the straight line, scaled by `swing`."""
+    t = np.linspace(0.0, 1.0, FINE)
+    kinds = rng.choice(len(DEFLECTIONS), size=rng.choice([1, 2], p=[2 / 3, 1 / 3]), replace=False, p=SHARES)
+    height = sum(DEFLECTIONS[kind](t, rng) for kind in kinds)
+    return np.asarray(a + (b - a) * (t + 1j * swing * height))
+
+
+def _straight(t: Floats, rng: np.random.Generator) -> Floats:  # noqa: ARG001 - as the others
+    return 0.0 * t
+
+
+def _wave(t: Floats, rng: np.random.Generator) -> Floats:
+    k = np.arange(1, 9)
+    heights = rng.normal(size=8) / k ** rng.uniform(1.2, 2.2) * rng.uniform(0.05, 0.5)
+    return np.asarray(heights @ np.sin(np.pi * np.outer(k, t)))
+
+
+def _bow(t: Floats, rng: np.random.Generator) -> Floats:
+    return np.asarray(rng.uniform(-1.3, 1.4) * t * (1 - t))
+
+
+def _kinks(t: Floats, rng: np.random.Generator) -> Floats:
+    count = rng.integers(1, 4)
+    at, heights = np.sort(rng.uniform(0.12, 0.88, count)), rng.uniform(-0.3, 0.3, count)
+    return np.interp(t, np.r_[0.0, at, 1.0], np.r_[0.0, heights, 0.0])
+
+
+def _bump(t: Floats, rng: np.random.Generator) -> Floats:
+    at, width = rng.uniform(0.2, 0.8), rng.uniform(0.05, 0.25)
+    bell = np.exp(-(((t - at) / width) ** 2))
+    return np.asarray(rng.uniform(-0.35, 0.4) * (bell - bell[0] * (1 - t) - bell[-1] * t))
+
+
+def _arc(t: Floats, rng: np.random.Generator) -> Floats:
+    """Return part of an ellipse that meets the side at right angles."""
+    at, radius = rng.uniform(0.3, 0.7), rng.uniform(0.1, 0.28)
+    rise = np.sqrt(np.maximum(1.0 - ((t - at) / radius) ** 2, 0.0))
+    return np.asarray(1.5 * radius * rng.uniform(-0.6, 0.6) * rise)
+
+
+DEFLECTIONS: tuple[Callable[[Floats, np.random.Generator], Floats], ...] = (
+    _straight, _wave, _bow, _kinks, _bump, _arc,
+)  # fmt: skip
+SHARES = (0.12, 0.26, 0.16, 0.2, 0.16, 0.1)
+
+
+def _bent(sides: list[Complexes], rng: np.random.Generator) -> list[Complexes]:
+    """Return the sides with the x axis bent to an arc of .3 to 3.6 radians."""
+    every = np.concatenate(sides)
+    length, height = np.ptp(every.real), np.ptp(every.imag)
+    radius = max(length / rng.uniform(0.3, 3.6), height * rng.uniform(0.6, 1.5))
+    up = rng.choice([-1.0, 1.0])
+    middle = 0.5 * (every.real.min() + every.real.max())
+    inner = every.imag.min() if up > 0 else every.imag.max()
+    return [
+        (radius + up * (side.imag - inner)) * np.exp(1j * up * (np.pi / 2 - (side.real - middle) / radius))
+        for side in sides
+    ]
+
+
+def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
+    """Return a map of [0, 1] to itself that says where nodes lie: mostly even, else clustered."""
+    draw = rng.random()
+    if draw < 0.25:
+        shift = rng.uniform(-0.12, 0.12)
+        return lambda q: np.asarray(q + shift * np.sin(2 * np.pi * q))
+    if draw < 0.4:
+        pull = rng.uniform(0.3, 1.6) * rng.choice([-1.0, 1.0])
+        return lambda q: np.asarray(np.expm1(pull * q) / np.expm1(pull))
+    if draw < 0.5:
+        both = rng.uniform(0.3, 1.4)
+        return lambda q: np.asarray(0.5 * (1 + np.tanh(both * (2 * q - 1)) / np.tanh(both)))
+    return lambda q: q
+
+
+def _placed(side: Complexes, law: Callable[[Floats], Floats], n: int) -> Complexes:
+    """Return n nodes on a side, by arc length."""
+    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(side)))])
+    at = law(np.linspace(0.0, 1.0, n)) * length[-1]
+    return np.interp(at, length, side.real) + 1j * np.interp(at, length, side.imag)
+
+
+def _usable(sides: list[Complexes]) -> bool:
+    south, north, west, east = sides
+    outline = np.concatenate([south[:-1], east[:-1], north[:0:-1], west[:0:-1]])
+    area = 0.5 * (np.conj(outline) * np.roll(outline, -1)).imag.sum()
+    if area <= LEAST_AREA:
+        return False
+    corners = (
+        (south[1] - south[0], west[1] - west[0]),
+        (east[1] - east[0], south[-2] - south[-1]),
+        (north[-2] - north[-1], east[-2] - east[-1]),
+        (west[-2] - west[-1], north[1] - north[0]),
+    )
+    if not all(LEAST < np.angle(v / u) < MOST for u, v in corners):
+        return False
+    return find_crossing(_points(outline)) is None
+
+
+def _points(z: Complexes) -> Floats:
+    return np.stack([z.real, z.imag], axis=-1)

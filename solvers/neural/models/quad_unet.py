@@ -1,0 +1,119 @@
+"""The quad network in torch: a U-Net on a small grid, equivariant under the eight relabellings of a quad.
+
+Ronneberger, Fischer, Brox, U-Net, MICCAI 2015, with residual blocks and group convolutions
+(`solvers.neural.quads.symmetry`). Inference in numpy is `solvers.neural.quads.network`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+from solvers.neural.quads import kernels
+from solvers.neural.quads.features import FEATURES
+from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
+
+HEADS = 2
+"""Answers: Winslow's grid and the variational one."""
+
+
+class GroupConvolution(nn.Module):
+    """A convolution of `into` sets of channels to `out`, zero outside the grid.
+
+    Parameters
+    ----------
+    gain : of the random weights at the start, over He's.
+    """
+
+    places: Tensor
+
+    def __init__(self, into: int, out: int, size: int = 3, stride: int = 1, gain: float = 1.0) -> None:
+        super().__init__()
+        spread = gain * (2.0 / (into * ORDER * size * size)) ** 0.5
+        self.weight = nn.Parameter(spread * torch.randn(out, into, ORDER, size, size))
+        self.bias = nn.Parameter(torch.zeros(out))
+        self.stride, self.padding = stride, size // 2
+        self.register_buffer("places", torch.from_numpy(kernels.table(size)), persistent=False)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Return (batch, 8 out, ...) for `x` (batch, 8 in, n, n)."""
+        kernel = kernels.convolution(self.weight, self.places, torch)
+        bias = self.bias.repeat_interleave(ORDER)
+        return functional.conv2d(x, kernel, bias, stride=self.stride, padding=self.padding)
+
+
+class Block(nn.Module):
+    """x + b(silu(a(silu(x))))."""
+
+    def __init__(self, width: int) -> None:
+        super().__init__()
+        self.a, self.b = GroupConvolution(width, width), GroupConvolution(width, width, gain=0.3)
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Return as many channels as `x` has."""
+        more: Tensor = self.b(functional.silu(self.a(functional.silu(x))))
+        return x + more
+
+
+class QuadUNet(nn.Module):
+    """Features of a grid to displacements of its nodes.
+
+    Parameters
+    ----------
+    widths : sets of eight channels on each level, the finest first; each level has every second node.
+    blocks : residual blocks on each level, on the way down and on the way up.
+    """
+
+    seen: Tensor
+    elements: Tensor
+
+    def __init__(self, widths: Sequence[int], blocks: Sequence[int]) -> None:
+        super().__init__()
+        count = len(widths)
+        self.lift = nn.Parameter(FEATURES**-0.5 * torch.randn(widths[0], FEATURES))
+        self.lift_bias = nn.Parameter(torch.zeros(widths[0]))
+        pairs = list(pairwise(widths))
+        self.down = nn.ModuleList(GroupConvolution(a, b, stride=2) for a, b in pairs)
+        self.up = nn.ModuleList(GroupConvolution(b, a, size=1) for a, b in pairs)
+        self.before = nn.ModuleList(_blocks(widths[k], blocks[k]) for k in range(count))
+        self.after = nn.ModuleList(_blocks(widths[k], blocks[k]) for k in range(count - 1))
+        self.last = GroupConvolution(widths[0], widths[0])
+        self.project = nn.Parameter(0.1 * widths[0] ** -0.5 * torch.randn(HEADS, 2, widths[0]))
+        self.register_buffer("seen", torch.tensor(SEEN, dtype=torch.float32), persistent=False)
+        self.register_buffer("elements", torch.tensor(ELEMENTS, dtype=torch.float32), persistent=False)
+
+    def forward(self, features: Tensor) -> Tensor:
+        """Return (batch, heads, n, n), complex, for `features` (batch, n, n, FEATURES); zero on the rim."""
+        x = features.movedim(-1, 1)  # channels last in memory, where convolutions are fastest
+        lift = kernels.lift(self.lift, self.seen, torch)
+        x = functional.conv2d(x, lift[:, :, None, None], self.lift_bias.repeat_interleave(ORDER))
+        skipped = []
+        for before, down in zip(self.before, self.down, strict=False):
+            x = before(x)
+            skipped.append(x)
+            x = down(functional.silu(x))
+        x = self.before[-1](x)
+        for k in range(len(skipped) - 1, -1, -1):
+            size = skipped[k].shape[-2:]
+            x = functional.interpolate(self.up[k](x), size=size, mode="bilinear", align_corners=True)
+            x = self.after[k](x + skipped[k])
+        x = functional.silu(self.last(functional.silu(x)))
+        project = kernels.projection(self.project, self.elements, torch)
+        answer = functional.conv2d(x, project[:, :, None, None]) * _bubble(x.shape[-1], x)
+        return torch.complex(answer[:, 0::2].contiguous(), answer[:, 1::2].contiguous())
+
+
+def _blocks(width: int, count: int) -> nn.Sequential:
+    return nn.Sequential(*(Block(width) for _ in range(count)))
+
+
+def _bubble(n: int, like: Tensor) -> Tensor:
+    """Return (n, n): 0 on the rim, rising to nearly 1 over a few nodes."""
+    steps = torch.arange(n, dtype=like.dtype, device=like.device)
+    away = torch.minimum(steps, n - 1 - steps)
+    rise = away / (away + 2.0)
+    return rise[:, None] * rise

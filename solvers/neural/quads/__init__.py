@@ -1,0 +1,1 @@
+"""The operator for four-sided domains: a network on a small grid that knows the symmetries of a quad."""
