@@ -5,8 +5,9 @@ describe. So the boundary is thinned to the coarse counts, a solver works there,
 
     x = TFI + S (x_c - TFI_c) Tᵀ
 
-with S and T the matrices of cubic splines along xi and eta (`solvers.spline`). Thinned edges are taken
-between the given nodes at equal steps of their index, so that both interpolations agree at the coarse nodes.
+with S and T the matrices of cubic splines along xi and eta (`solvers.spline`), which may turn at the lines
+that leave kinks of the boundary. Thinned edges are taken between the given nodes at equal steps of their
+index, so that both interpolations agree at the coarse nodes.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from geometry.grid import Grid
 from geometry.quality import count_folded
 from solvers._combine import add_rows
 from solvers.solution import Solution
-from solvers.spline import bending, places, spline_matrix
+from solvers.spline import Kinks, bending, kinked_matrix, kinks, places, spline_matrix
 from solvers.tfi import Four, interpolate, parameters
 
 AUTOMATIC = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
@@ -37,10 +38,10 @@ Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of t
 LEAST = 9
 """Fewest coarse nodes along a direction that describe anything."""
 
-REACH = 1.5
-"""Coarse cells to each side of a kink that are relaxed at full resolution."""
+REACH = 3.0
+"""Coarse cells to each side of a kink, and inwards, that are relaxed at full resolution."""
 
-SWEEPS = 2
+SWEEPS = 4
 """Sweeps there."""
 
 
@@ -54,8 +55,8 @@ def solve_coarse(
     boundary : quad, o or c.
     method : a solver of boundary to solution.
     n : coarse nodes along each direction that has more.
-    smooth : whether to end with sweeps of Winslow's equations at full resolution around the lines that leave
-        kinks of the boundary (elsewhere they change nothing that counts).
+    smooth : whether to end a solution of Winslow's equations with sweeps at full resolution around kinks of
+        the boundary (elsewhere they change nothing that counts).
 
     Returns
     -------
@@ -76,7 +77,7 @@ def solve_coarse(
     begun = time.perf_counter()
     solution = method(thinned(boundary, *counts))
     nodes = evaluate(solution.grid.nodes, boundary)
-    if smooth:
+    if smooth and solution.method == "winslow":
         sweep_kinks(nodes, boundary, counts)
     facts = {**solution.grid.provenance, "coarse": counts}
     grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
@@ -134,36 +135,61 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     nodes = planar_nodes(boundary.ni, boundary.nj)
     interpolate(nodes[..., 0], nodes[..., 1], fine, along)
     first, weights = places(m, boundary.ni)
-    across = np.ascontiguousarray(spline_matrix(n, boundary.nj).T)
+    xi, eta = _kinks(boundary, 0, m), _kinks(boundary, 1, n)
+    across = spline_matrix(n, boundary.nj) if eta is None else kinked_matrix(n, boundary.nj, eta)
+    bends = bending(m, periodic) if xi is None else xi.bends
+    across = np.ascontiguousarray(across.T)
     for c in (0, 1):
         values = (coarse[..., c] - base[..., c]) @ across
-        add_rows(nodes[..., c], first, weights, values, bending(m, periodic) @ values, periodic)
+        add_rows(nodes[..., c], first, weights, values, bends @ values, periodic)
+        for k in range(0 if xi is None else len(xi.rows)):
+            nodes[xi.rows[k], 1:-1, c] += np.outer(xi.ramps[k], xi.jumps[k] @ values[:, 1:-1])
     if periodic:
         nodes[-1] = nodes[0]
     return nodes
 
 
-def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> bool:
-    """Relax planar `nodes` in place by sweeps of Winslow's equations around the lines that leave kinks.
+def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks | None:
+    """Return the kinks of the lines along `axis`, for m coarse nodes on them; None without any.
 
-    Transfinite interpolation carries a kink of an edge along the whole line that starts there, and no spline
-    through the `counts` coarse nodes takes it out again. Returns whether there are kinks.
+    A kink of an edge reaches inside along the line that leaves it.
+    """
+    if boundary.topology == "o" or m < 5:
+        return None
+    at = _corners(boundary, axis)
+    return kinks(m, (boundary.ni, boundary.nj)[axis], at) if len(at) else None
+
+
+def _corners(boundary: Boundary, axis: int) -> Indices:
+    """Return the indices along `axis` at which one of the two edges along it has a corner."""
+    sides = (("south", "north"), ("west", "east"))[axis]
+    return np.unique(np.concatenate([find_corners(getattr(boundary, side)) for side in sides]))
+
+
+def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> bool:
+    """Relax planar `nodes` in place by sweeps of Winslow's equations around the kinks of the boundary.
+
+    There the solution is not smooth, and a spline through the `counts` coarse nodes smears it. Returns
+    whether there are kinks.
     """
     any_kinks = False
+    steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]
     for axis, sides in ((0, ("south", "north")), (1, ("west", "east"))):
         if boundary.topology == "o" and axis == 1:
             continue
-        kinks = np.concatenate([find_corners(getattr(boundary, side)) for side in sides])
-        n = nodes.shape[axis]
-        reach = int(np.ceil(REACH * (n - 1) / (counts[axis] - 1)))
-        any_kinks = any_kinks or len(kinks) > 0
-        for start, stop in _joined(np.unique(kinks), reach, n):
-            if axis == 0:
-                _sweep(nodes[start:stop])
-            else:
-                strip = as_planar(nodes[:, start:stop])
-                _sweep(strip)
-                nodes[:, start:stop] = strip
+        n, lines = nodes.shape[axis], nodes.shape[1 - axis]
+        reach, depth = (int(np.ceil(REACH * step)) for step in (steps[axis], steps[1 - axis]))
+        for side in sides:
+            corners = find_corners(getattr(boundary, side))
+            any_kinks = any_kinks or len(corners) > 0
+            inside = (
+                slice(0, depth + 1) if side in {"south", "west"} else slice(max(lines - depth - 1, 0), lines)
+            )
+            for start, stop in _joined(corners, reach, n):
+                window = (slice(start, stop), inside) if axis == 0 else (inside, slice(start, stop))
+                patch = as_planar(nodes[window])
+                _sweep(patch)
+                nodes[window] = patch
     return any_kinks
 
 

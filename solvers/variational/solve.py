@@ -133,11 +133,12 @@ def _nested(
 
 
 def _evaluated(nodes: Floats, boundary: Boundary) -> Floats:
-    """Return the grid `nodes` at the counts of `boundary`, smooth at lines that leave kinks."""
-    counts = nodes.shape[0], nodes.shape[1]
+    """Return the grid `nodes` at the counts of `boundary`; around a body smooth at lines that leave kinks."""
     plain = evaluate(nodes, boundary)
+    if boundary.topology != "o":
+        return plain
     swept = plain.copy(order="K")
-    if not sweep_kinks(swept, boundary, counts):
+    if not sweep_kinks(swept, boundary, (nodes.shape[0], nodes.shape[1])):
         return plain
     return plain if count_folded(swept) else swept
 
