@@ -26,7 +26,7 @@ from geometry.grid import Grid
 from geometry.quality import count_folded
 from solvers._combine import add_rows
 from solvers.solution import Solution
-from solvers.spline import Kinks, bending, kinked_matrix, kinks, places, spline_matrix
+from solvers.spline import Kinks, bending, kinked_matrix, kinks, places
 from solvers.tfi import Four, interpolate, parameters
 
 AUTOMATIC = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
@@ -136,34 +136,28 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     interpolate(nodes[..., 0], nodes[..., 1], fine, along)
     first, weights = places(m, boundary.ni)
     xi, eta = _kinks(boundary, 0, m), _kinks(boundary, 1, n)
-    across = spline_matrix(n, boundary.nj) if eta is None else kinked_matrix(n, boundary.nj, eta)
-    bends = bending(m, periodic) if xi is None else xi.bends
-    across = np.ascontiguousarray(across.T)
+    across = np.ascontiguousarray(kinked_matrix(n, boundary.nj, eta).T)
     for c in (0, 1):
         values = (coarse[..., c] - base[..., c]) @ across
-        add_rows(nodes[..., c], first, weights, values, bends @ values, periodic)
-        for k in range(0 if xi is None else len(xi.rows)):
-            nodes[xi.rows[k], 1:-1, c] += np.outer(xi.ramps[k], xi.jumps[k] @ values[:, 1:-1])
+        add_rows(nodes[..., c], first, weights, values, xi.bends @ values, periodic)
+        for rows, ramp, jump in zip(xi.rows, xi.ramps, xi.jumps, strict=True):
+            nodes[rows, 1:-1, c] += np.outer(ramp, jump @ values[:, 1:-1])
     if periodic:
         nodes[-1] = nodes[0]
     return nodes
 
 
-def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks | None:
-    """Return the kinks of the lines along `axis`, for m coarse nodes on them; None without any.
+def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks:
+    """Return how the lines along `axis` bend and turn that have m coarse nodes.
 
-    A kink of an edge reaches inside along the line that leaves it.
+    A kink of an edge reaches inside along the line that leaves it; around a body it is smoothed instead.
     """
+    n = (boundary.ni, boundary.nj)[axis]
     if boundary.topology == "o" or m < 5:
-        return None
-    at = _corners(boundary, axis)
-    return kinks(m, (boundary.ni, boundary.nj)[axis], at) if len(at) else None
-
-
-def _corners(boundary: Boundary, axis: int) -> Indices:
-    """Return the indices along `axis` at which one of the two edges along it has a corner."""
+        periodic = boundary.topology == "o" and axis == 0
+        return Kinks(bending(m, periodic), np.empty((0, m)), (), ())
     sides = (("south", "north"), ("west", "east"))[axis]
-    return np.unique(np.concatenate([find_corners(getattr(boundary, side)) for side in sides]))
+    return kinks(m, n, np.unique(np.concatenate([find_corners(getattr(boundary, side)) for side in sides])))
 
 
 def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> bool:

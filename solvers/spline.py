@@ -77,6 +77,8 @@ def kinks(m: int, n: int, at: NDArray[np.intp]) -> Kinks:
 
     Kinks so near to each other that knots do not tell them apart share what they have together.
     """
+    if len(at) == 0:
+        return Kinks(bending(m, False), np.empty((0, m)), (), ())
     scale = (m - 1) / (n - 1)
     knots, places_ = np.arange(float(m)), at * scale
     ramps = 0.5 * np.abs(knots[:, None] - places_)

@@ -1,3 +1,5 @@
+from typing import TypeAlias
+
 from geometry.arrays import Floats
 
 def workspace(ni: int, nj: int) -> int: ...
@@ -13,9 +15,11 @@ def energy(
     work: Floats,
 ) -> tuple[float, float]: ...
 
+Modes: TypeAlias = tuple[Floats, Floats]
+
 class Minimiser:
     def __init__(
-        self, ni: int, nj: int, periodic: bool, rows: Floats, columns: Floats, scale: Floats, rest: float
+        self, ni: int, nj: int, periodic: bool, rows: Modes, columns: Modes, scale: Floats, rest: float
     ) -> None: ...
     def run(
         self,

@@ -10,15 +10,19 @@ cdef extern from "variational_kernel.h":
         double epsilon
         int periodic
         const double *relief
+    ctypedef struct Half:
+        Py_ssize_t nodes
+        Py_ssize_t modes
+        const float *q
+        const float *q_t
+    ctypedef struct Transform:
+        Half even
+        Half odd
     ctypedef struct Spectrum:
         Py_ssize_t mi
         Py_ssize_t mj
-        Py_ssize_t ki
-        Py_ssize_t kj
-        const float *q_i
-        const float *q_i_t
-        const float *q_j
-        const float *q_j_t
+        Transform xi
+        Transform eta
         const float *scale
         float rest
     ctypedef struct Descent:
@@ -77,34 +81,36 @@ def energy(const double[:, :, ::1] z, double aspect, double shape, double smooth
 cdef class Minimiser:
     """Descents of the functional over nodes of one shape, (ni, nj).
 
-    `rows` is the transform along xi (mi, ki), `columns` (mj, kj) that along eta, `scale` (2, ki, kj) what divides by
-    the symbol of the Hessian for moves along xi and along eta, and `rest` what divides the modes that are left out.
+    `rows` are the modes along xi, even and odd, over half of its free nodes each, (nodes, modes) the two; `columns`
+    those along eta; `scale` (2, modes of xi, modes of eta) what divides by the symbol of the Hessian for moves along
+    xi and along eta, and `rest` what divides the modes that are left out.
     """
 
     cdef Descent state
     cdef object held
 
     def __init__(self, Py_ssize_t ni, Py_ssize_t nj, bint periodic, rows, columns, scale, float rest):
-        cdef float[:, ::1] q_i = np.ascontiguousarray(rows, np.float32), q_i_t = np.ascontiguousarray(rows.T, np.float32)
-        cdef float[:, ::1] q_j = _padded(columns), q_j_t = _padded(columns.T)
-        cdef float[:, :, ::1] factors = np.ascontiguousarray(scale, np.float32)
+        cdef float[:, :, ::1] factors
         cdef size_t doubles = 0, floats = 0
         cdef double[::1] room
         cdef float[::1] small
         cdef Spectrum *s = &self.state.spectrum
-        s.mi, s.ki, s.mj, s.kj = rows.shape[0], rows.shape[1], columns.shape[0], columns.shape[1]
+        held = [_half(&s.xi.even, rows[0]), _half(&s.xi.odd, rows[1])]
+        held += [_half(&s.eta.even, columns[0]), _half(&s.eta.odd, columns[1])]
+        s.mi, s.mj = s.xi.even.nodes + s.xi.odd.nodes, s.eta.even.nodes + s.eta.odd.nodes
         if s.mi != (ni - 1 if periodic else ni - 2) or s.mj != nj - 2:
             raise ValueError("transforms of another size")
-        if factors.shape[0] != 2 or factors.shape[1] != s.ki or factors.shape[2] != s.kj:
+        if scale.shape != (2, s.xi.even.modes + s.xi.odd.modes, s.eta.even.modes + s.eta.odd.modes):
             raise ValueError("a scale of another size")
-        s.q_i, s.q_i_t, s.q_j, s.q_j_t = &q_i[0, 0], &q_i_t[0, 0], &q_j[0, 0], &q_j_t[0, 0]
+        split = s.eta.even.modes
+        factors = np.concatenate([_padded(scale[..., :split]), _padded(scale[..., split:])], axis=-1)
         s.scale, s.rest = &factors[0, 0, 0], rest
         self.state.ni, self.state.nj, self.state.first = ni, nj, 0 if periodic else 1
         self.state.weights.periodic = periodic
         descent_sizes(&self.state, &doubles, &floats)
         room, small = np.empty(doubles), np.empty(floats, np.float32)
         descent_place(&self.state, &room[0], &small[0])
-        self.held = (q_i, q_i_t, q_j, q_j_t, factors, room, small)
+        self.held = (held, factors, room, small)
 
     def run(self, double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, const double[::1] relief,
             double still, double reach, int most):
@@ -139,9 +145,18 @@ cdef const double *_relief(const double[::1] relief, Py_ssize_t ni) except? NULL
     return &relief[0]
 
 
+cdef _half(Half *half, matrix):
+    """Set `half` to the modes in `matrix` (nodes, modes); return what must be kept alive."""
+    cdef float[:, ::1] q = _padded(matrix), q_t = _padded(matrix.T)
+    half.nodes, half.modes = matrix.shape
+    half.q = &q[0, 0] if q.shape[0] and q.shape[1] else NULL
+    half.q_t = &q_t[0, 0] if q_t.shape[0] and q_t.shape[1] else NULL
+    return q, q_t
+
+
 def _padded(matrix):
-    """Return `matrix` in single precision with zeros up to whole panels of columns."""
-    width = -(-matrix.shape[1] // 32) * 32
-    result = np.zeros((matrix.shape[0], width), np.float32)
-    result[:, : matrix.shape[1]] = matrix
+    """Return `matrix` (..., n) in single precision with zeros up to whole panels of columns."""
+    *rows, n = matrix.shape
+    result = np.zeros((*rows, (n + 31) // 32 * 32), np.float32)
+    result[..., :n] = matrix
     return result

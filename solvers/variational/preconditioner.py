@@ -8,6 +8,7 @@ compiled descent applies them in the frame of each node, by products of matrices
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 
@@ -43,27 +44,37 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
         for own, other in ((along, across), (across, along))
     ]
     scale = (ni - 1) * (nj - 1) / np.stack(symbol)
-    left_out = rows.shape[0] * columns.shape[0] > scale[0].size
-    rest = float(scale[:, -1, -1].min()) if left_out else 0.0
+    left_out = (ni - 1 if periodic else ni - 2) * (nj - 2) > scale[0].size
+    rest = float(scale.min()) if left_out else 0.0
     return Minimiser(ni, nj, periodic, rows, columns, scale - rest, rest)
 
 
-@lru_cache(maxsize=16)
-def _sines(n: int) -> tuple[Floats, Floats]:
-    """Return the sines (n-1, modes) that vanish at the ends of n cells; minus their second differences."""
-    k = np.arange(1, n)
-    modes = k[:MODES]
-    matrix = np.sqrt(2.0 / n) * np.sin(np.pi / n * (np.outer(k, modes) % (2 * n)))
-    return matrix, 4.0 * np.sin(np.pi * modes / (2 * n)) ** 2
+Modes: TypeAlias = tuple[Floats, Floats]
+"""Even and odd modes about the middle, (nodes, modes) each, over the first half of the nodes."""
 
 
 @lru_cache(maxsize=16)
-def _fourier(n: int) -> tuple[Floats, Floats]:
-    """Return `_sines` for n periodic nodes: a constant, cosines and sines, by wave number."""
-    k = np.arange(n)
-    waves = (np.arange(n) + 1)[:MODES] // 2
-    phase = 2.0 * np.pi / n * (np.outer(k, waves) % n)
-    matrix = np.where(np.arange(len(waves)) % 2 == 1, np.cos(phase), np.sin(phase))
-    matrix[:, 0] = 1.0
-    matrix /= np.sqrt((matrix**2).sum(axis=0))
-    return matrix, 4.0 * np.sin(np.pi * waves / n) ** 2
+def _sines(n: int) -> tuple[Modes, Floats]:
+    """Return the sines that vanish at the ends of n cells; minus their second differences, even ones first."""
+    waves, k = np.arange(1, n)[:MODES], np.arange(1, n)
+    even, odd = (np.sin(np.pi / n * (np.outer(k, half) % (2 * n))) for half in (waves[::2], waves[1::2]))
+    values = 4.0 * np.sin(np.pi * np.concatenate([waves[::2], waves[1::2]]) / (2 * n)) ** 2
+    return (_folded(even, True), _folded(odd, False)), values
+
+
+@lru_cache(maxsize=16)
+def _fourier(n: int) -> tuple[Modes, Floats]:
+    """Return `_sines` for n periodic nodes: a constant and cosines, and sines, about the middle of a cell."""
+    cosines, sines = np.arange((n + 1) // 2)[: MODES // 2], np.arange(1, n // 2 + 1)[: MODES // 2]
+    phase = 2.0 * np.pi / n * (np.arange(n) + 0.5)
+    even, odd = np.cos(np.outer(phase, cosines)), np.sin(np.outer(phase, sines))
+    values = 4.0 * np.sin(np.pi * np.concatenate([cosines, sines]) / n) ** 2
+    return (_folded(even, True), _folded(odd, False)), values
+
+
+def _folded(modes: Floats, even: bool) -> Floats:
+    """Return the first half of even or odd `modes` (n, m), of length 1 as they are when folded."""
+    n = len(modes)
+    half = modes[: (n + 1) // 2 if even else n // 2].copy()
+    half[: n // 2] *= np.sqrt(2.0)
+    return np.asarray(half / np.sqrt((half**2).sum(axis=0)))

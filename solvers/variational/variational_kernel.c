@@ -67,10 +67,10 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
 {
     const Spectrum *s = &d->spectrum;
-    const size_t free_nodes = (size_t)(s->mi * s->mj), widest = (size_t)padded(s->mj > s->kj ? s->mj : s->kj);
-    const size_t tallest = (size_t)(s->mi > s->ki ? s->mi : s->ki), deepest = (size_t)(s->mi + s->mj + PANEL);
+    const ptrdiff_t nodes = values_of(&s->eta), modes = modes_of(&s->eta);
+    const size_t free_nodes = (size_t)(s->mi * s->mj), widest = (size_t)(nodes > modes ? nodes : modes);
     *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj) + 4 * free_nodes;
-    *floats = (8 + 4 * PAIRS) * free_nodes + 6 * tallest * widest + PANEL * deepest;
+    *floats = (8 + 4 * PAIRS) * free_nodes + 6 * (size_t)s->mi * widest + PANEL * (size_t)(s->mi + s->mj + PANEL);
 }
 
 void descent_place(Descent *d, double *doubles, float *floats)
@@ -95,33 +95,66 @@ static double evaluate(Descent *d, const double *at, double *gradient, double *s
     return value;
 }
 
-/* result = P gradient; return the largest part of it in local cell sizes. */
+/* Row i of the gradient in the frames of its nodes, as rows x and y. */
+MESHONET_INLINE void into_frame(const Descent *d, const double *restrict gradient, ptrdiff_t i, float *restrict x,
+                                float *restrict y)
+{
+    const ptrdiff_t mj = d->spectrum.mj, n = d->spectrum.mi * mj, k = i * mj;
+    const float *restrict fx = d->frame + k, *restrict fy = fx + n;
+    const double *restrict gx = gradient + k, *restrict gy = gx + n;
+    for (ptrdiff_t j = 0; j < mj; j++) {
+        const float px = (float)gx[j], py = (float)gy[j];
+        x[j] = fx[j] * px + fy[j] * py, y[j] = fx[j] * py - fy[j] * px;
+    }
+}
+
+/* Row i of the result from rows x and y. */
+MESHONET_INLINE void out_of_frame(const Descent *d, const float *restrict x, const float *restrict y, ptrdiff_t i,
+                                  float *restrict result)
+{
+    const ptrdiff_t mj = d->spectrum.mj, n = d->spectrum.mi * mj, k = i * mj;
+    const float *restrict fx = d->frame + k, *restrict fy = fx + n;
+    float *restrict rx = result + k, *restrict ry = rx + n;
+    for (ptrdiff_t j = 0; j < mj; j++)
+        rx[j] = fx[j] * x[j] - fy[j] * y[j], ry[j] = fx[j] * y[j] + fy[j] * x[j];
+}
+
+/* result = P gradient. Rows i and mi - 1 - i are folded together. */
 MESHONET_CLONES
 void descent_precondition(Descent *d, const double *restrict gradient, float *restrict result)
 {
-    const ptrdiff_t mi = d->spectrum.mi, mj = d->spectrum.mj, n = mi * mj, row = padded(mj);
-    const float *restrict fx = d->frame, *restrict fy = d->frame + n;
-    float *restrict w = d->transform, *spare = w + 2 * mi * row;
-    const ptrdiff_t tallest = mi > d->spectrum.ki ? mi : d->spectrum.ki;
-    const ptrdiff_t widest = padded(mj > d->spectrum.kj ? mj : d->spectrum.kj);
-    for (ptrdiff_t i = 0; i < mi; i++) {
-        float *restrict wx = w + i * row, *restrict wy = w + (mi + i) * row;
-        const ptrdiff_t k = i * mj;
-        for (ptrdiff_t j = 0; j < mj; j++) {
-            const float gx = (float)gradient[k + j], gy = (float)gradient[n + k + j];
-            wx[j] = fx[k + j] * gx + fy[k + j] * gy, wy[j] = fx[k + j] * gy - fy[k + j] * gx;
+    const Spectrum *s = &d->spectrum;
+    const ptrdiff_t mi = s->mi, mj = s->mj, width = values_of(&s->eta), modes = modes_of(&s->eta);
+    float *w = d->transform, *packed = w + 6 * mi * (width > modes ? width : modes);
+    float *a[2] = {packed, packed + mj}, *b[2] = {packed + 2 * mj, packed + 3 * mj};
+    for (ptrdiff_t i = 0; i < s->xi.even.nodes; i++) {
+        const ptrdiff_t other = mi - 1 - i;
+        into_frame(d, gradient, i, a[0], a[1]);
+        if (other > i)
+            into_frame(d, gradient, other, b[0], b[1]);
+        for (int c = 0; c < 2; c++) {
+            float *rows = w + c * mi * width;
+            if (other > i) {
+                mix(a[c], b[c], mj);
+                fold(b[c], &s->eta, rows + (s->xi.even.nodes + i) * width);
+            }
+            fold(a[c], &s->eta, rows + i * width);
         }
-        for (ptrdiff_t j = mj; j < row; j++)
-            wx[j] = wy[j] = 0.0f;
     }
-    divide(&d->spectrum, w, spare, w + 6 * tallest * widest);
-    for (ptrdiff_t i = 0; i < mi; i++) {
-        const float *restrict wx = w + i * row, *restrict wy = w + (mi + i) * row;
-        const ptrdiff_t k = i * mj;
-        for (ptrdiff_t j = 0; j < mj; j++) {
-            result[k + j] = fx[k + j] * wx[j] - fy[k + j] * wy[j];
-            result[n + k + j] = fx[k + j] * wy[j] + fy[k + j] * wx[j];
+    divide(s, w, w + 2 * mi * (width > modes ? width : modes), packed);
+    for (ptrdiff_t i = 0; i < s->xi.even.nodes; i++) {
+        const ptrdiff_t other = mi - 1 - i;
+        for (int c = 0; c < 2; c++) {
+            const float *rows = w + c * mi * width;
+            unfold(rows + i * width, &s->eta, a[c]);
+            if (other > i) {
+                unfold(rows + (s->xi.even.nodes + i) * width, &s->eta, b[c]);
+                mix(a[c], b[c], mj);
+            }
         }
+        out_of_frame(d, a[0], a[1], i, result);
+        if (other > i)
+            out_of_frame(d, b[0], b[1], other, result);
     }
 }
 
@@ -195,9 +228,9 @@ static double choose_direction(Descent *d)
 {
     const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
     const int count = d->count, *order = d->order;
-    double products[2 * PAIRS], alpha[PAIRS], rest[PAIRS], scale = 1.0, slope;
+    const double *products = d->products;
+    double alpha[PAIRS], rest[PAIRS], scale = 1.0, slope;
     float share[2 * PAIRS];
-    descent_products(d->table, 2 * count, d->gradient, n, products);
     if (count > 0)
         scale = d->sy[order[count - 1]][order[count - 1]] / d->yz[order[count - 1]][order[count - 1]];
     for (int k = count - 1; k >= 0; k--) {
@@ -263,35 +296,40 @@ static double shorter(double rise, double slope)
     return factor < 0.1 ? 0.1 : factor > 0.5 ? 0.5 : factor;
 }
 
-/* Add the step, the gradient's change y and P y, unless the functional bends down along the step. */
-static void remember(Descent *d, double factor)
+/* Add the step, whose slope was `slope`, the gradient's change y and P y, unless the functional bends down along the
+   step; then the products of all rows with the new gradient. Those with y are the changes of these. */
+static void remember(Descent *d, double factor, double slope)
 {
     const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
-    double *restrict change = d->gradient, products[2 * PAIRS], steps = 0.0, changes = 0.0, curvature = 0.0;
+    const double *restrict old = d->gradient, *restrict fresh = d->fresh;
+    double before[2 * PAIRS], steps = 0.0, changes = 0.0, curvature = 0.0, turned = 0.0;
     const float *restrict step = d->direction;
     for (ptrdiff_t k = 0; k < n; k++) {
-        const double s = factor * (double)step[k];
-        change[k] = d->fresh[k] - change[k];
-        steps += s * s, changes += change[k] * change[k], curvature += s * change[k];
+        const double s = (double)step[k], y = fresh[k] - old[k];
+        steps += s * s, changes += y * y, curvature += s * y;
+        turned += old[k] * (double)(d->turned[k] - d->steepest[k]);
     }
-    if (!(curvature > 1e-12 * sqrt(steps * changes)))
-        return;
+    const int bends = curvature > 1e-12 * sqrt(steps * changes);
     int slot = d->count;
-    if (d->count == PAIRS) {
-        slot = d->order[0];
-        memmove(d->order, d->order + 1, (PAIRS - 1) * sizeof *d->order);
-        d->count--;
+    memcpy(before, d->products, sizeof before);
+    if (bends) {
+        if (d->count == PAIRS) {
+            slot = d->order[0];
+            memmove(d->order, d->order + 1, (PAIRS - 1) * sizeof *d->order);
+            d->count--;
+        }
+        d->order[d->count++] = slot;
+        float *restrict s = d->table + 2 * slot * n, *restrict z = s + n;
+        for (ptrdiff_t k = 0; k < n; k++)
+            s[k] = (float)factor * step[k], z[k] = d->turned[k] - d->steepest[k];
+        before[2 * slot] = factor * slope, before[2 * slot + 1] = turned;
     }
-    d->order[d->count++] = slot;
-    float *restrict s = d->table + 2 * slot * n, *restrict z = s + n;
-    for (ptrdiff_t k = 0; k < n; k++)
-        s[k] = (float)factor * step[k], z[k] = d->turned[k] - d->steepest[k];
-    descent_products(d->table, 2 * d->count, change, n, products);
-    for (int k = 0; k < d->count; k++) {
+    descent_products(d->table, 2 * d->count, fresh, n, d->products);
+    for (int k = 0; bends && k < d->count; k++) {
         const int other = d->order[k];
         d->sy[slot][other] = 0.0;
-        d->sy[other][slot] = products[2 * other];
-        d->yz[slot][other] = d->yz[other][slot] = products[2 * other + 1];
+        d->sy[other][slot] = d->products[2 * other] - before[2 * other];
+        d->yz[slot][other] = d->yz[other][slot] = d->products[2 * other + 1] - before[2 * other + 1];
     }
 }
 
@@ -324,7 +362,7 @@ int descent_step(Descent *d)
     memcpy(d->z, d->full, 2 * (size_t)nodes * sizeof *d->z);
     d->value = value, d->smallest = low;
     descent_precondition(d, d->fresh, d->turned);
-    remember(d, factor);
+    remember(d, factor, slope);
     memcpy(d->gradient, d->fresh, (size_t)n * sizeof *d->gradient);
     memcpy(d->steepest, d->turned, (size_t)n * sizeof *d->steepest);
     /* small steps that still gain, or that were cut short, say nothing of the distance to the minimum */

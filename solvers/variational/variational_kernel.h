@@ -12,11 +12,24 @@ typedef struct {
     const double *relief; /* (ni,) share of the angle term that corners at nodes (i, 0) keep, or NULL for all of it */
 } Weights;
 
-/* Transforms that make the Hessian of a uniform grid diagonal: q_i (mi, ki), q_j (mj, kj), both transposed too; rows
-   of q_j and of q_j_t are padded with zeros to whole panels of 32. scale (2, ki, kj), for moves along xi and eta; `rest` for modes beyond. */
+/* The even or the odd modes of a direction, over half of its nodes: q (nodes, modes) and its transpose, rows padded
+   with zeros to whole panels of 32. */
 typedef struct {
-    ptrdiff_t mi, mj, ki, kj;
-    const float *q_i, *q_i_t, *q_j, *q_j_t, *scale;
+    ptrdiff_t nodes, modes;
+    const float *q, *q_t;
+} Half;
+
+typedef struct {
+    Half even, odd;
+} Transform;
+
+/* Transforms that make the Hessian of a uniform grid of mi x mj free nodes diagonal; see spectral.h. `scale` is
+   (2, modes of xi, modes of eta), for moves along xi and eta, the even modes first, rows padded as the modes of eta
+   are; `rest` for modes beyond. */
+typedef struct {
+    ptrdiff_t mi, mj;
+    Transform xi, eta;
+    const float *scale;
     float rest;
 } Spectrum;
 
@@ -32,6 +45,7 @@ typedef struct {
     double *gradient, *fresh;       /* (2, mi, mj), as all below */
     float *frame, *direction, *steepest, *turned, *table, *transform;
     double sy[PAIRS][PAIRS], yz[PAIRS][PAIRS];
+    double products[2 * PAIRS];     /* of the rows of the table with the gradient */
     int order[PAIRS], count, idle;
     double value, smallest, reach, still;
 } Descent;

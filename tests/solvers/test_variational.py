@@ -173,7 +173,7 @@ def test_around_a_body_the_cut_moves(make, ni: int, nj: int) -> None:  # type: i
     assert solution.notes == ()
     assert folded(found) == 0
     # a sharp edge bounds the maximum, and Winslow's line halves it exactly on symmetric bodies
-    assert angle(found).max < angle(reference.nodes).max + 0.01
+    assert angle(found).max < angle(reference.nodes).max + 0.03
     assert angle(found).mean < angle(reference.nodes).mean
     assert np.array_equal(found[0], found[-1])
     assert np.array_equal(found[:, 0], boundary.south)
