@@ -55,7 +55,7 @@ Modes: TypeAlias = tuple[Floats, Floats]
 
 @lru_cache(maxsize=16)
 def _sines(n: int) -> tuple[Modes, Floats]:
-    """Return the sines that vanish at the ends of n cells; minus their second differences, even ones first."""
+    """Return sines that vanish at the ends of n cells; minus their second differences; even ones first."""
     waves, k = np.arange(1, n)[:MODES], np.arange(1, n)
     even, odd = (np.sin(np.pi / n * (np.outer(k, half) % (2 * n))) for half in (waves[::2], waves[1::2]))
     values = 4.0 * np.sin(np.pi * np.concatenate([waves[::2], waves[1::2]]) / (2 * n)) ** 2
