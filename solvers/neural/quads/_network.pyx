@@ -1,0 +1,108 @@
+"""Compiled layers of a convolutional network and its features; see ``convolve.h``, ``pointwise.h``, ``look.h``."""
+
+cdef extern from "network_kernel.h":
+    ctypedef struct Convolution:
+        Py_ssize_t batch
+        Py_ssize_t n
+        Py_ssize_t inputs
+        Py_ssize_t outputs
+        int size
+        int stride
+    void network_convolve_float(const float *x, const Convolution *c, const float *w, const float *bias, const float *add, float *out) nogil
+    void network_convolve_double(const double *x, const Convolution *c, const double *w, const double *bias, const double *add, double *out) nogil
+    void network_activate_float(const float *x, Py_ssize_t batch, Py_ssize_t n, Py_ssize_t channels, float *out) nogil
+    void network_activate_double(const double *x, Py_ssize_t batch, Py_ssize_t n, Py_ssize_t channels, double *out) nogil
+    void network_refine_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t channels, const float *add, float *out) nogil
+    void network_refine_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t channels, const double *add, double *out) nogil
+    void network_look_float(const double *planes, Py_ssize_t batch, Py_ssize_t n, const double *middle, const double *factor, double *scratch, float *out) nogil
+    void network_look_double(const double *planes, Py_ssize_t batch, Py_ssize_t n, const double *middle, const double *factor, double *scratch, double *out) nogil
+    int LOOK_FEATURES
+    int LOOK_MOST
+
+ctypedef fused real:
+    float
+    double
+
+
+def convolve(const real[:, :, :, ::1] x, const real[:, ::1] w, const real[::1] bias, int size, int stride,
+             const real[:, :, :, ::1] add, real[:, :, :, ::1] out):
+    """Fill `out` (batch, m, m, outputs) with the convolution of `x` (batch, n, n, inputs), which holds its own padding.
+
+    `w` is (size² inputs, outputs rounded up to 64 bytes), taps along xi slowest; `bias` has as many. `add`, of
+    the shape of `out`, is added when it is not None.
+    """
+    cdef Convolution c
+    cdef Py_ssize_t per = 64 // sizeof(real), m
+    c.batch, c.n, c.inputs, c.outputs = x.shape[0], x.shape[1], x.shape[3], out.shape[3]
+    c.size, c.stride = size, stride
+    if size < 1 or stride < 1 or x.shape[2] != c.n or c.n < size or c.outputs < 1 or c.inputs < 1:
+        raise ValueError("images that are not square, or smaller than the kernel")
+    m = (c.n - size) // stride + 1
+    if out.shape[0] != c.batch or out.shape[1] != m or out.shape[2] != m:
+        raise ValueError("an output of another size")
+    if w.shape[0] != size * size * c.inputs or w.shape[1] != (c.outputs + per - 1) // per * per or bias.shape[0] != w.shape[1]:
+        raise ValueError("weights of other channels")
+    if add is not None and not (add.shape[0] == c.batch and add.shape[1] == m and add.shape[2] == m and add.shape[3] == c.outputs):
+        raise ValueError("a summand of another shape")
+    if c.batch == 0:
+        return
+    cdef const real *more = NULL if add is None else &add[0, 0, 0, 0]
+    with nogil:
+        if real is float:
+            network_convolve_float(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &out[0, 0, 0, 0])
+        else:
+            network_convolve_double(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &out[0, 0, 0, 0])
+
+
+def activate(const real[:, :, :, ::1] x, real[:, :, :, ::1] out):
+    """Fill `out` (batch, n + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, n, n, channels), zeros around."""
+    cdef Py_ssize_t batch = x.shape[0], n = x.shape[1], channels = x.shape[3]
+    if x.shape[2] != n or out.shape[0] != batch or out.shape[1] != n + 2 or out.shape[2] != n + 2 or out.shape[3] != channels:
+        raise ValueError("arrays of other shapes")
+    if batch * n * channels == 0:
+        return
+    with nogil:
+        if real is float:
+            network_activate_float(&x[0, 0, 0, 0], batch, n, channels, &out[0, 0, 0, 0])
+        else:
+            network_activate_double(&x[0, 0, 0, 0], batch, n, channels, &out[0, 0, 0, 0])
+
+
+def refine(const real[:, :, :, ::1] x, const real[:, :, :, ::1] add, real[:, :, :, ::1] out):
+    """Fill `out` (batch, 2 m - 1, ., channels) with `add` + `x` (batch, m, m, channels) linear between its nodes."""
+    cdef Py_ssize_t batch = x.shape[0], m = x.shape[1], channels = x.shape[3], n = 2 * m - 1
+    if x.shape[2] != m or out.shape[0] != batch or out.shape[1] != n or out.shape[2] != n or out.shape[3] != channels:
+        raise ValueError("arrays of other shapes")
+    if add.shape[0] != batch or add.shape[1] != n or add.shape[2] != n or add.shape[3] != channels:
+        raise ValueError("a summand of another shape")
+    if batch * m * channels == 0:
+        return
+    with nogil:
+        if real is float:
+            network_refine_float(&x[0, 0, 0, 0], batch, m, channels, &add[0, 0, 0, 0], &out[0, 0, 0, 0])
+        else:
+            network_refine_double(&x[0, 0, 0, 0], batch, m, channels, &add[0, 0, 0, 0], &out[0, 0, 0, 0])
+
+
+def look(const double[:, :, :, ::1] planes, const double[:, ::1] middle, const double[:, ::1] factor,
+         double[:, :, ::1] scratch, real[:, :, :, ::1] out):
+    """Fill `out` (batch, n, n, features) for grids `planes` (batch, 2, n, n) after z <- (z - middle) factor.
+
+    `middle` and `factor` are (batch, 2), real and imaginary parts; `scratch` is (2, n, n).
+    """
+    cdef Py_ssize_t batch = planes.shape[0], n = planes.shape[2]
+    if planes.shape[1] != 2 or planes.shape[3] != n or n < 3 or n > LOOK_MOST:
+        raise ValueError("grids that are not square, or too large")
+    if middle.shape[0] != batch or factor.shape[0] != batch or middle.shape[1] != 2 or factor.shape[1] != 2:
+        raise ValueError("frames of other grids")
+    if scratch.shape[0] != 2 or scratch.shape[1] != n or scratch.shape[2] != n:
+        raise ValueError("scratch of another size")
+    if out.shape[0] != batch or out.shape[1] != n or out.shape[2] != n or out.shape[3] != LOOK_FEATURES:
+        raise ValueError("an output of another shape")
+    if batch == 0:
+        return
+    with nogil:
+        if real is float:
+            network_look_float(&planes[0, 0, 0, 0], batch, n, &middle[0, 0], &factor[0, 0], &scratch[0, 0, 0], &out[0, 0, 0, 0])
+        else:
+            network_look_double(&planes[0, 0, 0, 0], batch, n, &middle[0, 0], &factor[0, 0], &scratch[0, 0, 0], &out[0, 0, 0, 0])

@@ -1,0 +1,118 @@
+/* Convolutions over images whose channels lie together, and what stands between them: included once for each real
+   type T, with SUFFIX after every name, VECTOR bytes a vector, and KERNEL before functions (their processor). */
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define NAME(name) JOIN(name, SUFFIX)
+#define LANES (VECTOR / (int)sizeof(T))
+#define MOST_PIXELS 11
+#define MOST_VECTORS 4
+
+typedef T NAME(Lanes) __attribute__((vector_size(VECTOR), aligned(sizeof(T)), may_alias));
+
+/* sum (pixels, vectors LANES) = bias + the taps of `pixels` neighbours in a row. Of each pixel `rows` runs of `run`
+   numbers count, `line` apart; w has a line of `wide` outputs for each. All sums stay in registers. */
+MESHONET_INLINE void NAME(tile)(const T *restrict in, ptrdiff_t pixel, ptrdiff_t line, int rows, ptrdiff_t run,
+                                const T *restrict w, ptrdiff_t wide, const T *bias, T *sum, const int pixels,
+                                const int vectors)
+{
+    NAME(Lanes) held[MOST_PIXELS][MOST_VECTORS], weight[MOST_VECTORS];
+#pragma GCC unroll 16
+    for (int p = 0; p < pixels; p++)
+#pragma GCC unroll 4
+        for (int v = 0; v < vectors; v++)
+            held[p][v] = *(const NAME(Lanes) *)(bias + v * LANES);
+    for (int r = 0; r < rows; r++) {
+        const T *from = in + r * line;
+        for (ptrdiff_t k = 0; k < run; k++, w += wide) {
+#pragma GCC unroll 4
+            for (int v = 0; v < vectors; v++)
+                weight[v] = *(const NAME(Lanes) *)(w + v * LANES);
+#pragma GCC unroll 16
+            for (int p = 0; p < pixels; p++) {
+                const T x = from[p * pixel + k];
+#pragma GCC unroll 4
+                for (int v = 0; v < vectors; v++)
+                    held[p][v] += x * weight[v];
+            }
+        }
+    }
+#pragma GCC unroll 16
+    for (int p = 0; p < pixels; p++)
+#pragma GCC unroll 4
+        for (int v = 0; v < vectors; v++)
+            *(NAME(Lanes) *)(sum + (p * vectors + v) * LANES) = held[p][v];
+}
+
+/* out (pixels, n) of `stride` numbers a pixel = sum (pixels, wide) + add; not inlined: copies of it would be slow to
+   compile and no faster. */
+static KERNEL __attribute__((noinline)) void NAME(put)(const T *restrict sum, const T *restrict add, T *restrict out,
+                                                       int pixels, int n, int wide, ptrdiff_t stride)
+{
+    for (int p = 0; p < pixels; p++, sum += wide, out += stride) {
+        for (int l = 0; l < n; l++)
+            out[l] = add ? sum[l] + add[l] : sum[l];
+        add = add ? add + stride : add;
+    }
+}
+
+/* How many pixels of a row of m go together, `vectors` each: what fills the registers and leaves no rest here. */
+static int NAME(pixels_of)(int vectors, ptrdiff_t m)
+{
+#if VECTOR == 64
+    const int best = vectors == 4 ? 5 : vectors == 1 ? 11 : 9;
+    return m >= best ? best : m >= 5 && vectors == 3 ? 5 : 1;
+#else
+    (void)vectors;
+    return m >= 5 ? 5 : 1;
+#endif
+}
+
+#define TILE(p, v) case 16 * v + p: NAME(tile)(from, pixel, line, rows, run, w, wide, bias, sum, p, v); break;
+
+/* One row of m outputs; the last tile of a row begins early enough to be whole. */
+static KERNEL __attribute__((noinline)) void NAME(row)(const T *in, ptrdiff_t pixel, ptrdiff_t line, int rows,
+    ptrdiff_t run, const T *w, ptrdiff_t wide, const T *bias, const T *add, T *out, ptrdiff_t stride, int n,
+    int vectors, ptrdiff_t m)
+{
+    T sum[MOST_PIXELS * MOST_VECTORS * LANES] __attribute__((aligned(64)));
+    const int pixels = NAME(pixels_of)(vectors, m);
+    for (ptrdiff_t j = 0; j < m; j += pixels) {
+        j = j + pixels > m ? m - pixels : j;
+        const T *from = in + j * pixel;
+        switch (16 * vectors + pixels) {
+            TILE(1, 1) TILE(1, 2)
+#if VECTOR == 64
+            TILE(11, 1) TILE(9, 2) TILE(9, 3) TILE(5, 3) TILE(5, 4) TILE(1, 3) TILE(1, 4)
+#else
+            TILE(5, 1) TILE(5, 2)
+#endif
+            default: return; /* no other number of pixels is ever asked for */
+        }
+        NAME(put)(sum, add ? add + j * stride : add, out + j * stride, pixels, n, vectors * LANES, stride);
+    }
+}
+
+static KERNEL void NAME(convolve)(const T *in, const Convolution *c, const T *w, const T *bias, const T *add, T *out)
+{
+    const ptrdiff_t m = (c->n - c->size) / c->stride + 1, line = c->n * c->inputs, co = c->outputs;
+    const ptrdiff_t per = 64 / (ptrdiff_t)sizeof(T), wide = (co + per - 1) / per * per;
+    const int all = (int)((co + LANES - 1) / LANES), most = VECTOR == 64 ? 4 : 2, blocks = (all + most - 1) / most;
+    for (int block = 0, v = 0; block < blocks; block++) {
+        const int vectors = (all - v + blocks - block - 1) / (blocks - block);
+        const ptrdiff_t at = (ptrdiff_t)v * LANES, left = co - at;
+        const int n = left < vectors * LANES ? (int)left : vectors * LANES;
+        for (ptrdiff_t row = 0; row < c->batch * m; row++) {
+            const T *from = in + (row / m * c->n + row % m * c->stride) * line;
+            const ptrdiff_t to = row * m * co + at;
+            NAME(row)(from, c->inputs * c->stride, line, c->size, c->size * c->inputs, w + at, wide, bias + at,
+                      add ? add + to : add, out + to, co, n, vectors, m);
+        }
+        v += vectors;
+    }
+}
+
+#undef TILE
+#undef LANES
+#undef NAME
+#undef MOST_PIXELS
+#undef MOST_VECTORS

@@ -1,0 +1,69 @@
+/* Features of a grid at every node, those of features.py in its order, into real type T. */
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define NAME(name) JOIN(name, SUFFIX)
+
+MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, ptrdiff_t n, ptrdiff_t i,
+                                    double (*restrict row)[LOOK_MOST], T *restrict out)
+{
+    const double cells = (double)(n - 1);
+    const ptrdiff_t before = i > 0 ? -n : 0, after = i < n - 1 ? n : 0;
+    const double steep = before && after ? 0.5 * cells : cells, bend = before && after ? 2.0 * cells : 0.0;
+    x += i * n, y += i * n;
+    for (ptrdiff_t j = 0; j < n; j++) {
+        row[0][j] = steep * (x[j + after] - x[j + before]);
+        row[2][j] = steep * (y[j + after] - y[j + before]);
+        row[4][j] = bend * (x[j + after] + x[j + before] - 2.0 * x[j]);
+        row[6][j] = bend * (y[j + after] + y[j + before] - 2.0 * y[j]);
+        row[10][j] = x[j], row[11][j] = y[j];
+        row[15][j] = -1.0 + 2.0 * (double)i / cells, row[16][j] = -1.0 + 2.0 * (double)j / cells;
+    }
+    for (ptrdiff_t j = 1; j < n - 1; j++) {
+        row[1][j] = 0.5 * cells * (x[j + 1] - x[j - 1]);
+        row[3][j] = 0.5 * cells * (y[j + 1] - y[j - 1]);
+        row[5][j] = 2.0 * cells * (x[j + 1] + x[j - 1] - 2.0 * x[j]);
+        row[7][j] = 2.0 * cells * (y[j + 1] + y[j - 1] - 2.0 * y[j]);
+    }
+    for (int end = 0; end < 2; end++) {
+        const ptrdiff_t j = end ? n - 1 : 0, k = end ? n - 2 : 0;
+        row[1][j] = cells * (x[k + 1] - x[k]), row[3][j] = cells * (y[k + 1] - y[k]);
+        row[5][j] = row[7][j] = 0.0;
+    }
+    for (ptrdiff_t j = 0; j < n; j++) {
+        const double ur = row[0][j], vr = row[1][j], ui = row[2][j], vi = row[3][j];
+        const double u = sqrt(ur * ur + ui * ui), v = sqrt(vr * vr + vi * vi), w = 1.0 / (u * v + LOOK_TINY);
+        const double dot = ur * vr + ui * vi, cross = ur * vi - ui * vr, size = fabs(cross);
+        row[8][j] = u + LOOK_FLOOR, row[9][j] = v + LOOK_FLOOR;
+        row[12][j] = dot * w, row[13][j] = cross * w;
+        row[14][j] = size + sqrt(cross * cross + 1.0);
+    }
+    for (ptrdiff_t j = 0; j < n; j++)
+        row[8][j] = log(row[8][j]);
+    for (ptrdiff_t j = 0; j < n; j++)
+        row[9][j] = log(row[9][j]);
+    for (ptrdiff_t j = 0; j < n; j++)
+        row[14][j] = log(row[14][j]); /* of the inverse hyperbolic sine without its sign */
+    for (ptrdiff_t j = 0; j < n; j++)
+        row[14][j] = row[13][j] < 0.0 ? -row[14][j] : row[14][j];
+    for (ptrdiff_t j = 0; j < n; j++)
+        for (int k = 0; k < LOOK_FEATURES; k++)
+            out[j * LOOK_FEATURES + k] = (T)row[k][j];
+}
+
+MESHONET_CLONES
+void NAME(network_look)(const double *planes, ptrdiff_t batch, ptrdiff_t n, const double *middle, const double *factor,
+                        double *restrict scratch, T *out)
+{
+    double row[LOOK_FEATURES][LOOK_MOST];
+    double *restrict x = scratch, *restrict y = scratch + n * n;
+    for (ptrdiff_t b = 0; b < batch; b++, planes += 2 * n * n, middle += 2, factor += 2) {
+        for (ptrdiff_t k = 0; k < n * n; k++) {
+            const double p = planes[k] - middle[0], q = planes[n * n + k] - middle[1];
+            x[k] = p * factor[0] - q * factor[1];
+            y[k] = p * factor[1] + q * factor[0];
+        }
+        for (ptrdiff_t i = 0; i < n; i++, out += n * LOOK_FEATURES)
+            NAME(look_row)(x, y, n, i, row, out);
+    }
+}
+#undef NAME

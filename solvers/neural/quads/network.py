@@ -1,0 +1,185 @@
+"""The quad network's forward pass: a U-Net whose layers commute with the relabellings of a quad.
+
+On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`symmetry`)::
+
+    h = lift(features)
+    h = blocks(h);  h = down(silu(h))          on each level but the coarsest, whose blocks come once
+    h = blocks(skip + finer(up(h)))            back up, finer: linear between nodes
+    d = m · project(silu(last(silu(h))))       two components for each head, m = 0 on the rim
+
+with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b, down and last. Expanded
+once, the kernels are those of an ordinary convolutional network, which is compiled.
+`solvers.neural.models.quad_unet` is the same in torch.
+Ronneberger et al., U-Net, MICCAI 2015.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from itertools import pairwise, product
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Complexes, Floats
+from solvers.neural.quads import kernels
+from solvers.neural.quads._network import activate, convolve, refine
+from solvers.neural.quads.features import FEATURES
+from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
+
+Reals: TypeAlias = NDArray[Any]
+Shapes: TypeAlias = dict[str, tuple[int, ...]]
+
+CHUNK = 8
+"""Domains that go through a layer together: their fields stay in the cache, and so do its weights."""
+
+LINE = 64
+"""Bytes that a row of weights is rounded up to."""
+
+
+def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
+    """Return the names and shapes of the weights of a network.
+
+    Parameters
+    ----------
+    widths : sets of eight channels on each level, the finest first.
+    blocks : residual blocks on each.
+    heads : displacement fields that it answers with.
+    """
+    found: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
+
+    def layer(name: str, into: int, out: int, size: int = 3) -> None:
+        found[f"{name}.weight"], found[f"{name}.bias"] = (out, into, ORDER, size, size), (out,)
+
+    for level, (fine, coarse) in enumerate(pairwise(widths)):
+        layer(f"down.{level}", fine, coarse)
+        layer(f"up.{level}", coarse, fine, 1)
+    for level, width in enumerate(widths):
+        for part in ("before", "after")[: 1 if level == len(widths) - 1 else 2]:
+            for k, half in product(range(blocks[level]), "ab"):
+                layer(f"{part}.{level}.{k}.{half}", width, width)
+    layer("last", widths[0], widths[0])
+    found["project"] = (heads, 2, widths[0])
+    return found
+
+
+@lru_cache(maxsize=4)
+def rim_factor(n: int) -> Floats:
+    """Return m (n, n): 0 on the rim, d/(d+2) for each axis with d the nodes away from it."""
+    away = np.minimum(np.arange(n), np.arange(n)[::-1]).astype(np.float64)
+    return np.multiply.outer(away / (away + 2.0), away / (away + 2.0))
+
+
+class Network:
+    """The network of one set of weights, its kernels expanded and laid out once.
+
+    Parameters
+    ----------
+    weights : of the names and shapes of `shapes`, in any precision.
+    blocks : as there.
+    dtype : float32 or float64, of the arithmetic.
+    """
+
+    def __init__(self, weights: Mapping[str, Reals], blocks: Sequence[int], dtype: Any = np.float64) -> None:
+        self.dtype, self.blocks = np.dtype(dtype), tuple(blocks)
+        exact = {name: np.asarray(value, np.float64) for name, value in weights.items()}
+        self._layers = {
+            "lift": _packed(kernels.lift(exact["lift"], SEEN, np), exact["lift_bias"], self.dtype),
+            "project": _packed(kernels.projection(exact["project"], ELEMENTS, np), None, self.dtype),
+        }
+        for name in exact:
+            layer, _, rest = name.rpartition(".")
+            if rest == "weight":
+                kernel = kernels.convolution(exact[name], kernels.table(exact[name].shape[-1]), np)
+                self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
+        self._rooms = threading.local()  # arrays that later calls in the same thread use again
+        self.heads = len(exact["project"])
+
+    def __call__(self, seen: Reals) -> Complexes:
+        """Return the fields (batch, heads, n, n) for `features` (batch, n, n, FEATURES).
+
+        It is fastest for `CHUNK` domains at a time.
+        """
+        batch, n = seen.shape[:2]
+        answer = self._forward(np.ascontiguousarray(seen, self.dtype)).reshape(batch, n, n, self.heads, 2)
+        parts = np.moveaxis(answer, 3, 1) * rim_factor(n)[..., None]
+        return np.asarray(parts[..., 0] + 1j * parts[..., 1])
+
+    def _forward(self, h: Reals) -> Reals:
+        work = _Work(self._layers, self._rooms.__dict__)
+        h = work.layer("lift", h)
+        skips: list[Reals] = []
+        coarsest = len(self.blocks) - 1
+        for level in range(coarsest):
+            h = work.blocks(f"before.{level}", self.blocks[level], h)
+            skips.append(h)
+            h = work.layer(f"down.{level}", work.silu(h), stride=2)
+        h = work.blocks(f"before.{coarsest}", self.blocks[-1], h)
+        for level in range(coarsest - 1, -1, -1):
+            low = work.layer(f"up.{level}", h)
+            h = work.room(f"finer.{level}", skips[level].shape)
+            refine(low, skips[level], h)
+            h = work.blocks(f"after.{level}", self.blocks[level], h)
+        h = work.layer("last", work.silu(h))
+        return work.layer("project", np.ascontiguousarray(work.silu(h)[:, 1:-1, 1:-1]))
+
+
+class _Work:
+    """Layers by name, into arrays that later chunks use again."""
+
+    def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], room: dict[Any, Reals]) -> None:
+        self._layers, self._room = layers, room
+        self.dtype = layers["lift"][0].dtype
+
+    def room(self, name: str, shape: tuple[int, ...]) -> Reals:
+        key = name, shape
+        if key not in self._room:
+            self._room[key] = np.empty(shape, self.dtype)
+        return self._room[key]
+
+    def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None) -> Reals:
+        weight, bias, outputs = self._layers[name]
+        size = 1 if len(weight) == x.shape[3] else 3
+        m = (x.shape[1] - size) // stride + 1
+        out = self.room(name, (len(x), m, m, outputs))
+        convolve(x, weight, bias, size, stride, add, out)
+        return out
+
+    def silu(self, x: Reals) -> Reals:
+        batch, n, _, channels = x.shape
+        out = self.room("active", (batch, n + 2, n + 2, channels))
+        activate(x, out)
+        return out
+
+    def blocks(self, part: str, count: int, x: Reals) -> Reals:
+        for k in range(count):
+            inner = self.layer(f"{part}.{k}.a", self.silu(x))
+            x = self.layer(f"{part}.{k}.b", self.silu(inner), add=x)
+        return x
+
+
+def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[Reals, Reals, int]:
+    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are.
+
+    `kernel` is (out, in) or (out, in, size, size), `bias` (out / 8,).
+    """
+    outputs = len(kernel)
+    rows = np.moveaxis(kernel, (0, 1), (-1, -2)).reshape(-1, outputs)
+    per = LINE // dtype.itemsize
+    wide = -(-outputs // per) * per
+    weight, biases = _aligned((len(rows), wide), dtype), _aligned((wide,), dtype)
+    weight[:, :outputs] = rows
+    if bias is not None:
+        biases[:outputs] = np.repeat(bias, ORDER)
+    return weight, biases, outputs
+
+
+def _aligned(shape: tuple[int, ...], dtype: np.dtype[Any]) -> Reals:
+    """Return zeros that begin at a multiple of LINE bytes."""
+    count = int(np.prod(shape)) * dtype.itemsize
+    raw = np.zeros(count + LINE, np.uint8)
+    begin = -raw.ctypes.data % LINE
+    return raw[begin : begin + count].view(dtype).reshape(shape)

@@ -1,0 +1,36 @@
+/* Layers of a convolutional network in single and double precision; see network_kernel.c. */
+#ifndef MESHONET_NETWORK_KERNEL_H
+#define MESHONET_NETWORK_KERNEL_H
+#include <stddef.h>
+
+/* A batch of n x n images with `inputs` channels, any padding included, to `outputs` by size x size taps. */
+typedef struct {
+    ptrdiff_t batch, n, inputs, outputs;
+    int size, stride;
+} Convolution;
+
+/* in (batch, n, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or as out
+   (batch, m, m, outputs), m = (n - size)/stride + 1. */
+void network_convolve_float(const float *in, const Convolution *c, const float *w, const float *bias, const float *add,
+                            float *out);
+void network_convolve_double(const double *in, const Convolution *c, const double *w, const double *bias,
+                             const double *add, double *out);
+void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t n, ptrdiff_t channels, float *out);
+void network_activate_double(const double *in, ptrdiff_t batch, ptrdiff_t n, ptrdiff_t channels, double *out);
+void network_refine_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t channels, const float *add,
+                          float *out);
+void network_refine_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t channels, const double *add,
+                           double *out);
+
+#define LOOK_FEATURES 17 /* of features.py, as are the two numbers below */
+#define LOOK_FLOOR 1e-2
+#define LOOK_TINY 1e-6
+#define LOOK_MOST 129 /* nodes along an axis at the most */
+
+/* out (batch, n, n, LOOK_FEATURES) of grids (batch, 2, n, n) after z <- (z - middle) factor, both (batch, 2);
+   scratch (2, n, n). */
+void network_look_float(const double *planes, ptrdiff_t batch, ptrdiff_t n, const double *middle, const double *factor,
+                        double *scratch, float *out);
+void network_look_double(const double *planes, ptrdiff_t batch, ptrdiff_t n, const double *middle,
+                         const double *factor, double *scratch, double *out);
+#endif

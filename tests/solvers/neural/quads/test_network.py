@@ -1,0 +1,173 @@
+"""The quad network's layers against plain numpy, and the whole against torch and its own symmetries."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from geometry.arrays import Complexes, Floats
+from solvers.neural.quads._network import activate, convolve, look, refine
+from solvers.neural.quads.features import FEATURES, features
+from solvers.neural.quads.network import Network, shapes
+from solvers.neural.quads.symmetry import ORDER, relabelled
+
+WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
+CLOSE: dict[Any, float] = {np.float32: 2e-5, np.float64: 1e-13}
+
+
+def plain(x: Floats, kernel: Floats, bias: Floats, stride: int) -> Floats:
+    """Convolve (batch, n, n, in) with (out, in, size, size), one tap after another."""
+    size, n = kernel.shape[-1], x.shape[1]
+    m = (n - size) // stride + 1
+    out = np.zeros((len(x), m, m, len(kernel))) + bias
+    for i in range(size):
+        for j in range(size):
+            stop = stride * (m - 1) + 1
+            out += x[:, i : i + stop : stride, j : j + stop : stride] @ kernel[:, :, i, j].T
+    return out
+
+
+def packed(kernel: Floats, bias: Floats, dtype: Any) -> tuple[NDArray[Any], NDArray[Any]]:
+    out, into, size, _ = kernel.shape
+    per = 64 // np.dtype(dtype).itemsize
+    weight = np.zeros((size * size * into, -(-out // per) * per), dtype)
+    weight[:, :out] = kernel.transpose(2, 3, 1, 0).reshape(-1, out)
+    biases = np.zeros(weight.shape[1], dtype)
+    biases[:out] = bias
+    return weight, biases
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("more", [False, True])
+@pytest.mark.parametrize(
+    ("n", "into", "out", "size", "stride"),
+    [(35, 16, 16, 3, 1), (35, 8, 24, 3, 2), (19, 24, 40, 3, 1), (11, 16, 48, 3, 1), (7, 8, 64, 3, 1),
+     (5, 16, 48, 1, 1), (9, 17, 72, 1, 1), (5, 3, 100, 3, 1), (33, 16, 4, 1, 1), (3, 8, 8, 3, 1)],
+)  # fmt: skip
+def test_the_compiled_convolution_is_the_plain_one(
+    n: int, into: int, out: int, size: int, stride: int, more: bool, dtype: Any
+) -> None:
+    rng = np.random.default_rng(0)
+    x = rng.normal(size=(2, n, n, into)).astype(dtype)
+    kernel = rng.normal(size=(out, into, size, size)).astype(dtype)
+    bias = rng.normal(size=out).astype(dtype)
+    expected = plain(x.astype(float), kernel.astype(float), bias.astype(float), stride)
+    add = rng.normal(size=expected.shape).astype(dtype) if more else None
+    found = np.full(expected.shape, np.nan, dtype)
+    convolve(x, *packed(kernel, bias, dtype), size, stride, add, found)
+    expected += 0.0 if add is None else add
+    np.testing.assert_allclose(found, expected, rtol=0, atol=CLOSE[dtype] * np.abs(expected).max())
+
+
+def test_a_convolution_of_arrays_that_do_not_fit_is_refused() -> None:
+    x, out = np.zeros((1, 5, 5, 8)), np.zeros((1, 3, 3, 8))
+    weight, bias = packed(np.zeros((8, 8, 3, 3)), np.zeros(8), np.float64)
+    with pytest.raises(ValueError, match="weights of other channels"):
+        convolve(x, weight[1:], bias, 3, 1, None, out)
+    with pytest.raises(ValueError, match="an output of another size"):
+        convolve(x, weight, bias, 3, 2, None, out)
+    with pytest.raises(ValueError, match="a summand of another shape"):
+        convolve(x, weight, bias, 3, 1, x, out)
+    with pytest.raises(ValueError, match="smaller than the kernel"):
+        convolve(x[:, :2, :2].copy(), weight, bias, 3, 1, None, out)
+
+
+@pytest.mark.parametrize(("dtype", "close"), [(np.float32, 1e-6), (np.float64, 2e-15)])
+def test_activation_is_accurate_and_padded(dtype: Any, close: float) -> None:
+    x = np.linspace(-60, 60, 2 * 7 * 7 * 24).astype(dtype).reshape(2, 7, 7, 24)
+    x[0, 0, 0, :4] = -3e4, 3e4, 0, -1e-30
+    found = np.full((2, 9, 9, 24), np.nan, dtype)
+    activate(x, found)
+    exact = x.astype(float)
+    expected = exact * np.exp(np.minimum(exact, 0)) / (1 + np.exp(-np.abs(exact)))
+    np.testing.assert_allclose(found[:, 1:-1, 1:-1], expected, rtol=close, atol=1e-25)
+    found[:, 1:-1, 1:-1] = 0
+    assert not found.any()
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_finer_copies_are_linear_between_nodes(dtype: Any) -> None:
+    rng = np.random.default_rng(0)
+    x, add = rng.normal(size=(2, 5, 5, 8)).astype(dtype), rng.normal(size=(2, 9, 9, 8)).astype(dtype)
+    found = np.empty_like(add)
+    refine(x, add, found)
+    matrix = np.maximum(0.0, 1.0 - np.abs(np.arange(9)[:, None] / 2 - np.arange(5)))
+    expected = add + np.einsum("ip,jq,bpqc->bijc", matrix, matrix, x)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=8 * np.finfo(dtype).eps)
+
+
+def test_compiled_features_are_those_in_numpy() -> None:
+    z = grids(17)
+    middle, factor = np.array([0.3 + 0.2j, -1.0]), np.array([0.7 - 0.4j, 2.0j])
+    planes = np.ascontiguousarray(np.stack([z.real, z.imag], axis=1))
+    found = np.empty((2, 17, 17, FEATURES))
+    look(planes, pairs(middle), pairs(factor), np.empty((2, 17, 17)), found)
+    expected = features((z - middle[:, None, None]) * factor[:, None, None], np)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+
+
+def pairs(values: Complexes) -> Floats:
+    return np.stack([values.real, values.imag], axis=1)
+
+
+def grids(n: int, count: int = 2) -> Complexes:
+    rng = np.random.default_rng(0)
+    t = np.linspace(-0.5, 0.5, n)
+    noise = rng.normal(size=(2, count, n, n))
+    return np.asarray(t[:, None] + 1j * t + 0.2 / n * (noise[0] + 1j * noise[1]))
+
+
+def weights(dtype: Any = np.float64) -> dict[str, NDArray[Any]]:
+    rng = np.random.default_rng(0)
+    return {
+        name: (rng.normal(size=shape) * (2.0 / np.prod(shape[1:])) ** 0.5).astype(dtype)
+        for name, shape in shapes(WIDTHS, BLOCKS, 2).items()
+    }
+
+
+@pytest.mark.parametrize("element", range(ORDER))
+def test_the_answer_to_a_relabelled_grid_is_the_relabelled_answer(element: int) -> None:
+    z, network = grids(17), Network(weights(), BLOCKS)
+    answer = network(features(z, np))
+    moved = network(features(relabelled(z, element), np))
+    np.testing.assert_allclose(moved, relabelled(answer, element), rtol=0, atol=1e-12 * np.abs(answer).max())
+
+
+def test_the_answer_vanishes_on_the_rim_alone() -> None:
+    answer = Network(weights(), BLOCKS)(features(grids(17), np))
+    assert not answer[..., [0, -1], :].any()
+    assert not answer[..., [0, -1]].any()
+    assert (answer[..., 1:-1, 1:-1] != 0).all()
+
+
+def test_a_batch_is_answered_as_each_of_it() -> None:
+    seen, network = features(grids(17, 5), np), Network(weights(), BLOCKS)
+    together = network(seen)
+    for k in range(5):
+        np.testing.assert_array_equal(network(seen[k : k + 1])[0], together[k])
+
+
+def test_single_precision_is_close_to_double() -> None:
+    seen = features(grids(17), np)
+    double, single = (Network(weights(), BLOCKS, dtype)(seen) for dtype in (np.float64, np.float32))
+    np.testing.assert_allclose(single, double, rtol=0, atol=1e-5 * np.abs(double).max())
+
+
+def test_numpy_equals_torch() -> None:
+    torch = pytest.importorskip("torch")
+    from solvers.neural.models.quad_unet import QuadUNet
+
+    model = QuadUNet(WIDTHS, BLOCKS).double()
+    held = weights()
+    assert {name: tuple(value.shape) for name, value in model.state_dict().items()} == shapes(
+        WIDTHS, BLOCKS, 2
+    )
+    model.load_state_dict({name: torch.from_numpy(value) for name, value in held.items()})
+    seen = features(grids(17), np)
+    with torch.no_grad():
+        expected = model(torch.from_numpy(seen)).numpy()
+    found = Network(held, BLOCKS)(seen)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
