@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,11 +13,21 @@ from geometry.sampling import monotone_cubic
 
 GROWTH = math.log(1.10)
 """How fast a cell may grow along the wall: by 10 % from one to the next."""
+HURRY = 1.3
+"""Factor by which it may grow faster where nodes are few, before curvature and the nose alone get fewer."""
+_SCARCE = 5.0
+"""Factor from which on, curvature and the nose getting that much fewer, cells grow faster again."""
+_RAMP = 3.0
+"""Cells over which growth sets in behind a trailing edge whose step is asked for."""
+_EDGE = 0.025
+"""Part of the wall, at either end, where curvature asks for no less than the step of the edge."""
 TURN = math.radians(3.0)
 """How much of the curve's turning one cell may take."""
 _WINDOW = 2e-3
 """Chords over which curvature is averaged, so that the last digit of the points does not count."""
 _SAMPLES = 2400
+_SCARCEST = math.log(64.0)
+"""Logarithm of the largest factor by which curvature and the leading edge get less."""
 _REACH = 8.0
 """Cells over which the field is bent to meet a step asked for."""
 
@@ -35,7 +46,8 @@ def arcs_by_curvature(
     The size field h is the smooth least of four terms, 1/h⁴ = Σ 1/hₖ⁴: a step at the trailing and one at the
     leading edge that grow with the distance from it, `TURN` over the curvature limited to the same growth,
     and a largest cell chosen so that the integral of ds/h is the number of cells. With too few cells for
-    the first three, all are scaled up together.
+    the first three, curvature and the leading edge get less, and the growth is up to `HURRY` times as fast;
+    where that is not enough, all are scaled up together.
 
     Parameters
     ----------
@@ -48,8 +60,8 @@ def arcs_by_curvature(
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
-    bend = _bend(curve, s, chord)
-    known = _known(s, bend, stations, steps)
+    size = TURN / _bend(curve, s, chord)
+    known = _affordable(cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer))
     mend, places = np.zeros(2), np.arange(cells + 1.0)
     away = np.minimum(s - lower, upper - s), np.abs(s - nose)
     for _ in range(12):
@@ -81,7 +93,7 @@ def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)
-    known = _limited_size(s, TURN / bend) ** -4
+    known = _quartic(_limited_size(s, TURN / bend, GROWTH))
     density = _density(s, known, np.ones_like(s), cells)
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
     distance = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
@@ -113,30 +125,81 @@ def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
     return np.asarray(np.maximum(turned / (after - before), 1e-2 / chord))
 
 
+def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floats:
+    """Return `known` (the sum of 1/h⁴ at s) with the least factor, 1 or more, that `cells` suffice for."""
+    goal, width = math.log(cells), 0.5 * np.diff(s)
+
+    def excess(log_factor: float) -> tuple[float, Floats]:
+        found = known(math.exp(log_factor))
+        density = np.sqrt(np.sqrt(found))
+        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, found
+
+    low, (above, found) = 0.0, excess(0.0)
+    high, (below, at_most) = _SCARCEST, (0.0, found) if above <= 0 else excess(_SCARCEST)
+    if above <= 0 or below >= 0:
+        return found if above <= 0 else at_most
+    for _ in range(30):  # Illinois method
+        middle = (low * below - high * above) / (below - above)
+        value, found = excess(middle)
+        if abs(value) < 1e-3:
+            break
+        if value > 0:
+            low, above, below = middle, value, 0.5 * below
+        else:
+            high, below, above = middle, value, 0.5 * above
+    return found
+
+
 def _known(
-    s: Floats, bend: Floats, stations: tuple[float, float, float], steps: tuple[float, float]
+    s: Floats,
+    size: Floats,
+    stations: tuple[float, float, float],
+    steps: tuple[float, float],
+    ramp: bool,
+    fewer: float,
 ) -> Floats:
-    """Return the sum of 1/h⁴ over the terms of both edges and of curvature."""
+    """Return the sum of 1/h⁴ over the terms of both edges and of curvature, which alone gives `size`.
+
+    `fewer` is the factor by which size and the leading edge's step are larger. With `ramp`, growth sets in
+    slowly behind the trailing edge: the lines that leave there converge, and what is beside them does not.
+    """
     lower, nose, upper = stations
-    size = TURN / bend
+    growth = GROWTH * max(min(fewer, HURRY), fewer / _SCARCE)
+    away = np.minimum(s - lower, upper - s)
+    size = fewer * size
+    near = away < _EDGE * (upper - lower)
+    size[near] = np.maximum(size[near], steps[0])
     size[[0, -1]] = size[[0, -1]].min()  # the two surfaces meet here
-    size = _limited_size(s, size)
-    edge = steps[0] + GROWTH * np.minimum(s - lower, upper - s)
-    return np.asarray(edge**-4 + (steps[1] + GROWTH * np.abs(s - nose)) ** -4 + size**-4)
+    size = _limited_size(s, size, growth)
+    reach = _RAMP * steps[0]
+    late = reach * -np.expm1(-away / reach) if ramp else 0.0
+    trailing = steps[0] + growth * (away - late)
+    leading = fewer * steps[1] + growth * np.abs(s - nose)
+    return np.asarray(_quartic(trailing) + _quartic(leading) + _quartic(size))
 
 
-def _limited_size(s: Floats, size: Floats) -> Floats:
+def _quartic(h: Floats) -> Floats:
+    """Return 1/h⁴."""
+    square = h * h
+    return np.asarray(1.0 / (square * square))
+
+
+def _limited_size(s: Floats, size: Floats, growth: float) -> Floats:
     """Return h(s) = min over s' of size(s') + growth |s - s'|, by one pass each way."""
-    size = np.minimum.accumulate(size - GROWTH * s) + GROWTH * s
-    return np.asarray(np.minimum.accumulate((size + GROWTH * s)[::-1])[::-1] - GROWTH * s)
+    size = np.minimum.accumulate(size - growth * s) + growth * s
+    return np.asarray(np.minimum.accumulate((size + growth * s)[::-1])[::-1] - growth * s)
 
 
 def _density(s: Floats, known: Floats, relief: Floats, cells: int) -> Floats:
     """Return 1/h with the largest cell that makes its integral the number of cells."""
-    width, weight = np.diff(s), relief**-4
-    low, high = 1e-2 * (s[-1] - s[0]) / cells, 1e2 * (s[-1] - s[0])
-    for _ in range(30):
-        middle = math.sqrt(low * high)
-        density = np.sqrt(np.sqrt((known + middle**-4) * weight))
-        low, high = (middle, high) if 0.5 * width @ (density[1:] + density[:-1]) > cells else (low, middle)
-    return np.asarray(np.sqrt(np.sqrt((known + high**-4) * weight)))
+    width, weight = 0.5 * np.diff(s), relief**-4
+    share = np.concatenate([width, [0.0]]) + np.concatenate([[0.0], width])
+    more = 0.0  # of the largest cell, 1/h⁴
+    for _ in range(60):
+        total = (known + more) * weight
+        density = np.sqrt(np.sqrt(total))
+        lack = cells - float(share @ density)
+        if lack < 1e-9 * cells:
+            break
+        more += lack / float(share @ (0.25 * weight * density / total))  # Newton's, which never overshoots
+    return np.asarray(density)

@@ -67,7 +67,7 @@ ATTEMPTS = (
 )
 """Settings tried in turn while cells are folded."""
 OPEN_ATTEMPTS = (
-    MarchSettings(0.5, 0.5, 4, 0.05, 0.03),
+    MarchSettings(0.5, 0.5, 10, 0.02, 0.03),
     MarchSettings(0.5, 0.5, 4, 0.15, 0.05),
     MarchSettings(0.5, 0.5, 10),
     MarchSettings(1.0, 0.5, 20),

@@ -18,6 +18,10 @@
 #include <math.h>
 #include <string.h>
 
+/* The part of the levels over which higher first cells beside a wake even out: later, the front would rise along the
+   wake, and the lines that leave it lean towards the trailing edge and crowd there. */
+static const double OPENED = 0.5;
+
 typedef struct {
     double a, b, c, d; /* a b / c d */
 } Matrix;
@@ -234,7 +238,7 @@ void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
-        const double part = ends ? 1.0 - (double)level / (0.8 * (double)levels) : 0.0;
+        const double part = ends ? 1.0 - (double)level / (OPENED * (double)levels) : 0.0;
         measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL, settings);
         height += steps[level];
         assemble(&m, n, level == 0, growth, settings->bend * steps[level] * height, settings);

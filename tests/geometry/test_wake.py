@@ -84,8 +84,13 @@ def test_length_and_nodes_of_the_wake_are_those_asked_for() -> None:
     boundary = c(wake=30.0, wake_nodes=50)
     assert span(boundary, "wall") == (49, 110)
     assert boundary.south[0, 0] == pytest.approx(31.0, rel=1e-12)
-    ratio = growth(boundary.south[:50])
-    assert np.ptp(ratio) < 1e-6
+
+
+def test_the_growth_of_the_wake_sets_in_slowly_and_stays_nearly_the_same() -> None:
+    ratio = growth(c(wake=30.0, wake_nodes=50).south[:50])[::-1]  # from the trailing edge on
+    assert ratio[0] < 0.4 * ratio[12]
+    assert (np.diff(ratio) > 0).all()
+    assert ratio[-1] < 1.1 * ratio[12]
 
 
 def test_a_turned_airfoil_keeps_a_level_wake_a_steep_one_follows_its_chord() -> None:

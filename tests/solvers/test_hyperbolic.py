@@ -262,6 +262,15 @@ def test_c_grids_are_nearly_orthogonal_where_o_grids_of_sharp_edges_are_not() ->
     assert deviation(hyperbolic(ring, wall_spacing=1e-5).grid.nodes).max() > 60.0
 
 
+@pytest.mark.parametrize("name", ["0012", "2412", "0012-sharp", "4415"])
+def test_cells_of_a_c_grid_grow_slowly_along_every_row_and_line(name: str) -> None:
+    nodes = hyperbolic(c_boundary(name, 250, 100, te="wedge"), wall_spacing=1e-5).grid.nodes
+    for axis, most in ((0, 1.152), (1, 1.145)):
+        step = np.diff(nodes, axis=axis)
+        ratio = np.diff(np.log(np.hypot(step[..., 0], step[..., 1])), axis=axis)
+        assert np.exp(np.abs(ratio).max()) < most
+
+
 def test_lines_do_not_run_together_behind_the_edge_of_a_fine_c_grid() -> None:
     """Without the smoothing that grows with the height they do: cells become 50 degrees skew."""
     boundary = c_boundary("0012", 600, 150)
