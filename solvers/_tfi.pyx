@@ -32,3 +32,25 @@ def fill(double[:, ::1] x, double[:, ::1] y, tuple xs, tuple ys, tuple parameter
     cdef Py_ssize_t ni = x.shape[0], nj = x.shape[1]
     with nogil:
         tfi_fill(&x[0, 0], &y[0, 0], ni, nj, &ex, &ey, &parameter)
+
+
+def fill_all(double[:, :, :, ::1] nodes, tuple sides, tuple parameters):
+    """Interpolate into the planes `nodes` (batch, 2, ni, nj).
+
+    `sides` are (batch, 2, n) and `parameters` (batch, n) for south, north, west and east, contiguous float64.
+    """
+    cdef const double[:, :, ::1] south = sides[0], north = sides[1], west = sides[2], east = sides[3]
+    cdef const double[:, ::1] s = parameters[0], n = parameters[1], w = parameters[2], e = parameters[3]
+    cdef Py_ssize_t batch = nodes.shape[0], ni = nodes.shape[2], nj = nodes.shape[3], b
+    cdef TfiEdges ex, ey, along
+    for side, law, count in zip(sides, parameters, (ni, ni, nj, nj)):
+        if side.shape != (batch, 2, count) or law.shape != (batch, count):
+            raise ValueError(f"edges of shape {side.shape} for {batch} grids of {ni} x {nj}")
+    if nodes.shape[1] != 2:
+        raise ValueError("planes other than x and y")
+    with nogil:
+        for b in range(batch):
+            ex.south, ex.north, ex.west, ex.east = &south[b, 0, 0], &north[b, 0, 0], &west[b, 0, 0], &east[b, 0, 0]
+            ey.south, ey.north, ey.west, ey.east = &south[b, 1, 0], &north[b, 1, 0], &west[b, 1, 0], &east[b, 1, 0]
+            along.south, along.north, along.west, along.east = &s[b, 0], &n[b, 0], &w[b, 0], &e[b, 0]
+            tfi_fill(&nodes[b, 0, 0, 0], &nodes[b, 1, 0, 0], ni, nj, &ex, &ey, &along)

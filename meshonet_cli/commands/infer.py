@@ -25,7 +25,10 @@ ModelName = Annotated[
     ),
 ]
 Polish = Annotated[
-    str, typer.Option("--polish", metavar="auto|off|N", help="Elliptic steps after the operator.")
+    str,
+    typer.Option(
+        "--polish", metavar="auto|off|N", help="Steps after the operator: elliptic ones, or of descent."
+    ),
 ]
 Answer = Annotated[
     Literal["valid", "pasted", "raw"],

@@ -12,7 +12,7 @@ from geometry.boundary import Boundary
 from geometry.grid import Grid
 from solvers.neural.operator import Polish
 from solvers.neural.operator import infer as infer_strip
-from solvers.neural.weights import KIND, kind_of, model_path
+from solvers.neural.weights import KIND, QUADS, kind_of, model_path
 from solvers.solution import Solution
 
 if TYPE_CHECKING:
@@ -31,7 +31,8 @@ def infer(
     Parameters
     ----------
     model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for the shipped one.
-    polish : of the strip operator (`solvers.neural.operator.infer`).
+    polish : of the strip operator (`solvers.neural.operator.infer`) or of a quad model
+        (`solvers.neural.quads.inference.infer_quads`).
     answer : what becomes of the answer of a model that does not meet the boundary exactly.
 
     Raises
@@ -39,8 +40,13 @@ def infer(
     InputError
         a model that does not exist, cannot be read or does not suit the boundary.
     """
-    if model is None or model == "base" or kind_of(model_path(model)) in ("", KIND):
+    kind = KIND if model in (None, "base") else kind_of(model_path(model))
+    if kind in ("", KIND):
         return infer_strip(boundary, model, polish)
+    if model is not None and kind == QUADS:
+        from solvers.neural.quads.inference import infer_quads
+
+        return infer_quads([boundary], model, polish)[0]
     from solvers.neural.trained import load_trained
 
     trained = load_trained(model_path(model))

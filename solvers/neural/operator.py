@@ -41,7 +41,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
 
     Parameters
     ----------
-    boundary : ``o`` goes to the operator; others to the variational method, which measures best for its time.
+    boundary : ``o`` goes to the operator; others to the variational method, which measures best for a single
+        grid.
     model : name of a shipped model or path to a ``.safetensors`` file; None takes the shipped one;
         ``base`` is the harmonic base with no network.
     polish : Picard steps after the network: a number, ``off`` for none, ``auto`` until they change nothing.
@@ -61,8 +62,11 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         from solvers.variational.solve import solve
 
         if model is not None:
-            raise InputError(f"no shipped model makes {boundary.topology} grids", "leave --model out")
+            told = f"model {model} makes o grids, and this boundary is {boundary.topology}"
+            raise InputError(told, "use another model, or leave --model out")
         found = solve_automatic(boundary, solve, "variational")
+        if boundary.topology == "quad":
+            return found
         note = f"no shipped model makes {boundary.topology} grids: made by the variational method"
         return replace(found, notes=(note, *found.notes))
     network = None if model == "base" else load_model(model)

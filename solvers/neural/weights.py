@@ -20,6 +20,7 @@ from solvers.neural.strip import LEVELS
 DEFAULT = "airfoil-o"
 FOLDER = Path(__file__).parent / "pretrained"
 KIND = "meshonet strip operator"
+QUADS = "meshonet quad operator"
 HEADER = "meshonet"  # the metadata entry that holds the header as JSON
 LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
 
@@ -45,16 +46,21 @@ class Model:
         return decode(answer.astype(np.float64), self.basis, self.scale, float(size[0]))
 
 
+SECOND = {"quad-winslow": "quad-general"}
+"""Models that are another answer of a network, by the name of its file."""
+
+
 def shipped() -> tuple[str, ...]:
     """Return the names of the models in the package."""
-    return tuple(sorted(path.stem for path in FOLDER.glob("*.safetensors")))
+    files = {path.stem for path in FOLDER.glob("*.safetensors")}
+    return tuple(sorted(files | {name for name, file in SECOND.items() if file in files}))
 
 
 def model_path(name: str | None) -> Path:
     """Return the file of a shipped model's name, of a path, or of the default."""
     name = name or DEFAULT
     if name in shipped():
-        return FOLDER / f"{name}.safetensors"
+        return FOLDER / f"{SECOND.get(name, name)}.safetensors"
     path = Path(name)
     if path.is_file():
         return path
@@ -143,7 +149,7 @@ def described(name: str) -> dict[str, Any]:
     path = model_path(name)
     header, tensors = read_tensors(path)
     told = ("name", "topology", "recipe", "figures")
-    facts: dict[str, Any] = {key: header[key] for key in told if key in header}
+    facts: dict[str, Any] = {key: header[key] for key in told if key in header} | {"name": name}
     facts["parameters"] = int(sum(array.size for array in tensors.values()))
     facts["file"] = str(path)
     return facts

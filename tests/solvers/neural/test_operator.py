@@ -126,8 +126,9 @@ def test_a_quad_goes_to_the_variational_method_and_says_so() -> None:
     )
     solution = infer(square)
     assert solution.method == "variational"
-    assert solution.notes == ("no shipped model makes quad grids: made by the variational method",)
-    with pytest.raises(InputError, match="no shipped model makes quad grids; leave --model out"):
+    with pytest.raises(
+        InputError, match="model airfoil-o makes o grids, and this boundary is quad; use another"
+    ):
         infer(square, model="airfoil-o")
 
 

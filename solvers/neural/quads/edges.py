@@ -1,0 +1,90 @@
+"""The edges of many four-sided domains with the same node counts, and what is made of them alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from solvers._tfi import fill_all
+
+Sides = tuple[Floats, Floats, Floats, Floats]
+"""Of south, north, west and east."""
+
+
+@dataclass(frozen=True)
+class Edges:
+    """South, north (batch, 2, ni), west and east (batch, 2, nj) of a batch of domains."""
+
+    south: Floats
+    north: Floats
+    west: Floats
+    east: Floats
+
+    @classmethod
+    def of(cls, boundaries: Sequence[Boundary]) -> Edges:
+        """Return the edges of boundaries that have the same node counts."""
+        names = ("south", "north", "west", "east")
+        return cls(*(_planes([getattr(boundary, name) for boundary in boundaries]) for name in names))
+
+    def __len__(self) -> int:
+        return len(self.south)
+
+    def __getitem__(self, rows: slice) -> Edges:
+        return Edges(*(side[rows] for side in self.sides))
+
+    @property
+    def sides(self) -> Sides:
+        """The four."""
+        return self.south, self.north, self.west, self.east
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Nodes along xi and eta."""
+        return self.south.shape[-1], self.west.shape[-1]
+
+    def thinned(self, ni: int, nj: int) -> Edges:
+        """Return the edges with ni and nj nodes, at equal steps of the index of the given ones."""
+        south, north = between(self.south, ni), between(self.north, ni)
+        return Edges(south, north, between(self.west, nj), between(self.east, nj))
+
+    def laws(self) -> Sides:
+        """Return the length up to each node over the whole edge's, (batch, n) for each side, 0 to 1."""
+        south, north, west, east = (_fraction(side) for side in self.sides)
+        return south, north, west, east
+
+    def interpolated(self, laws: Sides) -> Floats:
+        """Return the planes (batch, 2, ni, nj) of transfinite interpolation with `laws` along the edges."""
+        nodes = np.empty((len(self), 2, *self.counts))
+        fill_all(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
+        return nodes
+
+
+def between(values: Floats, n: int) -> Floats:
+    """Return (..., n), linear between the columns of `values` (..., m), at equal steps; the ends are kept."""
+    m = values.shape[-1]
+    if n == m:
+        return values
+    at = np.arange(n) * ((m - 1) / (n - 1))
+    first = np.minimum(at.astype(np.intp), m - 2)
+    t = at - first
+    if not t[:-1].any():
+        return np.ascontiguousarray(values[..., np.append(first[:-1], m - 1)])
+    result = values[..., first] + t * (values[..., first + 1] - values[..., first])
+    result[..., -1] = values[..., -1]
+    return np.ascontiguousarray(result)
+
+
+def _fraction(side: Floats) -> Floats:
+    steps = np.diff(side)
+    along = np.zeros((len(side), side.shape[-1]))
+    np.cumsum(np.hypot(steps[:, 0], steps[:, 1]), axis=-1, out=along[:, 1:])
+    along /= along[:, -1:]
+    return along
+
+
+def _planes(edges: Sequence[Floats]) -> Floats:
+    return np.ascontiguousarray(np.moveaxis(np.stack(edges), -1, 1))

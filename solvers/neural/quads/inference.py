@@ -1,0 +1,130 @@
+"""Boundaries to solutions by a quad model: the batch's grids, then what polish each was asked for."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError, SolverError
+from geometry.grid import Grid
+from solvers.neural.operator import Polish
+from solvers.neural.quads.edges import Edges
+from solvers.neural.quads.model import ANSWERS, QuadModel, load_quads
+from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
+from solvers.neural.weights import model_path
+from solvers.solution import Solution
+
+WINSLOW = 0
+"""Number of the answer that is Winslow's grid."""
+
+AUTO = {WINSLOW: 1, 1: 5}
+"""Steps of "auto": cycles of multigrid, or of descent."""
+
+SOLVED = 65
+"""Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
+
+DESCENDED, OTHERWISE = 513, 257
+"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with.
+
+Steps on the network's own grid gain as much of the angles in the mean, but leave folds and kinks between its
+nodes; at full resolution these go first.
+"""
+
+STILL = 1e-4
+"""Moves at which a descent stops sooner, as `solvers.variational.solve.STILL`."""
+
+
+def infer_quads(
+    boundaries: Sequence[Boundary],
+    model: str,
+    polish: Polish = "auto",
+    dtype: str = "float64",
+) -> list[Solution]:
+    """Return a grid inside each of the boundaries by a quad model.
+
+    Parameters
+    ----------
+    boundaries : of four-sided domains; those with equal node counts go through the network together.
+    model : ``quad-general``, ``quad-winslow``, or the path of a file, whose variational answer is taken.
+    polish : steps after the network: of descent for the variational answer, multigrid cycles for Winslow's;
+        a number, ``off`` or ``auto``.
+    dtype : arithmetic of the network: ``float64``, or ``float32``, with which grids differ by 1e-6 of
+        their size and invariances hold to that.
+
+    Returns
+    -------
+    list
+        of a solution for each boundary, whose edges it has bitwise. Grids may be folded: see `solvers.guard`.
+        Seconds are a batch's, divided by its members.
+
+    Raises
+    ------
+    InputError
+        no such model, or one that cannot be read; a boundary of another topology.
+    """
+    answer = model if model in ANSWERS else ANSWERS[-1]
+    for boundary in boundaries:
+        if boundary.topology != "quad":
+            told = f"model {model} makes quad grids, and this boundary is {boundary.topology}"
+            raise InputError(told, "use another model", source=boundary.name)
+    held, head = load_quads(model_path(model)), ANSWERS.index(answer)
+    held.network(dtype)  # made once a process: no part of a grid's time
+    name = answer if model in ANSWERS else held.name
+    steps = AUTO[head] if polish == "auto" else 0 if polish == "off" else polish
+    found: dict[int, Solution] = {}
+    for group in in_batches(boundaries):
+        begun = time.perf_counter()
+        members = [boundaries[k] for k in group]
+        planes, taken = _polished(members, held, head, steps, dtype)
+        spent = (time.perf_counter() - begun) / len(group)
+        for k, boundary, nodes, cycles in zip(group, members, planes, taken, strict=True):
+            facts = {"method": "operator", "model": name, "polish": cycles}
+            grid = Grid(np.moveaxis(nodes, 0, -1), "quad", boundary.parts, boundary.name, facts)
+            found[k] = Solution(grid, "operator", model=name, cycles=cycles, seconds={"grid": spent})
+    return [found[k] for k in range(len(boundaries))]
+
+
+def _polished(
+    boundaries: Sequence[Boundary], model: QuadModel, head: int, steps: int, dtype: str
+) -> tuple[Floats, list[int]]:
+    """Return the planes (batch, 2, ni, nj) of boundaries with equal counts, and the steps taken for each."""
+    edges = Edges.of(boundaries)
+    coarse = coarse_grids(edges, model, head, dtype)
+    if not steps:
+        return evaluate(coarse, edges), [0] * len(boundaries)
+    counts = tuple(_polished_on(n, head) for n in edges.counts)
+    planes = evaluate(coarse, edges.thinned(*counts))
+    taken = [_cycles(one, steps) if head == WINSLOW else _descent(one, steps) for one in planes]
+    return (planes if counts == edges.counts else evaluate(planes, edges)), taken
+
+
+def _polished_on(n: int, head: int) -> int:
+    if head == WINSLOW:
+        return min(n, SOLVED)
+    return n if n <= DESCENDED else OTHERWISE
+
+
+def _descent(planes: Floats, steps: int) -> int:
+    """Descend from the planes (2, n, n) in place; return the steps taken."""
+    from solvers.variational.functional import Weights
+    from solvers.variational.solve import descend
+
+    return descend(np.moveaxis(planes, 0, -1), Weights(), STILL, steps)[0]
+
+
+def _cycles(planes: Floats, steps: int) -> int:
+    """Solve Winslow's equations from the planes (2, n, n) by so many cycles, in place; return how many."""
+    from solvers.elliptic.solve import solve
+
+    nodes = np.moveaxis(planes, 0, -1)
+    boundary = Boundary(nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])
+    try:
+        solution = solve(boundary, tol=1e-12, max_cycles=steps, initial=Grid(nodes.copy(order="K")))
+    except SolverError:
+        return 0
+    nodes[:] = solution.grid.nodes
+    return solution.cycles or 0

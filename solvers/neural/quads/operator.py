@@ -1,0 +1,95 @@
+"""Four-sided domains to grids by the quad network: once for a whole batch, at any resolution.
+
+::
+
+    edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> features -> network
+          -> 33 x 33 grid, its rim that of the edges -> splines -> grid at the edges' own counts
+
+The last step is that of `solvers.coarse`: the difference from transfinite interpolation is smooth, so it is
+evaluated anywhere and added to the interpolation of the full edges, which are met bitwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from geometry.boundary import Boundary
+from solvers._combine import add_rows
+from solvers.neural.quads._network import look
+from solvers.neural.quads.edges import Edges, between
+from solvers.neural.quads.features import FEATURES
+from solvers.neural.quads.frame import frame
+from solvers.neural.quads.model import NODES, SCALE, QuadModel
+from solvers.neural.quads.network import CHUNK
+from solvers.spline import bending, places, spline_matrix
+
+BATCH = 64
+"""Domains in memory at a time at the most."""
+
+
+def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float64") -> Floats:
+    """Return the planes (batch, 2, n, n) of the network's grids inside the `edges` at n = 33 nodes each.
+
+    Parameters
+    ----------
+    head : index into `model.ANSWERS`.
+    dtype : of the network's arithmetic, ``float64`` or ``float32``; all else is float64.
+    """
+    thin = edges.thinned(NODES, NODES)
+    base = thin.interpolated(thin.laws())
+    z = base[:, 0] + 1j * base[:, 1]
+    middle, factor = (np.asarray(value) for value in frame(z, np))
+    network = model.network(dtype)
+    scratch = np.empty((2, NODES, NODES))
+    for k in range(0, len(base), CHUNK):
+        chunk = base[k : k + CHUNK]
+        seen = np.empty((len(chunk), NODES, NODES, FEATURES), dtype)
+        look(chunk, _pairs(middle[k : k + CHUNK]), _pairs(factor[k : k + CHUNK]), scratch, seen)
+        moved = network(seen)[:, head] * (SCALE / factor[k : k + CHUNK, None, None])
+        chunk[:, 0] += moved.real
+        chunk[:, 1] += moved.imag
+    return base
+
+
+def evaluate(coarse: Floats, edges: Edges) -> Floats:
+    """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
+    m, n = coarse.shape[2:]
+    ni, nj = edges.counts
+    laws = edges.laws()
+    rim = Edges(*(np.ascontiguousarray(side) for side in rims(coarse)))
+    south, north, west, east = laws
+    thin = between(south, m), between(north, m), between(west, n), between(east, n)
+    difference = coarse - rim.interpolated(thin)
+    nodes = edges.interpolated(laws)
+    values = difference @ np.ascontiguousarray(spline_matrix(n, nj).T)
+    bends = bending(m, False) @ values
+    first, weights = places(m, ni)
+    for plane, value, bend in zip(_flat(nodes), _flat(values), _flat(bends), strict=True):
+        add_rows(plane, first, weights, value, bend, False)
+    return nodes
+
+
+def rims(planes: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return south, north, west and east of grids (batch, 2, m, n)."""
+    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
+
+
+def in_batches(boundaries: Sequence[Boundary]) -> Iterator[list[int]]:
+    """Yield indices of boundaries with equal node counts, `BATCH` at the most, each boundary once."""
+    groups: dict[tuple[int, int], list[int]] = {}
+    for k, boundary in enumerate(boundaries):
+        groups.setdefault((boundary.ni, boundary.nj), []).append(k)
+    for group in groups.values():
+        for k in range(0, len(group), BATCH):
+            yield group[k : k + BATCH]
+
+
+def _flat(planes: Floats) -> Floats:
+    return planes.reshape(-1, *planes.shape[2:])
+
+
+def _pairs(values: Complexes) -> Floats:
+    return np.ascontiguousarray(values).view(np.float64).reshape(-1, 2)

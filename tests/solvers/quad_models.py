@@ -1,0 +1,24 @@
+"""A quad model of small random weights, for tests that need a file and no quality."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from solvers.neural.quads.model import ANSWERS, write_quads
+from solvers.neural.quads.network import shapes
+
+WIDTHS, BLOCKS = (1, 2, 2), (0, 1, 1)
+
+
+def random_model(path: Path, size: float = 0.05) -> Path:
+    """Write a model whose answers are smooth and of about this size, and return its path."""
+    rng = np.random.default_rng(0)
+    weights = {
+        name: rng.normal(size=shape) * (1.0 / np.prod(shape[1:])) ** 0.5
+        for name, shape in shapes(WIDTHS, BLOCKS, len(ANSWERS)).items()
+    }
+    weights["project"] *= size
+    write_quads(path, weights, widths=WIDTHS, blocks=BLOCKS, name="random", recipe={}, figures={})
+    return path

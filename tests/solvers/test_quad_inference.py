@@ -1,0 +1,161 @@
+"""Four-sided domains through a quad model of random weights: exact edges, symmetries, batches, polish."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quad_models import random_model
+from random_quads import random_quad
+from solver_shapes import arch, hexagon, ring, segment, wrench
+
+from geometry.arrays import SIDES, Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from solvers.coarse import evaluate, thinned
+from solvers.elliptic.solve import solve as winslow
+from solvers.neural.inference import infer
+from solvers.neural.quads import operator
+from solvers.neural.quads.edges import Edges
+from solvers.neural.quads.inference import infer_quads
+from solvers.neural.quads.model import load_quads
+from solvers.neural.quads.symmetry import ELEMENTS, ORDER
+
+SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> str:
+    return str(random_model(tmp_path_factory.mktemp("model") / "random.safetensors"))
+
+
+def nodes(boundary: Boundary, model: str, polish: int = 0) -> Floats:
+    return infer_quads([boundary], model, polish)[0].grid.nodes
+
+
+@pytest.mark.parametrize("polish", [0, 2])
+@pytest.mark.parametrize("boundary", SHAPES, ids=lambda b: f"{b.name}-{b.ni}x{b.nj}")
+def test_edges_are_met_bitwise(boundary: Boundary, model: str, polish: int) -> None:
+    found = nodes(boundary, model, polish)
+    edges = {"south": found[:, 0], "north": found[:, -1], "west": found[0], "east": found[-1]}
+    for side, edge in edges.items():
+        np.testing.assert_array_equal(edge, getattr(boundary, side))
+
+
+def turned(boundary: Boundary, matrix: Floats, away: Floats) -> Boundary:
+    return replace(boundary, parts=(), **{side: getattr(boundary, side) @ matrix.T + away for side in SIDES})
+
+
+@pytest.mark.parametrize("polish", [0, 2])
+def test_a_domain_moved_turned_and_scaled_has_the_grid_moved_turned_and_scaled(
+    model: str, polish: int
+) -> None:
+    boundary = random_quad(3, 65, 49)
+    assert boundary is not None
+    angle = 0.7
+    matrix = 3.1 * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    away = np.array([5.0, -2.0])
+    expected = nodes(boundary, model, polish) @ matrix.T + away
+    found = nodes(turned(boundary, matrix, away), model, polish)
+    close = 1e-12 if polish == 0 else 1e-7  # the descent's preconditioner is in single precision
+    np.testing.assert_allclose(found, expected, rtol=0, atol=close * 10)
+
+
+def relabelled(grid: Floats, element: int) -> Floats:
+    """Return nodes (n, n, 2) with index axes and plane moved by an element of the symmetry group."""
+    turn, n = ELEMENTS[element], len(grid)
+    centred = np.arange(n) - (n - 1) / 2
+    places = np.stack(np.meshgrid(centred, centred, indexing="ij")).reshape(2, -1)
+    i, j = np.rint(turn @ places + (n - 1) / 2).astype(int)
+    return np.asarray(grid[i, j].reshape(grid.shape) @ turn)
+
+
+def rimmed(grid: Floats) -> Boundary:
+    return Boundary(grid[:, 0], grid[:, -1], grid[0], grid[-1])
+
+
+@pytest.mark.parametrize("n", [33, 50, 65])
+@pytest.mark.parametrize("element", range(ORDER))
+def test_a_relabelled_or_mirrored_domain_has_the_relabelled_grid(model: str, element: int, n: int) -> None:
+    boundary = random_quad(5, n, n)
+    assert boundary is not None
+    plain = nodes(boundary, model)
+    found = nodes(rimmed(relabelled(plain, element)), model)
+    np.testing.assert_allclose(found, relabelled(plain, element), rtol=0, atol=1e-12)
+
+
+def test_a_batch_has_the_grids_of_its_members_alone(model: str) -> None:
+    together = infer_quads(SHAPES, model, 1)
+    for boundary, solution in zip(SHAPES, together, strict=True):
+        assert solution.grid.name == boundary.name
+        np.testing.assert_array_equal(solution.grid.nodes, nodes(boundary, model, 1))
+
+
+def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
+    boundary = arch(90, 70)
+    edges = Edges.of([boundary])
+    coarse = operator.coarse_grids(edges, load_quads(Path(model)), 1)
+    (found,) = operator.evaluate(coarse, edges)
+    expected = evaluate(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
+    np.testing.assert_array_equal(np.moveaxis(found, 0, -1), expected)
+    thin = edges.thinned(33, 33)
+    for side in SIDES:
+        np.testing.assert_allclose(
+            getattr(thin, side)[0].T, getattr(thinned(boundary, 33, 33), side), atol=1e-15
+        )
+
+
+def test_single_precision_of_the_network_changes_the_sixth_digit(model: str) -> None:
+    exact = infer_quads(SHAPES, model, "off")
+    rough = infer_quads(SHAPES, model, "off", dtype="float32")
+    for one, other in zip(exact, rough, strict=True):
+        gap = np.abs(one.grid.nodes - other.grid.nodes).max()
+        assert 0 < gap < 1e-5 * np.ptp(one.grid.nodes)
+
+
+def test_the_report_names_model_and_steps(model: str) -> None:
+    solution = infer(arch(40, 30), model=model, polish=2)
+    assert (solution.method, solution.model, solution.cycles) == ("operator", "random", 2)
+    assert solution.grid.provenance["model"] == "random"
+
+
+def test_polish_descends_the_functional(model: str) -> None:
+    from solvers.variational.functional import Weights, aspect_of, energy
+
+    boundary = arch(65, 65)
+    values = []
+    for steps in (0, 2, 5):
+        found = nodes(boundary, model, steps)
+        values.append(energy(found, aspect_of(found), Weights(), 1e-9))
+    assert values[0] > values[1] > values[2]
+
+
+def test_cycles_bring_the_winslow_answer_to_winslows_solution(
+    model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("solvers.neural.quads.inference.model_path", lambda _: Path(model))
+    boundary = arch(65, 65)
+    goal = winslow(boundary, tol=1e-10).grid.nodes
+    errors = [
+        np.linalg.norm(infer_quads([boundary], "quad-winslow", steps)[0].grid.nodes - goal)
+        for steps in (0, 1, 2)
+    ]
+    assert errors[1] < 0.3 * errors[0]
+    assert errors[2] < 0.3 * errors[1]
+
+
+def test_other_topologies_are_refused(model: str) -> None:
+    angle = -2 * np.pi * np.arange(21) / 20
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    with pytest.raises(InputError, match="makes quad grids, and this boundary is o; use another model"):
+        infer(ring(circle, 4 * circle, 9), model=model)
+
+
+def test_domains_far_from_any_in_training_give_finite_grids(model: str) -> None:
+    sliver = Boundary(
+        segment((0, 0), (1e3, 0), 40), segment((0, 1e-3), (1e3, 1e-3), 40),
+        segment((0, 0), (0, 1e-3), 30), segment((1e3, 0), (1e3, 1e-3), 30),
+    )  # fmt: skip
+    assert np.isfinite(nodes(sliver, model)).all()

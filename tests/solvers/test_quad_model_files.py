@@ -1,0 +1,66 @@
+"""Files of quad models are untrusted input."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from quad_models import BLOCKS, WIDTHS, random_model
+from safetensors.numpy import load_file, save_file
+
+from geometry.errors import InputError
+from solvers.neural.quads.model import ENCODING, load_quads
+from solvers.neural.weights import HEADER, QUADS
+
+
+def header(**changes: object) -> dict[str, str]:
+    settings = {"widths": list(WIDTHS), "blocks": list(BLOCKS)}
+    return {HEADER: json.dumps({"kind": QUADS, "encoding": ENCODING, "settings": settings, **changes})}
+
+
+def copied(folder: Path, metadata: dict[str, str], **arrays: np.ndarray) -> Path:
+    tensors = load_file(random_model(folder / "model.safetensors")) | arrays
+    save_file(tensors, folder / "copy.safetensors", metadata=metadata)
+    return folder / "copy.safetensors"
+
+
+def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
+    found = load_quads(copied(tmp_path, header()))
+    assert (found.name, found.blocks) == ("copy", BLOCKS)
+    assert found.network().heads == 2
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"kind": "meshonet strip operator"}, "it holds 'meshonet strip operator', encoding 1"),
+        ({"encoding": 2}, "encoding 2"),
+        ({"settings": {"widths": [1, 2, 2]}}, "do not fit \\('blocks'"),
+        ({"settings": {"widths": [1, 2, 3], "blocks": [0, 1, 1]}}, "other names or shapes"),
+        ({"settings": {"widths": [1, 2, 10**9], "blocks": [0, 1, 1]}}, "widths"),
+        ({"settings": {"widths": [1] * 30, "blocks": [0] * 30}}, "30 levels"),
+        ({"settings": {"widths": "122", "blocks": [0, 1, 1]}}, "'122' in place of counts"),
+        ({"settings": {"widths": [1, 2, True], "blocks": [0, 1, 1]}}, "in place of counts"),
+        ({"settings": []}, "do not fit"),
+    ],
+)
+def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
+    path = copied(tmp_path, header(**changes))
+    with pytest.raises(InputError, match=told) as caught:
+        load_quads(path)
+    assert str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("arrays", "told"),
+    [
+        ({"lift": np.full((1, 17), np.nan, np.float32)}, "not finite"),
+        ({"lift": np.zeros((17, 1), np.float32)}, "other names or shapes"),
+        ({"more": np.zeros(1, np.float32)}, "other names or shapes"),
+    ],
+)
+def test_arrays_that_do_not_fit_are_refused(tmp_path: Path, arrays: dict[str, np.ndarray], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        load_quads(copied(tmp_path, header(), **arrays))
