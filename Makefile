@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.c' -o -name '*.h')
 
-.PHONY: help demo test test-clients fuzz kills lint train paper paper-quick bench docs clean
+.PHONY: help demo test test-clients fuzz kills lint train train-airfoils train-quads paper paper-quick bench docs clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -13,7 +13,7 @@ help:
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
-	@echo 'make train   the shipped model again, from procedural airfoils (resumable; about an hour on one core)'
+	@echo 'make train   the shipped models again, from random shapes (resumable; about two hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
 	@echo 'make docs    the generated pages and pictures of docs/'
@@ -70,14 +70,36 @@ lint: $(VENV)/.developing
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# --- the shipped model: the recipe is in its header and in docs/models.md
-MODEL := solvers/neural/pretrained/airfoil-o.safetensors
-train: $(VENV)/.developing
+# --- the shipped models: the recipes are in their headers and in docs/models.md
+MODELS := solvers/neural/pretrained
+train: train-airfoils train-quads
+
+train-airfoils: $(VENV)/.developing
 	@mkdir -p train
 	test -f train/airfoils.h5 || \
 	  $(BIN)/meshonet sample-boundary --family procedural --count 6000 --seed 1 --res 257x5 -o train/airfoils.h5
 	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume
-	cp train/airfoil-o.safetensors $(MODEL)
+	cp train/airfoil-o.safetensors $(MODELS)
+
+# the same domains by both methods; Winslow's with twice the nodes, of which every other one is kept
+SEEDED := sample-boundary --family four-sided --count 18600 --seed 1
+train-quads: train/winslow.h5 train/variational.h5
+	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o train/quad-general.safetensors \
+	  --epochs 32 --seed 0 --resume
+	cp train/quad-general.safetensors $(MODELS)
+
+train/winslow.h5: $(VENV)/.developing
+	@mkdir -p train
+	$(BIN)/meshonet $(SEEDED) --res 65 -q -o train/quads-65.h5
+	$(BIN)/meshonet solve-pde train/quads-65.h5 -q -o train/winslow-65.h5
+	$(BIN)/meshonet convert train/winslow-65.h5 --coarsen 2 -q -o $@
+	rm train/winslow-65.h5 train/quads-65.h5
+
+train/variational.h5: $(VENV)/.developing
+	@mkdir -p train
+	$(BIN)/meshonet $(SEEDED) --res 33 -q -o train/quads-33.h5
+	$(BIN)/meshonet solve-pde train/quads-33.h5 --method variational -q -o $@
+	rm train/quads-33.h5
 
 # --- the MeshONet paper from its families to docs/paper: hours (it goes on where it stopped), or minutes
 PAPER = $(MAKE) -C examples/paper MESHONET=$(abspath $(BIN))/meshonet PYTHON=$(abspath $(BIN))/python

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -80,13 +81,15 @@ def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None
 def _trained(
     name: str, sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None
 ) -> dict[str, Any]:
-    from solvers.neural.registry import STRIP, operator
+    from solvers.neural.registry import QUAD, STRIP, operator
 
     recipe = {"command": "meshonet train", "datasets": [Path(s).name for s in sources]}
     rest: dict[str, Any] = {"recipe": recipe, "resume": run.resume}
     output = Path(run.output)
     if name == STRIP:
         return _train_strip(sources, run, session, fellows, fmt, rest)
+    if name == QUAD:
+        return _train_quads(sources, run, session, fellows, fmt, rest)
     from solvers.neural.fit.operators import PLAN, train_operator
 
     samples = _samples(sources, run, fmt)
@@ -125,6 +128,44 @@ def _train_strip(
     network, base = figures["network"]["median"], figures["base"]["median"]
     session.note(f"{run.output}: held-out error {network:.1e}, without the network {base:.1e} (medians)")
     return {"shapes": len(strips), "figures": figures}
+
+
+def _train_quads(
+    sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
+) -> dict[str, Any]:
+    from solvers.neural.fit.quads import HELD_OUT, PLAN, quads, train_quads
+    from solvers.neural.quads.encoding import HEADS
+
+    if run.settings or run.split or run.plan.get("points"):
+        told = "the quad operator takes no --set, --split or --points"
+        raise InputError(told, "leave them out, or choose another --model")
+    plan = _planned(PLAN, run.plan, long=False)
+    solved = dict(_by_method(source, fmt) for source in sources)
+    if sorted(solved) != sorted(HEADS):
+        told = f"grids by {' and '.join(sorted(solved))} for the quad operator"
+        raise InputError(
+            told, "give one dataset of solve-pde --method winslow and one of --method variational"
+        )
+    given = quads(solved["variational"], solved["winslow"])
+    session.note(f"{len(given)} domains solved by both methods")
+    held_out = HELD_OUT if run.held_out is None else run.held_out
+    log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
+    figures = train_quads(given, Path(run.output), plan, fellows, held_out=held_out, report=log, **rest)
+    for head in HEADS:
+        told = (
+            f"{figures[head]['relative_l2']['median']:.1e}, without the network {figures[head]['base']:.1e}"
+        )
+        session.note(f"{run.output}: held-out distance to {head} grids {told} (medians)")
+    return {"shapes": len(given), "figures": figures}
+
+
+def _by_method(source: str, fmt: str | None) -> tuple[str, Samples]:
+    """Return the method that made the first grid of a dataset, and all its grids."""
+    from solvers.neural.samples import gathered
+
+    grids = read_grids(source, fmt)
+    first = next(grids)
+    return str(first.provenance.get("method", "an unknown method")), gathered(chain([first], grids))
 
 
 def _planned(standard: Plan, given: Mapping[str, Any], *, long: bool) -> Plan:

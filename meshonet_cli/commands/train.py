@@ -18,15 +18,17 @@ Dataset = Annotated[
     typer.Argument(
         metavar="DATASET", show_default=False,
         help="Solved grids of one family (solve-pde, .h5); for the strip operator O boundaries, e.g. from "
-        "sample-boundary --family procedural.",
+        "sample-boundary --family procedural; for the quad operator 33x33 grids of the same domains by "
+        "winslow and by variational, a dataset each.",
     ),
 ]
 Model = Annotated[
     str | None,
     typer.Option(
         "--model", metavar="NAME", show_default=False,
-        help="strip (airfoil operator), meshonet (the paper's), meshonet-hard (exact boundary), deeponet, "
-        "pod-deeponet, fno1d, fno2d (the baselines), mionet, mgnet, meshnet (physics-informed). "
+        help="strip (airfoil operator), quad (four-sided operator), meshonet (the paper's), meshonet-hard "
+        "(exact boundary), deeponet, pod-deeponet, fno1d, fno2d (the baselines), mionet, mgnet, meshnet "
+        "(physics-informed). "
         "[default: meshonet for grids, strip for boundaries]",
     ),
 ]
@@ -49,18 +51,21 @@ Epochs = Annotated[
     int | None,
     typer.Option(
         "--epochs", min=1, show_default=False,
-        help="Passes over the shapes. [default: strip 24, others 15000]",
+        help="Passes over the shapes. [default: strip 24, quad 32, others 15000]",
     ),
 ]
 Batch = Annotated[
     int | None,
-    typer.Option("--batch", min=1, show_default=False, help="Shapes a step. [default: strip 32, others 30]"),
+    typer.Option(
+        "--batch", min=1, show_default=False,
+        help="Shapes a step. [default: strip 32, quad 64, others 30]",
+    ),
 ]
 Rate = Annotated[
     float | None,
     typer.Option(
         "--rate", "--lr", show_default=False,
-        help="Largest learning rate. [default: strip 0.002, others 0.001]",
+        help="Largest learning rate. [default: strip 0.002, quad 0.003, others 0.001]",
     ),
 ]
 Schedule = Annotated[
@@ -68,7 +73,7 @@ Schedule = Annotated[
     typer.Option(
         "--schedule", metavar="cosine|step", show_default=False,
         help="Learning rate: cosine to zero, or times 0.9 every fifteenth of the epochs. [default: strip "
-        "cosine, others step]",
+        "and quad cosine, others step]",
     ),
 ]
 Points = Annotated[
@@ -82,8 +87,8 @@ HeldOut = Annotated[
     int | None,
     typer.Option(
         "--held-out", metavar="N", min=0, show_default=False,
-        help="Shapes to train on that are kept out, to watch the loss. [default: strip the last 300, others "
-        "none]",
+        help="Shapes to train on that are kept out, to watch the loss. [default: strip the last 300, quad "
+        "600, others none]",
     ),
 ]
 Patience = Annotated[
@@ -99,7 +104,8 @@ DeviceName = Annotated[
     Literal["auto", "cpu", "cuda"] | None,
     typer.Option(
         "--device", metavar="auto|cpu|cuda", show_default=False,
-        help="Where to compute; auto takes CUDA where torch sees it. [default: strip cpu, others auto]",
+        help="Where to compute; auto takes CUDA where torch sees it. [default: strip and quad cpu, others "
+        "auto]",
     ),
 ]
 Amp = Annotated[bool, typer.Option("--amp", help="Multiply in bfloat16 where that is safe.")]
@@ -113,7 +119,7 @@ CheckpointEvery = Annotated[
     int | None,
     typer.Option(
         "--checkpoint-every", metavar="EPOCHS", min=1, show_default=False,
-        help="Epochs between checkpoints. [default: strip 1, others a two-hundredth of all]",
+        help="Epochs between checkpoints. [default: strip and quad 1, others a two-hundredth of all]",
     ),
 ]
 LogCsv = Annotated[

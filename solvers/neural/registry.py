@@ -14,6 +14,9 @@ from solvers.neural.models.model import Operator
 STRIP = "strip"
 """The airfoil operator in the periodic strip: trained from boundaries, shipped with the package."""
 
+QUAD = "quad"
+"""The operator for four-sided domains: trained from Winslow's and variational grids, shipped too."""
+
 OPERATORS: dict[str, tuple[str, str]] = {
     "meshonet": ("meshonet", "MeshONet"),
     "meshonet-hard": ("meshonet_hard", "MeshONetHard"),
@@ -27,7 +30,7 @@ OPERATORS: dict[str, tuple[str, str]] = {
 }
 """Module and class of the models that are trained on solved grids, in the order of the help."""
 
-MODELS = (STRIP, *OPERATORS)
+MODELS = (STRIP, QUAD, *OPERATORS)
 
 
 def operator(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Operator:

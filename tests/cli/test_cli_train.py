@@ -157,7 +157,7 @@ def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, a
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--model", "perceptron"), "model 'perceptron' is not known; use one of strip, meshonet"),
+        (("--model", "perceptron"), "model 'perceptron' is not known; use one of strip, quad, meshonet"),
         (("--split", "halves"), "--split: 'halves' is neither a way to split nor a file"),
         (
             ("--split", "words.txt"),
@@ -211,3 +211,21 @@ def arrays(path: str) -> dict[str, np.ndarray]:
     from safetensors.numpy import load_file
 
     return dict(load_file(path))
+
+
+def test_the_quad_operator_learns_from_grids_by_both_methods(meshonet: Meshonet) -> None:
+    words = ("--family", "four-sided", "--count", "72", "--res", "33", "--quiet")
+    assert meshonet("sample-boundary", *words, "-o", "b.h5").code == 0
+    for method in ("winslow", "variational"):
+        words = ("solve-pde", "b.h5", "--method", method, "--allow-invalid", "-q", "-o", f"{method}.h5")
+        assert meshonet(*words).code == 0
+    words = ("--model", "quad", "--epochs", "1", "--held-out", "4", "-o", "q.safetensors")
+    done = meshonet("train", "winslow.h5", "variational.h5", *words)
+    assert done.code == 0, done.err
+    assert "72 domains solved by both methods" in done.err
+    assert "held-out distance to winslow grids" in done.err
+    assert Path("q.safetensors").stat().st_size > 10_000
+    refused = meshonet("train", "winslow.h5", "--model", "quad", "-o", "r.safetensors")
+    assert refused.code == 2
+    assert "grids by winslow for the quad operator; give one dataset" in refused.err
+    assert not Path("r.safetensors").exists()

@@ -14,11 +14,9 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from solvers.neural.quads import kernels
+from solvers.neural.quads.encoding import HEADS
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
-
-HEADS = 2
-"""Answers: Winslow's grid and the variational one."""
 
 
 class GroupConvolution(nn.Module):
@@ -82,7 +80,7 @@ class QuadUNet(nn.Module):
         self.before = nn.ModuleList(_blocks(widths[k], blocks[k]) for k in range(count))
         self.after = nn.ModuleList(_blocks(widths[k], blocks[k]) for k in range(count - 1))
         self.last = GroupConvolution(widths[0], widths[0])
-        self.project = nn.Parameter(0.1 * widths[0] ** -0.5 * torch.randn(HEADS, 2, widths[0]))
+        self.project = nn.Parameter(0.1 * widths[0] ** -0.5 * torch.randn(len(HEADS), 2, widths[0]))
         self.register_buffer("seen", torch.tensor(SEEN, dtype=torch.float32), persistent=False)
         self.register_buffer("elements", torch.tensor(ELEMENTS, dtype=torch.float32), persistent=False)
 

@@ -1,0 +1,256 @@
+"""Training of the quad operator on Winslow's and variational grids of the same domains."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+from geometry.arrays import Complexes, Floats
+from geometry.errors import InputError
+from solvers.neural.fit.checkpoint import beside
+from solvers.neural.fit.energy import energies
+from solvers.neural.fit.loop import Progress, fit
+from solvers.neural.fit.plan import Plan
+from solvers.neural.fit.task import Task
+from solvers.neural.fit.team import Team
+from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.encoding import LATENT, SCALE
+from solvers.neural.quads.export import held_out_figures, write_model
+from solvers.neural.quads.features import features
+from solvers.neural.quads.frame import frame
+from solvers.neural.samples import Samples
+from solvers.tfi import interpolate, parameters
+
+PLAN = Plan(
+    epochs=32, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
+)
+"""The shipped model's."""
+
+HELD_OUT = 600
+
+AVERAGED = 0.999
+"""Of the running mean of the weights, whose answers count, each step keeps so much."""
+
+ENERGY = (0.3, 0.6)
+"""Between these shares of the steps the variational functional comes into the loss."""
+
+ENERGY_WEIGHT = 0.3
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """The network's, as `solvers.neural.models.quad_unet.QuadUNet` takes them."""
+
+    widths: tuple[int, ...] = (2, 3, 6, 8)
+    blocks: tuple[int, ...] = (0, 1, 1, 2)
+
+
+@dataclass(frozen=True)
+class Quads:
+    """m domains of unit size: transfinite `base`, `winslow` and `variational` grids (m, n, n), complex64."""
+
+    base: Tensor
+    winslow: Tensor
+    variational: Tensor
+
+    def __len__(self) -> int:
+        return len(self.base)
+
+    def __getitem__(self, rows: Any) -> Quads:
+        return Quads(self.base[rows], self.winslow[rows], self.variational[rows])
+
+
+class QuadTask(Task):
+    """The quad network: distances of steps to both targets' steps, then the functional of its answer as well.
+
+    Parameters
+    ----------
+    training, held_out : domains.
+    sizes : of the network.
+    steps : in the whole run.
+    device : to compute on.
+    """
+
+    parts: ClassVar[tuple[str, ...]] = ("winslow", "variational", "energy")
+
+    def __init__(
+        self, training: Quads, held_out: Quads, sizes: Sizes, steps: int, device: torch.device
+    ) -> None:
+        super().__init__()
+        self.training_set, self.held_out, self.steps = training, held_out, steps
+        self.net = QuadUNet(sizes.widths, sizes.blocks)
+        self.mean = copy.deepcopy(self.net).requires_grad_(requires_grad=False)
+        self.count = len(training)
+        self.to(device)
+        self.device = device
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the parts of the loss over the domains `rows`."""
+        self._average(step)
+        given = self.training_set[rows.cpu()]
+        base, winslow, variational = (
+            z.to(self.device) for z in (given.base, given.winslow, given.variational)
+        )
+        answer = SCALE * self.net(features(base, torch))
+        found = base[:, None] + answer
+        share = step / self.steps
+        weight = float(np.clip((share - ENERGY[0]) / (ENERGY[1] - ENERGY[0]), 0.0, 1.0))
+        parts = [_missed(found[:, 0], winslow), _missed(found[:, 1], variational)]
+        if weight > 0:
+            cell = 1.0 / (base.shape[-1] - 1) ** 2
+            excess = energies(found[:, 1], 0.05 * cell * (1.0 - 0.9 * share)) / energies(variational, 0.0) - 1
+            parts.append(ENERGY_WEIGHT * weight * torch.log1p(functional.relu(excess)).mean())
+        else:
+            parts.append(torch.zeros_like(parts[0]))
+        return torch.stack(parts)
+
+    def _average(self, step: int) -> None:
+        """Take the weights that the last step left into their running mean."""
+        keep = min(AVERAGED, step / (step + 20.0))
+        with torch.no_grad():
+            for own, mean in zip(self.net.parameters(), self.mean.parameters(), strict=True):
+                mean.lerp_(own, 1.0 - keep)
+
+    def validate(self) -> dict[str, float]:
+        """Return medians of the relative distance to both targets over the held-out domains, and folds."""
+        found, goals = self.answers(), self.held_out
+        loss: dict[str, float] = {}
+        for k, (name, goal) in enumerate((("winslow", goals.winslow), ("variational", goals.variational))):
+            error = (found[:, k] - goal).abs().square().sum((1, 2)) / goal.abs().square().sum((1, 2))
+            loss[name] = float(error.sqrt().median())
+        return {"loss": loss["variational"], **loss}
+
+    def answers(self) -> Tensor:
+        """Return the held-out grids (m, heads, n, n) of the mean weights."""
+        with torch.no_grad():
+            parts = [
+                SCALE * self.mean(features(base.to(self.device), torch)).cpu()
+                for base in torch.split(self.held_out.base, 100)
+            ]
+        return self.held_out.base[:, None] + torch.cat(parts)
+
+
+def _missed(found: Tensor, goal: Tensor) -> Tensor:
+    """Return the mean over grids of how far steps are from the goal's, in its steps, and a little of places.
+
+    The logarithm keeps the few domains that are hard from ruling the rest.
+    """
+    error = found - goal
+    total = 3.0 * error.abs().mean()
+    rough = torch.zeros(len(goal), device=goal.device)
+    for axis in (1, 2):
+        off, step = error.diff(dim=axis).abs().square(), goal.diff(dim=axis).abs().square()
+        rough = rough + torch.log1p(4.0 * off / (step + 1e-8)).mean((1, 2))
+    return total + (rough + 1e-7).sqrt().mean()
+
+
+def quads(variational: Samples, winslow: Samples) -> Quads:
+    """Return the domains whose grids are in both datasets, normalised.
+
+    Raises
+    ------
+    InputError
+        grids that are not quads of `LATENT` nodes along xi and eta, or no domain in common.
+    """
+    for samples in (variational, winslow):
+        if (samples.topology, samples.ni, samples.nj) != ("quad", LATENT, LATENT):
+            raise InputError(
+                f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
+                f"give quads of {LATENT} x {LATENT} (--res {LATENT}, or convert --coarsen)",
+            )
+    where = {_rim(nodes): k for k, nodes in enumerate(winslow.nodes)}
+    pairs = [(k, where[rim]) for k, rim in enumerate(map(_rim, variational.nodes)) if rim in where]
+    if not pairs:
+        raise InputError("no domain is in both datasets", "solve the same boundaries with both methods")
+    first, second = (list(rows) for rows in zip(*pairs, strict=True))
+    goal, other = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
+    base = np.stack([transfinite(z) for z in goal])
+    middle, factor = frame(base, np)
+
+    def unit(z: Complexes) -> Tensor:
+        return torch.from_numpy(((z - middle[:, None, None]) * factor[:, None, None]).astype(np.complex64))
+
+    return Quads(unit(base), unit(other), unit(goal))
+
+
+def _rim(nodes: Floats) -> bytes:
+    """Return what tells a domain from others."""
+    return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]))
+
+
+def transfinite(z: Complexes) -> Complexes:
+    """Return the transfinite grid (n, n) in the rim of the grid `z`."""
+    n = len(z)
+    sides = tuple(_pairs(side) for side in (z[:, 0], z[:, -1], z[0], z[-1]))
+    planes = np.empty((2, n, n))
+    interpolate(planes[0], planes[1], sides, parameters(sides, "arclength"))  # type: ignore[arg-type]
+    return np.asarray(planes[0] + 1j * planes[1])
+
+
+def train_quads(
+    given: Quads,
+    output: Path,
+    plan: Plan,
+    team: Team,
+    *,
+    held_out: int = HELD_OUT,
+    sizes: Sizes | None = None,
+    recipe: Mapping[str, Any],
+    resume: bool = False,
+    report: Callable[[Progress], None] | None = None,
+) -> dict[str, Any]:
+    """Fit a quad operator, write it to `output` with its recipe and held-out figures, return the figures.
+
+    Parameters
+    ----------
+    held_out : domains, the last ones, that are never trained on.
+
+    Raises
+    ------
+    InputError
+        fewer domains than one batch beside those held out; a checkpoint of other settings.
+    SolverError
+        as `solvers.neural.fit.loop.fit`.
+    """
+    if held_out < 1 or len(given) < held_out + plan.batch:
+        needed = max(held_out, 1) + plan.batch
+        raise InputError(f"{len(given)} domains to train on", f"give at least {needed} or hold fewer out")
+    sizes, kept = sizes or Sizes(), len(given) - held_out
+    torch.manual_seed(plan.seed)
+    steps = plan.epochs * -(-kept // plan.batch)
+    task = QuadTask(given[:kept], given[kept:], sizes, steps, team.device)
+    told = ("epochs", "batch", "rate", "warm_up", "weight_decay", "clip", "seed")
+    facts = {key: getattr(plan, key) for key in told}
+    facts |= {key: list(value) for key, value in asdict(sizes).items()}
+    facts |= {"held_out": held_out, "domains": len(given)}
+    checkpoint = beside(output)
+    fit(
+        task, plan, team, checkpoint=checkpoint, facts={"model": "quad", **facts}, resume=resume,
+        report=report,
+    )  # fmt: skip
+    figures = held_out_figures(task.answers().numpy(), *(z.numpy() for z in _goals(task.held_out)))
+    if team.leads:
+        state = {key: value.cpu().numpy() for key, value in task.mean.state_dict().items()}
+        write_model(output, state, name=output.stem, recipe={**recipe, **facts}, figures=figures)
+        checkpoint.unlink(missing_ok=True)
+    return figures
+
+
+def _goals(given: Quads) -> tuple[Tensor, Tensor, Tensor]:
+    return given.base, given.winslow, given.variational
+
+
+def _complex(nodes: Floats) -> Complexes:
+    return np.asarray(nodes[..., 0] + 1j * nodes[..., 1])
+
+
+def _pairs(z: Complexes) -> Floats:
+    return np.stack([z.real, z.imag], axis=-1)

@@ -1,0 +1,15 @@
+"""What a model file of the quad operator holds: the one copy that training and inference share."""
+
+from __future__ import annotations
+
+KIND = "meshonet quad operator"
+VERSION = 1
+
+LATENT = 33
+"""Nodes along xi and eta of the grid the network sees."""
+
+SCALE = 0.1
+"""What an answer of 1 means, in the normalised domain's unit."""
+
+HEADS = ("winslow", "variational")
+"""The grids a network answers with, in order."""
