@@ -1,0 +1,136 @@
+"""Quad grids in torch: gradients from every node back to the nodes of the boundary, on any device.
+
+The arithmetic of `solvers.neural.quads.operator` once more, on tensors; without polish and guard.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.features import features
+from solvers.neural.quads.frame import frame
+from solvers.neural.quads.model import ANSWERS, NODES, SCALE, load_quads
+from solvers.neural.weights import model_path
+from solvers.spline import spline_matrix
+
+Sides = tuple[Tensor, Tensor, Tensor, Tensor]
+"""South, north (batch, 2, ni), west and east (batch, 2, nj)."""
+
+
+class QuadGrids:
+    """A shipped quad model, or one of a file, as a differentiable function.
+
+    Parameters
+    ----------
+    model : ``quad-general``, ``quad-winslow``, or the path of a file, whose variational answer is taken.
+    device : torch's name of where to compute.
+    dtype : torch's type of the arithmetic.
+
+    Raises
+    ------
+    InputError
+        no such model, or one that cannot be read.
+    """
+
+    def __init__(
+        self, model: str = ANSWERS[-1], device: str = "cpu", dtype: torch.dtype = torch.float64
+    ) -> None:
+        held = load_quads(model_path(model))
+        self._network = QuadUNet(held.header["settings"]["widths"], held.blocks)
+        self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
+        self._network.to(device=device, dtype=dtype).requires_grad_(False)
+        self._head = ANSWERS.index(model) if model in ANSWERS else len(ANSWERS) - 1
+
+    def __call__(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
+        """Return the nodes (batch, ni, nj, 2) of grids inside four edges each.
+
+        Parameters
+        ----------
+        south, north : (batch, ni, 2) nodes along xi, from west to east.
+        west, east : (batch, nj, 2) nodes along eta, from south to north; corners are shared.
+        """
+        sides = _planes(south, north, west, east)
+        coarse = self._coarse(sides)
+        m = coarse.shape[-1]
+        laws = _laws(sides)
+        thin_laws = tuple(_between(law, m) for law in laws)
+        difference = coarse - interpolated(_rims(coarse), thin_laws)
+        along, across = (_matrix(spline_matrix, m, len(side[0, 0]), side) for side in (sides[0], sides[2]))
+        fine = along @ difference @ across.mT
+        return (interpolated(sides, laws) + _without_rim(fine)).movedim(1, -1)
+
+    def _coarse(self, sides: Sides) -> Tensor:
+        thin = tuple(_between(side, NODES) for side in sides)
+        base = interpolated(thin, _laws(thin))
+        z = torch.complex(base[:, 0], base[:, 1])
+        middle, factor = (value[:, None, None] for value in frame(z, torch))
+        moved = self._network(features((z - middle) * factor, torch))[:, self._head] * (SCALE / factor)
+        return base + torch.stack([moved.real, moved.imag], 1)
+
+
+def interpolated(sides: Any, laws: Any) -> Tensor:
+    """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `solvers.tfi`.
+
+    Parameters
+    ----------
+    sides : south, north (batch, 2, ni), west, east (batch, 2, nj).
+    laws : parameters along them, 0 to 1, (batch, n) each.
+    """
+    south, north, west, east = sides
+    s, n = (law[:, 1:-1, None] for law in laws[:2])
+    w, e = (law[:, None, 1:-1] for law in laws[2:])
+    u = (s + (n - s) * w) / (1.0 - (n - s) * (e - w))
+    v = (w + (e - w) * u)[:, None]
+    u = u[:, None]
+    a, b, c, d = (side[:, :, k, None, None] for side, k in ((south, 0), (south, -1), (north, -1), (north, 0)))
+    left = west[:, :, None, 1:-1] - a - v * (d - a)
+    right = east[:, :, None, 1:-1] - b - v * (c - b)
+    low, high = south[:, :, 1:-1, None], north[:, :, 1:-1, None]
+    inner = low + v * (high - low) + left + u * (right - left)
+    rows = torch.cat([low, inner, high], 3)
+    return torch.cat([west[:, :, None], rows, east[:, :, None]], 2)
+
+
+def _laws(sides: Any) -> tuple[Tensor, ...]:
+    found = []
+    for side in sides:
+        steps = side[..., 1:] - side[..., :-1]
+        along = torch.cumsum(torch.hypot(steps[:, 0], steps[:, 1]), -1)
+        found.append(torch.cat([torch.zeros_like(along[:, :1]), along / along[:, -1:]], -1))
+    return tuple(found)
+
+
+def _planes(*edges: Tensor) -> Sides:
+    south, north, west, east = (edge.movedim(-1, 1) for edge in edges)
+    return south, north, west, east
+
+
+def _rims(planes: Tensor) -> Sides:
+    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
+
+
+def _without_rim(planes: Tensor) -> Tensor:
+    return torch.nn.functional.pad(planes[..., 1:-1, 1:-1], (1, 1, 1, 1))
+
+
+def _between(values: Tensor, n: int) -> Tensor:
+    m = values.shape[-1]
+    return values if m == n else values @ _matrix(_hats, m, n, values).mT
+
+
+@lru_cache(maxsize=16)
+def _hats(m: int, n: int) -> Any:
+    """Return the matrix (n, m) of linear interpolation from m uniform knots to n uniform places."""
+    at = np.arange(n) * ((m - 1) / (n - 1))
+    at[-1] = m - 1
+    return np.maximum(0.0, 1.0 - np.abs(at[:, None] - np.arange(m)))
+
+
+def _matrix(make: Any, m: int, n: int, like: Tensor) -> Tensor:
+    return torch.as_tensor(make(m, n), dtype=like.dtype, device=like.device)
