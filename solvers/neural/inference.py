@@ -12,7 +12,8 @@ from geometry.boundary import Boundary
 from geometry.grid import Grid
 from solvers.neural.operator import Polish
 from solvers.neural.operator import infer as infer_strip
-from solvers.neural.weights import KIND, QUADS, kind_of, model_path
+from solvers.neural.quads.encoding import KIND as QUADS
+from solvers.neural.weights import KIND, kind_of, model_path
 from solvers.solution import Solution
 
 if TYPE_CHECKING:

@@ -20,7 +20,6 @@ from solvers.neural.strip import LEVELS
 DEFAULT = "airfoil-o"
 FOLDER = Path(__file__).parent / "pretrained"
 KIND = "meshonet strip operator"
-QUADS = "meshonet quad operator"
 HEADER = "meshonet"  # the metadata entry that holds the header as JSON
 LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
 

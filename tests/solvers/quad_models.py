@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from solvers.neural.quads.model import ANSWERS, write_quads
+from solvers.neural.quads.encoding import HEADS
+from solvers.neural.quads.export import write_model
 from solvers.neural.quads.network import shapes
 
 WIDTHS, BLOCKS = (1, 2, 2), (0, 1, 1)
@@ -17,8 +18,8 @@ def random_model(path: Path, size: float = 0.05) -> Path:
     rng = np.random.default_rng(0)
     weights = {
         name: rng.normal(size=shape) * (1.0 / np.prod(shape[1:])) ** 0.5
-        for name, shape in shapes(WIDTHS, BLOCKS, len(ANSWERS)).items()
+        for name, shape in shapes(WIDTHS, BLOCKS, len(HEADS)).items()
     }
     weights["project"] *= size
-    write_quads(path, weights, widths=WIDTHS, blocks=BLOCKS, name="random", recipe={}, figures={})
+    write_model(path, weights, name="random", recipe={}, figures={})
     return path

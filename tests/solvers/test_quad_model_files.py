@@ -11,13 +11,13 @@ from quad_models import BLOCKS, WIDTHS, random_model
 from safetensors.numpy import load_file, save_file
 
 from geometry.errors import InputError
-from solvers.neural.quads.model import ENCODING, load_quads
-from solvers.neural.weights import HEADER, QUADS
+from solvers.neural.quads.encoding import KIND, VERSION
+from solvers.neural.quads.model import load_quads
+from solvers.neural.weights import HEADER
 
 
 def header(**changes: object) -> dict[str, str]:
-    settings = {"widths": list(WIDTHS), "blocks": list(BLOCKS)}
-    return {HEADER: json.dumps({"kind": QUADS, "encoding": ENCODING, "settings": settings, **changes})}
+    return {HEADER: json.dumps({"kind": KIND, "encoding": VERSION, **changes})}
 
 
 def copied(folder: Path, metadata: dict[str, str], **arrays: np.ndarray) -> Path:
@@ -28,7 +28,7 @@ def copied(folder: Path, metadata: dict[str, str], **arrays: np.ndarray) -> Path
 
 def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
     found = load_quads(copied(tmp_path, header()))
-    assert (found.name, found.blocks) == ("copy", BLOCKS)
+    assert (found.name, found.widths, found.blocks) == ("copy", WIDTHS, BLOCKS)
     assert found.network().heads == 2
 
 
@@ -37,13 +37,6 @@ def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
     [
         ({"kind": "meshonet strip operator"}, "it holds 'meshonet strip operator', encoding 1"),
         ({"encoding": 2}, "encoding 2"),
-        ({"settings": {"widths": [1, 2, 2]}}, "do not fit \\('blocks'"),
-        ({"settings": {"widths": [1, 2, 3], "blocks": [0, 1, 1]}}, "other names or shapes"),
-        ({"settings": {"widths": [1, 2, 10**9], "blocks": [0, 1, 1]}}, "widths"),
-        ({"settings": {"widths": [1] * 30, "blocks": [0] * 30}}, "30 levels"),
-        ({"settings": {"widths": "122", "blocks": [0, 1, 1]}}, "'122' in place of counts"),
-        ({"settings": {"widths": [1, 2, True], "blocks": [0, 1, 1]}}, "in place of counts"),
-        ({"settings": []}, "do not fit"),
     ],
 )
 def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
@@ -57,8 +50,11 @@ def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, ob
     ("arrays", "told"),
     [
         ({"lift": np.full((1, 17), np.nan, np.float32)}, "not finite"),
-        ({"lift": np.zeros((17, 1), np.float32)}, "other names or shapes"),
-        ({"more": np.zeros(1, np.float32)}, "other names or shapes"),
+        ({"lift": np.zeros((1, 16), np.float32)}, "do not fit \\(names or shapes"),
+        ({"lift": np.zeros((), np.float32)}, "do not fit \\(widths"),
+        ({"lift": np.zeros((1000, 17), np.float32)}, "do not fit \\(widths"),
+        ({"down.2.weight": np.zeros((2, 2, 8, 3, 3), np.float32)}, "do not fit \\(names or shapes"),
+        ({"more": np.zeros(1, np.float32)}, "do not fit \\(names or shapes"),
     ],
 )
 def test_arrays_that_do_not_fit_are_refused(tmp_path: Path, arrays: dict[str, np.ndarray], told: str) -> None:

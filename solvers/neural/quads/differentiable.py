@@ -13,9 +13,10 @@ import torch
 from torch import Tensor
 
 from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
-from solvers.neural.quads.model import ANSWERS, NODES, SCALE, load_quads
+from solvers.neural.quads.model import ANSWERS, load_quads
 from solvers.neural.weights import model_path
 from solvers.spline import spline_matrix
 
@@ -42,7 +43,7 @@ class QuadGrids:
         self, model: str = ANSWERS[-1], device: str = "cpu", dtype: torch.dtype = torch.float64
     ) -> None:
         held = load_quads(model_path(model))
-        self._network = QuadUNet(held.header["settings"]["widths"], held.blocks)
+        self._network = QuadUNet(held.widths, held.blocks)
         self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
         self._head = ANSWERS.index(model) if model in ANSWERS else len(ANSWERS) - 1
@@ -66,7 +67,7 @@ class QuadGrids:
         return (interpolated(sides, laws) + _without_rim(fine)).movedim(1, -1)
 
     def _coarse(self, sides: Sides) -> Tensor:
-        thin = tuple(_between(side, NODES) for side in sides)
+        thin = tuple(_between(side, LATENT) for side in sides)
         base = interpolated(thin, _laws(thin))
         z = torch.complex(base[:, 0], base[:, 1])
         middle, factor = (value[:, None, None] for value in frame(z, torch))

@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from geometry.errors import InputError
+from solvers.neural.quads.encoding import HEADS, KIND, VERSION
 from solvers.neural.quads.network import Network, Reals, shapes
-from solvers.neural.weights import HEADER, QUADS, read_tensors
-
-ENCODING = 1
-"""Of the features and of what the network's answer means."""
+from solvers.neural.weights import read_tensors
 
 ANSWERS = ("quad-winslow", "quad-general")
-"""The network's heads: Winslow's grid, and the variational one."""
-
-NODES = 33
-"""Nodes along each axis of the grid that the network answers on; that of `ENCODING` 1."""
-
-SCALE = 0.1
-"""Displacement that an answer of 1 stands for, in the root of the domain's area."""
+"""Names of the two as models, in the order of `encoding.HEADS`."""
 
 MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8  # five levels are 33, 17, 9, 5 and 3 nodes
 
@@ -37,12 +26,13 @@ class QuadModel:
     Parameters
     ----------
     name : of the file.
-    blocks : of the network.
+    widths, blocks : of the network.
     weights : its arrays, as `network.shapes` has them.
     header : what the file says of itself: recipe and held-out figures.
     """
 
     name: str
+    widths: tuple[int, ...]
     blocks: tuple[int, ...]
     weights: Mapping[str, Reals]
     header: Mapping[str, Any] = field(default_factory=dict)
@@ -66,59 +56,37 @@ def load_quads(path: Path) -> QuadModel:
     """
     header, tensors = read_tensors(path)
     source = str(path)
-    if header.get("kind") != QUADS or header.get("encoding") != ENCODING:
+    if header.get("kind") != KIND or header.get("encoding") != VERSION:
         told = f"it holds {str(header.get('kind'))[:60]!r}, encoding {str(header.get('encoding'))[:20]}"
-        raise InputError(told, f"use a quad model of encoding {ENCODING} or train one", source=source)
+        raise InputError(told, f"use a quad model of encoding {VERSION} or train one", source=source)
     try:
-        widths, blocks = (_counts(header["settings"][key]) for key in ("widths", "blocks"))
-        levels = len(widths)
-        if not 2 <= levels <= MOST_LEVELS or len(blocks) != levels:
-            raise ValueError(f"{levels} levels")
-        if not 1 <= min(widths) <= max(widths) <= MOST_SETS or max(blocks) > MOST_BLOCKS:
-            raise ValueError(f"widths {widths} or blocks {blocks}")
-        wanted = shapes(widths, blocks, len(ANSWERS))
-        if {key: array.shape for key, array in tensors.items()} != wanted:
-            raise ValueError("other names or shapes of arrays")
-    except (KeyError, ValueError, TypeError) as error:
-        raise InputError(
-            f"its header or arrays do not fit ({str(error)[:80]})",
-            "use a file made by meshonet train",
-            source=source,
-        ) from None
+        widths, blocks = sizes(tensors)
+    except ValueError as error:
+        told = f"its arrays do not fit ({error})"
+        raise InputError(told, "use a file made by meshonet train", source=source) from None
     name = header.get("name")
     called = name if isinstance(name, str) and name.isprintable() else path.stem
-    return QuadModel(called, blocks, tensors, header)
+    return QuadModel(called, widths, blocks, tensors, header)
 
 
-def write_quads(
-    path: Path,
-    weights: Mapping[str, Reals],
-    *,
-    widths: Sequence[int],
-    blocks: Sequence[int],
-    name: str,
-    recipe: Mapping[str, Any],
-    figures: Mapping[str, Any],
-) -> None:
-    """Write a model file: float32 weights and the header that `load_quads` checks."""
-    from safetensors.numpy import save
+def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return widths and blocks of the network that `tensors` are of, as their names and shapes tell them.
 
-    header = {
-        "kind": QUADS,
-        "encoding": ENCODING,
-        "name": name,
-        "topology": "quad",
-        "settings": {"widths": list(widths), "blocks": list(blocks)},
-        "recipe": dict(recipe),
-        "figures": dict(figures),
-    }
-    arrays = {key: np.ascontiguousarray(value, dtype=np.float32) for key, value in weights.items()}
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(save(arrays, metadata={HEADER: json.dumps(header, sort_keys=True)}))
-    part.replace(path)
-
-
-def _counts(value: object) -> tuple[int, ...]:
-    if not isinstance(value, list) or not all(type(one) is int and one >= 0 for one in value):
-        raise ValueError(f"{value!r:.40} in place of counts")
-    return tuple(value)
+    Raises
+    ------
+    ValueError
+        of no network.
+    """
+    if not {"lift", "project"} <= set(tensors):
+        raise ValueError("no lift, or no project")
+    widths = [tensors["lift"].shape[0] if tensors["lift"].ndim else 0]
+    while f"down.{len(widths) - 1}.weight" in tensors and len(widths) <= MOST_LEVELS:
+        layer = tensors[f"down.{len(widths) - 1}.weight"]
+        widths.append(layer.shape[0] if layer.ndim else 0)
+    levels = range(len(widths))
+    blocks = [sum(f"before.{level}.{k}.a.weight" in tensors for k in range(MOST_BLOCKS)) for level in levels]
+    if not 2 <= len(widths) <= MOST_LEVELS or not 1 <= min(widths) <= max(widths) <= MOST_SETS:
+        raise ValueError(f"widths {widths}")
+    if {key: array.shape for key, array in tensors.items()} != shapes(widths, blocks, len(HEADS)):
+        raise ValueError("names or shapes of arrays")
+    return tuple(widths), tuple(blocks)

@@ -20,9 +20,10 @@ from geometry.boundary import Boundary
 from solvers._combine import add_rows
 from solvers.neural.quads._network import look
 from solvers.neural.quads.edges import Edges, between
+from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.frame import frame
-from solvers.neural.quads.model import NODES, SCALE, QuadModel
+from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
 from solvers.spline import bending, places, spline_matrix
 
@@ -35,18 +36,18 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
 
     Parameters
     ----------
-    head : index into `model.ANSWERS`.
+    head : index into `encoding.HEADS`.
     dtype : of the network's arithmetic, ``float64`` or ``float32``; all else is float64.
     """
-    thin = edges.thinned(NODES, NODES)
+    thin = edges.thinned(LATENT, LATENT)
     base = thin.interpolated(thin.laws())
     z = base[:, 0] + 1j * base[:, 1]
     middle, factor = (np.asarray(value) for value in frame(z, np))
     network = model.network(dtype)
-    scratch = np.empty((2, NODES, NODES))
+    scratch = np.empty((2, LATENT, LATENT))
     for k in range(0, len(base), CHUNK):
         chunk = base[k : k + CHUNK]
-        seen = np.empty((len(chunk), NODES, NODES, FEATURES), dtype)
+        seen = np.empty((len(chunk), LATENT, LATENT, FEATURES), dtype)
         look(chunk, _pairs(middle[k : k + CHUNK]), _pairs(factor[k : k + CHUNK]), scratch, seen)
         moved = network(seen)[:, head] * (SCALE / factor[k : k + CHUNK, None, None])
         chunk[:, 0] += moved.real
