@@ -17,10 +17,15 @@ def energy(
 
 Modes: TypeAlias = tuple[Floats, Floats]
 
+class Stiffness:
+    positive: bool
+    def __init__(self, z: Floats, aspect: float, shape: float, smoothness: float) -> None: ...
+
 class Minimiser:
     def __init__(
         self, ni: int, nj: int, periodic: bool, rows: Modes, columns: Modes, scale: Floats, rest: float
     ) -> None: ...
+    def steer(self, stiffness: Stiffness, along: Floats, across: Floats) -> None: ...
     def run(
         self,
         z: Floats,

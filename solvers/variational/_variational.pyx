@@ -1,4 +1,4 @@
-"""Compiled variational functional and its descent; formulas stand in ``functional.h``, ``spectral.h``."""
+"""Compiled variational functional and its descent; formulas stand in the headers beside."""
 
 import numpy as np
 
@@ -25,12 +25,23 @@ cdef extern from "variational_kernel.h":
         Transform eta
         const float *scale
         float rest
+    int SPACE
+    ctypedef struct Space:
+        Py_ssize_t mi
+        Py_ssize_t mj
+        Py_ssize_t width
+        double *band
+        double *unknowns
+        const float *along
+        const float *across
+        const float *across_t
     ctypedef struct Descent:
         Py_ssize_t ni
         Py_ssize_t nj
         Py_ssize_t first
         Weights weights
         Spectrum spectrum
+        Space space
         double *z
         double value
         double smallest
@@ -40,6 +51,7 @@ cdef extern from "variational_kernel.h":
     size_t variational_workspace(Py_ssize_t ni, Py_ssize_t nj) nogil
     double variational_energy(const double *x, const double *y, Py_ssize_t ni, Py_ssize_t nj, const Weights *weights,
                               double *gx, double *gy, double *smallest, double *work) nogil
+    int space_factor(const Space *space, double *z, const Weights *weights, double *room) nogil
     void descent_sizes(const Descent *d, size_t *doubles, size_t *floats) nogil
     void descent_place(Descent *d, double *doubles, float *floats) nogil
     void descent_start(Descent *d) nogil
@@ -78,6 +90,35 @@ def energy(const double[:, :, ::1] z, double aspect, double shape, double smooth
     return total, smallest
 
 
+cdef class Stiffness:
+    """The functional's Hessian at the planes z (2, ni, nj) of a grid of few nodes, fixed at its rim.
+
+    `positive` tells whether it can steer a descent on finer grids.
+    """
+
+    cdef Space space
+    cdef object held
+    cdef readonly bint positive
+
+    def __init__(self, double[:, :, ::1] z, double aspect, double shape, double smoothness):
+        cdef Py_ssize_t mi = z.shape[1] - 2, mj = z.shape[2] - 2
+        cdef double[::1] band, unknowns, room
+        cdef double[:, :, ::1] copy
+        cdef Weights weights
+        self.positive = False
+        if mi < 1 or mj < 1 or max(mi, mj) > SPACE:
+            return
+        self.space.mi, self.space.mj, self.space.width = mi, mj, 4 * mj + 1
+        band, unknowns = np.empty(2 * mi * mj * (4 * mj + 2)), np.empty(2 * mi * mj)
+        room, copy = np.empty(8 * (mi + 2) * (mj + 2) + variational_workspace(mi + 2, mj + 2)), np.array(z)
+        self.space.band, self.space.unknowns = &band[0], &unknowns[0]
+        weights.aspect, weights.shape, weights.smoothness = aspect, shape, smoothness
+        weights.epsilon, weights.periodic, weights.relief = 0.0, 0, NULL
+        self.held = (band, unknowns)
+        with nogil:
+            self.positive = space_factor(&self.space, &copy[0, 0, 0], &weights, &room[0])
+
+
 cdef class Minimiser:
     """Descents of the functional over nodes of one shape, (ni, nj).
 
@@ -111,6 +152,23 @@ cdef class Minimiser:
         room, small = np.empty(doubles), np.empty(floats, np.float32)
         descent_place(&self.state, &room[0], &small[0])
         self.held = (held, factors, room, small)
+
+    def steer(self, Stiffness stiffness, along, across):
+        """Let descents follow `stiffness` in smooth moves: `along` (mi, mi coarse) and `across` (mj, mj coarse) take
+        those of its inner nodes to all."""
+        cdef Space *s = &self.state.space
+        cdef float[:, ::1] first, second, turned
+        if not stiffness.positive:
+            raise ValueError("a Hessian that is not positive")
+        if along.shape != (self.state.spectrum.mi, stiffness.space.mi):
+            raise ValueError("splines of another size")
+        if across.shape != (self.state.spectrum.mj, stiffness.space.mj):
+            raise ValueError("splines of another size")
+        first, second = _padded(along, SPACE), _padded(across, SPACE)
+        turned = np.ascontiguousarray(np.asarray(second).T)
+        s[0] = stiffness.space
+        s.along, s.across, s.across_t = &first[0, 0], &second[0, 0], &turned[0, 0]
+        self.held = (*self.held, stiffness, first, second, turned)
 
     def run(self, double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, const double[::1] relief,
             double still, double reach, int most):
@@ -154,9 +212,9 @@ cdef _half(Half *half, matrix):
     return q, q_t
 
 
-def _padded(matrix):
+def _padded(matrix, panel=32):
     """Return `matrix` (..., n) in single precision with zeros up to whole panels of columns."""
     *rows, n = matrix.shape
-    result = np.zeros((*rows, (n + 31) // 32 * 32), np.float32)
+    result = np.zeros((*rows, (n + panel - 1) // panel * panel), np.float32)
     result[..., :n] = matrix
     return result

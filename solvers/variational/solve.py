@@ -2,7 +2,7 @@
 
 Each level starts from the minimum of the next coarser one, evaluated by splines (`solvers.coarse`). A start
 with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. The
-descent itself, preconditioned L-BFGS, is compiled.
+descent itself, preconditioned L-BFGS, is compiled; its smooth moves follow the Hessian of the coarsest level.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from geometry.quality import count_folded, measure
 from solvers.coarse import evaluate, sweep_kinks, thinned
 from solvers.repair import repair
 from solvers.solution import Solution
+from solvers.spline import spline_matrix
 from solvers.tfi import tfi
-from solvers.variational._variational import energy, workspace
+from solvers.variational._variational import Stiffness, energy, workspace
 from solvers.variational.functional import AROUND, Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
 
@@ -39,9 +40,6 @@ One nearly as fine as the grid itself would cost more than it saves, and sweeps 
 
 STILL = 1e-4
 """Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
-
-LOOSER = 3.0
-"""How much earlier the coarser levels stop."""
 
 MOST = 1000
 """Iterations on a coarser level at the most."""
@@ -117,11 +115,12 @@ def _nested(
     levels = levels[:1] + [level for level in levels[1:] if max(level.ni, level.nj) <= NEXT]
     last = len(levels) - 1
     nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most if last == 0 else MOST)
+    stiffness = _stiffness(nodes, weights) if valid and last > 0 and not periodic else None
     for k in range(last - 1, -1, -1):
         nodes = _evaluated(nodes, levels[k])
         started = nodes.copy(order="K") if max(nodes.shape) > NEXT else None
-        limits = (still, most) if k == 0 else (LOOSER * still, MOST)
-        iterations, valid = descend(nodes, weights, *limits, periodic=periodic)
+        limit = most if k == 0 else MOST
+        iterations, valid = descend(nodes, weights, still, limit, periodic=periodic, stiffness=stiffness)
         if (
             started is not None
             and _angles(started, boundary.topology)[0] < _angles(nodes, boundary.topology)[0]
@@ -179,8 +178,20 @@ def _angles(nodes: Floats, topology: Topology) -> tuple[float, float]:
     return summary.max, summary.mean
 
 
+def _stiffness(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
+    """Return the Hessian at the minimum `nodes` of the coarsest level, and its counts, if it is positive."""
+    found = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
+    return (found, (nodes.shape[0], nodes.shape[1])) if found.positive else None
+
+
 def descend(
-    nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False
+    nodes: Floats,
+    weights: Weights,
+    still: float,
+    most: int,
+    *,
+    periodic: bool = False,
+    stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
 ) -> tuple[int, bool]:
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
@@ -189,6 +200,7 @@ def descend(
     still : as `tol` of `solve`.
     most : iterations at the most.
     periodic : around a body: the last row of nodes is the first, and its nodes move like any others.
+    stiffness : the Hessian on a coarse copy and its counts, which leads smooth moves.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -197,6 +209,9 @@ def descend(
     cells, aspect = (ni - 1) * (nj - 1), aspect_of(nodes, periodic)
     relief = relief_of(nodes[:, 0]) if periodic else None
     descent = minimiser(ni, nj, periodic, aspect, weights)
+    if stiffness is not None:
+        hessian, (m, n) = stiffness
+        descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
     terms = aspect, weights.shape, weights.smoothness
     if count_folded(nodes) and repair(nodes, periodic):
         if periodic or max(ni, nj) > UNFOLDED:

@@ -1,4 +1,4 @@
-/* Descent of the variational functional: L-BFGS with the preconditioner of spectral.h.
+/* Descent of the variational functional: L-BFGS with the preconditioner of spectral.h and coarse_space.h.
 
    Steps s and preconditioned changes z = P y of the gradient are the rows of one table, read once for the products
    with the gradient and once for the new direction; the two-loop recursion runs on the small tables of the products
@@ -7,11 +7,12 @@
    Nocedal and Wright, Numerical Optimization (2006), algorithm 7.4; the form in products: Chen, Wang and Zhou,
    NIPS 27 (2014). */
 #include "variational_kernel.h"
+#include "coarse_space.h"
 #include "functional.h"
 #include "spectral.h"
 
 #define TRIES 25   /* lengths of a step that are tried */
-#define IDLE 3     /* small changes in a row that count as standing still; one may come from a short step */
+#define IDLE 2     /* small changes in a row that count as standing still; one may come from a short step */
 #define GAIN 1e-4  /* part of the value that such a change wins at the most */
 #define CHUNK 2048 /* values of every row of the table that are read together */
 
@@ -62,6 +63,39 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
     clear_rim(gx, ni, nj, weights->periodic);
     clear_rim(gy, ni, nj, weights->periodic);
     return isfinite(energy) ? energy : INFINITY;
+}
+
+MESHONET_CLONES
+int space_factor(const Space *space, double *z, const Weights *weights, double *room)
+{
+    const ptrdiff_t mi = space->mi, mj = space->mj, width = space->width, nj = mj + 2, nodes = (mi + 2) * nj;
+    double *g = room, *moved = room + 2 * nodes, *work = room + 4 * nodes, low;
+    const double *far = z + (mi + 1) * nj + mj + 1;
+    const double step = STEP * hypot((far[0] - z[0]) / (double)(mi + 1), (far[nodes] - z[nodes]) / (double)(mj + 1));
+    memset(space->band, 0, (size_t)(2 * mi * mj * (width + 1)) * sizeof(double));
+    variational_energy(z, z + nodes, mi + 2, nj, weights, g, g + nodes, &low, work);
+    for (int colour = 0; colour < 2 * APART * APART; colour++) {
+        const int c = colour % 2, first_i = colour / 2 / APART, first_j = colour / 2 % APART;
+        for (int back = 0; back < 2; back++) {
+            for (ptrdiff_t i = first_i; i < mi; i += APART)
+                for (ptrdiff_t j = first_j; j < mj; j += APART)
+                    z[c * nodes + (i + 1) * nj + j + 1] += back ? -step : step;
+            if (!back)
+                variational_energy(z, z + nodes, mi + 2, nj, weights, moved, moved + nodes, &low, work);
+        }
+        for (ptrdiff_t i = first_i; i < mi; i += APART)
+            for (ptrdiff_t j = first_j; j < mj; j += APART) {
+                const ptrdiff_t column = 2 * (i * mj + j) + c;
+                for (ptrdiff_t p = i; p < mi && p <= i + 2; p++)
+                    for (ptrdiff_t q = j > 2 ? j - 2 : 0; q < mj && q <= j + 2; q++)
+                        for (int r = 0; r < 2; r++) {
+                            const ptrdiff_t row = 2 * (p * mj + q) + r, at = r * nodes + (p + 1) * nj + q + 1;
+                            if (row >= column && row - column <= width)
+                                space->band[row * (width + 1) + width + column - row] = (moved[at] - g[at]) / step;
+                        }
+            }
+    }
+    return factorise(space->band, 2 * mi * mj, width);
 }
 
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
@@ -156,6 +190,14 @@ void descent_precondition(Descent *d, const double *restrict gradient, float *re
         if (other > i)
             out_of_frame(d, b[0], b[1], other, result);
     }
+    const Space *space = &d->space;
+    if (space->mi == 0)
+        return;
+    for (int c = 0; c < 2; c++)
+        to_space(space, gradient + c * mi * mj, mi, mj, c, space->unknowns);
+    solve_band(space->band, 2 * space->mi * space->mj, space->width, space->unknowns);
+    for (int c = 0; c < 2; c++)
+        from_space(space, space->unknowns, mi, mj, c, result + c * mi * mj);
 }
 
 /* The step along xi at each free node, from both directions: (p + q) / 2 with p = √a x_ξ and q = -i x_η / √a by centred

@@ -33,6 +33,16 @@ typedef struct {
     float rest;
 } Spectrum;
 
+/* Moves of mi x mj inner nodes of a coarse grid, SPACE each at the most; see coarse_space.h. Unknowns by rows, x
+   beside y. */
+#define SPACE 16
+typedef struct {
+    ptrdiff_t mi, mj, width; /* no unknowns: none of this */
+    double *band;            /* the factor, (2 mi mj, width + 1) */
+    double *unknowns;
+    const float *along, *across, *across_t; /* splines, (mi or mj fine, SPACE) and (SPACE, mj fine) */
+} Space;
+
 enum { GOES_ON, SETTLED, STUCK };
 #define PAIRS 8 /* steps that are remembered */
 
@@ -41,6 +51,7 @@ typedef struct {
     ptrdiff_t ni, nj, first;
     Weights weights;
     Spectrum spectrum;
+    Space space;
     double *z, *full, *work;        /* planes (2, ni, nj); room for two such; for the functional */
     double *gradient, *fresh;       /* (2, mi, mj), as all below */
     float *frame, *direction, *steepest, *turned, *table, *transform;
@@ -56,6 +67,10 @@ size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj);
    Jacobian. */
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
                           double *gx, double *gy, double *smallest, double *work);
+
+/* Fill the band of `space` with the factor of the Hessian at z (2, mi + 2, mj + 2), which is used as room too; return
+   0 when it is not positive. `room` holds twice as much as z and the workspace. */
+int space_factor(const Space *space, double *z, const Weights *weights, double *room);
 
 /* Doubles and floats that a descent needs, and their places in it. */
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats);

@@ -123,6 +123,19 @@ def test_the_minimum_does_not_depend_on_the_start() -> None:
     np.testing.assert_allclose(from_tfi, nested, atol=1e-4)
 
 
+def test_smooth_moves_follow_the_coarsest_level() -> None:
+    boundary, weights = arch(65, 65), Weights()
+    start, coarse = winslow(boundary).grid.nodes, solve(thinned(boundary, 17, 17)).grid.nodes
+    aspect = aspect_of(start)
+    reached = []
+    for stiffness in (module._stiffness(coarse, weights), None):
+        nodes = start.copy(order="K")
+        module.descend(nodes, weights, 1e-9, 15, stiffness=stiffness)
+        reached.append(energy(nodes, aspect, weights))
+    least = energy(solve(boundary, tol=1e-7, max_cycles=500).grid.nodes, aspect, weights)
+    assert reached[0] - least < 0.3 * (reached[1] - least)
+
+
 def test_a_folded_start_is_unfolded() -> None:
     boundary = arch(33, 33)
     nodes = tfi(boundary).nodes

@@ -7,9 +7,10 @@ from solver_shapes import bump, hole, naca, wrench
 
 from geometry.arrays import Floats
 from solvers.tfi import tfi
+from solvers.variational._variational import Minimiser, Stiffness, workspace
 from solvers.variational._variational import energy as compiled
-from solvers.variational._variational import workspace
 from solvers.variational.functional import Weights, aspect_of, energy, relief_of
+from solvers.variational.preconditioner import minimiser
 
 
 def planes(nodes: Floats) -> Floats:
@@ -121,3 +122,23 @@ def test_scale_turn_and_place_do_not_matter(scale: float) -> None:
     turn = scale * np.array([[0.6, 0.8], [-0.8, 0.6]])
     moved = call(nodes @ turn + 3 * scale, Weights(), 0.0)[0]
     assert moved == pytest.approx(call(nodes, Weights(), 0.0)[0], rel=1e-9)
+
+
+def test_a_hessian_that_is_not_positive_steers_nothing() -> None:
+    weights, turned = Weights(), np.stack(np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij"))
+    assert Stiffness(turned, 1.0, weights.shape, weights.smoothness).positive
+    turned[:, 2, 2] = 3.9, 3.9  # folded
+    bad = Stiffness(turned, 1.0, weights.shape, weights.smoothness)
+    assert not bad.positive
+    with pytest.raises(ValueError, match="not positive"):
+        minimiser(9, 9, False, 1.0, weights).steer(bad, np.ones((7, 3)), np.ones((7, 3)))
+
+
+def test_transforms_and_splines_of_another_size_are_refused() -> None:
+    weights, square = Weights(), np.stack(np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij"))
+    stiffness = Stiffness(square, 1.0, weights.shape, weights.smoothness)
+    with pytest.raises(ValueError, match="splines of another size"):
+        minimiser(9, 9, False, 1.0, weights).steer(stiffness, np.ones((7, 3)), np.ones((6, 3)))
+    half = np.ones((1, 1))
+    with pytest.raises(ValueError, match="transforms of another size"):
+        Minimiser(9, 9, False, (half, half), (half, half), np.ones((2, 2, 2)), 0.0)

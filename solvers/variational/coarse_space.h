@@ -1,0 +1,114 @@
+/* Moves that a few nodes describe, and the functional's own Hessian on these.
+
+   The transforms know neither how the softest moves, p = ψ_ξ with q = -ψ_η, couple both coordinates, nor how cells
+   differ: the smoothest ones would come last. So to P comes S H⁻¹ Sᵀ, with S splines from the inner nodes of a coarse
+   grid and H the Hessian there, by differences of the gradient, as a banded Cholesky factor. */
+#ifndef MESHONET_COARSE_SPACE_H
+#define MESHONET_COARSE_SPACE_H
+#include "clones.h"
+#include "variational_kernel.h"
+#include <math.h>
+#include <string.h>
+
+#define APART 5  /* nodes so far from each other share no term of the functional */
+#define STEP 1e-6 /* of the cells, for differences */
+
+/* L of H = L Lᵀ, in place, rows of `width` + 1 up to the diagonal; return 0 when H is not positive. */
+MESHONET_INLINE int factorise(double *band, ptrdiff_t n, ptrdiff_t width)
+{
+    const ptrdiff_t stride = width + 1;
+    for (ptrdiff_t r = 0; r < n; r++) {
+        double *row = band + r * stride + width - r; /* row[c] is H(r, c) */
+        for (ptrdiff_t c = r > width ? r - width : 0; c <= r; c++) {
+            const double *other = band + c * stride + width - c;
+            const ptrdiff_t from = r > width ? r - width : 0, low = c > width ? c - width : 0;
+            double sum = row[c];
+            for (ptrdiff_t k = from > low ? from : low; k < c; k++)
+                sum -= row[k] * other[k];
+            if (c < r)
+                row[c] = sum / other[c];
+            else if (sum > 0.0)
+                row[r] = sqrt(sum);
+            else
+                return 0;
+        }
+    }
+    return 1;
+}
+
+/* Replace b by H⁻¹ b. */
+MESHONET_INLINE void solve_band(const double *band, ptrdiff_t n, ptrdiff_t width, double *restrict b)
+{
+    const ptrdiff_t stride = width + 1;
+    for (ptrdiff_t r = 0; r < n; r++) {
+        const double *restrict row = band + r * stride + width - r;
+        double sum = b[r];
+        for (ptrdiff_t k = r > width ? r - width : 0; k < r; k++)
+            sum -= row[k] * b[k];
+        b[r] = sum / row[r];
+    }
+    for (ptrdiff_t r = n - 1; r >= 0; r--) {
+        const double *restrict row = band + r * stride + width - r;
+        const double value = b[r] / row[r];
+        b[r] = value;
+        for (ptrdiff_t k = r > width ? r - width : 0; k < r; k++)
+            b[k] -= row[k] * value;
+    }
+}
+
+/* Sᵀ gradient, (mi, mj) to the unknowns of coordinate c. */
+MESHONET_INLINE void to_space(const Space *s, const double *restrict gradient, ptrdiff_t mi, ptrdiff_t mj, int c,
+                              double *restrict unknowns)
+{
+    const float *restrict across = s->across;
+    float total[SPACE][SPACE];
+    memset(total, 0, sizeof total);
+    for (ptrdiff_t i = 0; i < mi; i++) {
+        const double *restrict g = gradient + i * mj;
+        const float *restrict along = s->along + i * SPACE;
+        float sum[4][SPACE];
+        memset(sum, 0, sizeof sum);
+        ptrdiff_t j = 0;
+        for (; j + 4 <= mj; j += 4)
+            for (int u = 0; u < 4; u++)
+                for (int k = 0; k < SPACE; k++)
+                    sum[u][k] += (float)g[j + u] * across[(j + u) * SPACE + k];
+        for (; j < mj; j++)
+            for (int k = 0; k < SPACE; k++)
+                sum[0][k] += (float)g[j] * across[j * SPACE + k];
+        for (int k = 0; k < SPACE; k++)
+            sum[0][k] += sum[1][k] + (sum[2][k] + sum[3][k]);
+        for (int l = 0; l < SPACE; l++)
+            for (int k = 0; k < SPACE; k++)
+                total[l][k] += along[l] * sum[0][k];
+    }
+    for (ptrdiff_t l = 0; l < s->mi; l++)
+        for (ptrdiff_t k = 0; k < s->mj; k++)
+            unknowns[2 * (l * s->mj + k) + c] = (double)total[l][k];
+}
+
+/* result += S unknowns of coordinate c. */
+MESHONET_INLINE void from_space(const Space *s, const double *restrict unknowns, ptrdiff_t mi, ptrdiff_t mj, int c,
+                                float *restrict result)
+{
+    float total[SPACE][SPACE];
+    memset(total, 0, sizeof total);
+    for (ptrdiff_t l = 0; l < s->mi; l++)
+        for (ptrdiff_t k = 0; k < s->mj; k++)
+            total[l][k] = (float)unknowns[2 * (l * s->mj + k) + c];
+    for (ptrdiff_t i = 0; i < mi; i++) {
+        const float *restrict along = s->along + i * SPACE;
+        float *restrict row = result + i * mj, v[SPACE];
+        memset(v, 0, sizeof v);
+        for (int l = 0; l < SPACE; l++)
+            for (int k = 0; k < SPACE; k++)
+                v[k] += along[l] * total[l][k];
+        for (int k = 0; k < SPACE; k += 4) {
+            const float *restrict a = s->across_t + k * mj, *restrict b = a + mj;
+            const float *restrict e = b + mj, *restrict f = e + mj;
+            for (ptrdiff_t j = 0; j < mj; j++)
+                row[j] += (v[k] * a[j] + v[k + 1] * b[j]) + (v[k + 2] * e[j] + v[k + 3] * f[j]);
+        }
+    }
+}
+#endif
