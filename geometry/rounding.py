@@ -22,8 +22,10 @@ _CAP = 5e-3
 _PULL = 0.6
 """Where the control points of the fillet are between its ends (0) and the corner (1)."""
 _POINTS = 24
-_TURN = 0.4
-"""How many nodes of a rounded base follow its turning, for each that follows its length."""
+_TURN = 0.5
+"""Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
+_MORE = 1.3
+"""Factor up to which cells are added so that neither half has fewer than were asked for."""
 _NEAR = 0.1
 """Chords from the corner within which the surface is given by points taken from the curve."""
 
@@ -59,32 +61,40 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     return rounded, float(rounded.knots[len(lower)])
 
 
-def half_round(curve: Curve, end: float, cells: int) -> Floats:
-    """Return distances (cells + 1,) along a rounded base, from its middle to where the rounding ends.
+def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
+    """Return distances (n + 1,) from the middle of a rounded base to its lower end, and to its upper end.
 
     Nodes are shared out by length and by turning together, the latter averaged over two cells to each side:
-    without it the cells where the base turns most are the skewest of the grid, by half of what they turn.
+    without it the cells where the base turns most are the skewest of the grid, by half of what they turn. A
+    slanted base turns more at one end than at the other, and has more cells there.
 
     Parameters
     ----------
     curve : of `rounded_base`.
     end : arc length at which the rounding ends.
-    cells : at least 3.
+    cells : of a half that turns by a right angle, at least 3.
     """
     per_cell = 64
-    n = per_cell * cells
-    s = np.linspace(0.0, end, n + 1)
-    way = curve.tangent(np.clip(s, 1e-9 * end, None))
+    n = per_cell * cells  # on either half; place n is the middle
+    s = np.linspace(-end, end, 2 * n + 1)
+    way = curve.tangent(s)
     turn = np.abs(np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))))
     reach = 2 * per_cell
-    padded = np.concatenate([turn[reach - 1 :: -1], turn, np.full(reach, turn[-per_cell:].mean())])
-    total = np.concatenate([[0.0], np.cumsum(padded)])
-    turn = total[2 * reach :] - total[: -2 * reach]  # over two cells to each side
-    weight = 1.0 + _TURN * turn[:n] / max(float(turn[:n].mean()), 1e-12)
-    count = np.concatenate([[0.0], np.cumsum(weight)])
-    distances = np.interp(np.arange(cells + 1.0), count * (cells / count[-1]), s)
-    distances[0], distances[-1] = 0.0, end
-    return np.asarray(distances)
+    ends = [np.full(reach, part.mean()) for part in (turn[:per_cell], turn[-per_cell:])]
+    total = np.concatenate([[0.0], np.cumsum(np.concatenate([ends[0], turn, ends[1]]))])
+    around = total[2 * reach :] - total[: -2 * reach]  # two cells to each side of every place
+    turn = (around[1:] + around[:-1]) / (4 * reach)
+    weight = 1.0 + _TURN * turn * (2.0 * n / np.pi)
+    count = np.concatenate([[0.0], np.cumsum(weight)]) * (cells / (n * (1.0 + _TURN)))
+    halves = count[n] - count[n::-1], count[n:] - count[n]
+    more = min(max(cells / float(min(halves[0][-1], halves[1][-1])), 1.0), _MORE)
+    found = []
+    for half in halves:
+        made = max(3, round(more * float(half[-1])))
+        distances = np.interp(np.arange(made + 1.0), half * (made / half[-1]), s[n:])
+        distances[0], distances[-1] = 0.0, end
+        found.append(np.asarray(distances))
+    return found[1], found[0]
 
 
 def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:

@@ -21,7 +21,7 @@ from geometry.arrays import Floats
 from geometry.conformal import conformal_knots
 from geometry.curves import Curve
 from geometry.errors import InputError
-from geometry.rounding import half_round
+from geometry.rounding import half_rounds
 from geometry.sampling import Sampling, TanhLaw
 from geometry.size_field import arcs_by_curvature
 from geometry.stretch import on_corners
@@ -64,8 +64,8 @@ class Plan:
     base_step: float
     te: float
     le: float
-    base: Floats | None = None
-    """Distances (half + 1,) from the middle of a rounded base."""
+    base: tuple[Floats, Floats] | None = None
+    """Distances from the middle of a rounded base to its lower and its upper end."""
 
 
 def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
@@ -127,8 +127,8 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if plan.half == 0:
         arcs = sides
     else:
-        base = _half_base(plan, stations.half_base) if plan.base is None else plan.base
-        arcs = np.concatenate([base[:-1], sides, stations.curve.length - base[-2::-1]])
+        lower, upper = plan.base or (_half_base(plan, stations.half_base),) * 2
+        arcs = np.concatenate([lower[:-1], sides, stations.curve.length - upper[-2::-1]])
     return _on_inner_corners(arcs, stations)
 
 
@@ -153,8 +153,10 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
         plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
         plan = replace(plan, te=step)
         if stations.rounded and half > 2 and not wanted_te:
-            base = half_round(stations.curve, stations.half_base, half)
-            plan = replace(plan, te=float(base[-1] - base[-2]), base=base)
+            base = half_rounds(stations.curve, stations.half_base, half)
+            te = 0.5 * sum(float(part[-1] - part[-2]) for part in base)
+            left = cells - sum(len(part) - 1 for part in base)
+            plan = replace(plan, cells=0.5 * left, te=te, base=base)
     plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
     side = min(stations.nose - stations.lower, stations.upper - stations.nose)
     if plan.te + plan.le >= side:

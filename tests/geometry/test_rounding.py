@@ -82,3 +82,15 @@ def test_nodes_of_a_rounded_base_share_its_turning_and_sizes_change_slowly() -> 
     assert np.degrees(np.abs(np.diff(way))).max() < 12.5
     size = np.hypot(*step.T)
     assert np.abs(np.log(size[1:] / size[:-1])).max() < np.log(1.12)
+
+
+def test_a_slanted_base_has_more_cells_where_it_turns_more() -> None:
+    points = naca("0012").curve.points[1:].copy()  # from the lower corner of the base to the upper
+    points[-1] += [0.002, -0.0003]
+    wall = Airfoil(points).boundary(Sampling(250, 20, "o", "curvature", te="round")).south
+    step = np.diff(wall, axis=0)
+    way = np.degrees(np.abs(np.diff(np.unwrap(np.arctan2(step[:, 1], step[:, 0])))))
+    assert way[-30:].sum() > way[:30].sum() + 50.0
+    assert way.max() < 20.0
+    size = np.hypot(*np.diff(np.vstack([wall[-40:-1], wall[:40]]), axis=0).T)
+    assert np.abs(np.log(size[1:] / size[:-1])).max() < np.log(1.3)
