@@ -23,6 +23,7 @@ from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
+from meshonet_cli.together import Together
 from meshonet_cli.watching import Live, Recorder, Row, check_file, write
 from solvers.guard import guard
 from solvers.progress import listening
@@ -45,6 +46,7 @@ class Recipe:
     repair : whether a folded grid goes to the guard, which unfolds it or makes another.
     refine : how often the cells that `sampling` asks for are halved.
     history : file that the cycles go to.
+    together : the part of `method` that solves many boundaries in one go, when it has one.
     """
 
     sampling: Sampling
@@ -55,6 +57,7 @@ class Recipe:
     refine: int = 0
     history: str | None = None
     facts: dict[str, object] = field(default_factory=dict)
+    together: Together | None = None
 
     def grid(self, item: Item[Shape]) -> tuple[Grid, Report]:
         """Return the grid of one shape and what there is to tell of it.
@@ -143,6 +146,8 @@ def make_grids(
     prepare(sources, destination, session)
     check_file(recipe.history)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
+    if recipe.together is not None and jobs == 1:
+        found = recipe.together.ahead(found, recipe.sampling)
     members: list[tuple[str, Iterable[Row]]] = []
 
     def tell(report: Report, path: str) -> None:
@@ -190,7 +195,8 @@ class Clock:
         for name, part in (inside or {}).items():
             self.seconds[name] = self.seconds.get(name, 0.0) + part
             spent -= part
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + spent
+        # a grid made earlier, together with others, takes longer than the lap
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + max(spent, 0.0)
         self._last = now
 
 

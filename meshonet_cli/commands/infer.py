@@ -81,7 +81,9 @@ def infer(
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids
     from meshonet_cli.session import Session
+    from meshonet_cli.together import Together
     from solvers.neural.inference import infer as operate
+    from solvers.neural.inference import infer_many, makes_many
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     unused = {
@@ -90,7 +92,11 @@ def infer(
         "--answer": None if answer == "valid" else answer,
     }
     edges = wall.read_edges((), constant_layers, growth, res, layers)
-    solver = partial(operate, model=model, polish=o.polish_steps(polish), answer=answer)
+    steps = o.polish_steps(polish)
+    solver = Together(
+        partial(operate, model=model, polish=steps, answer=answer),
+        partial(infer_many, model=model, polish=steps),
+    )
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
     recipe = Recipe(
@@ -101,6 +107,7 @@ def infer(
         allow_invalid,
         parse_gates(fail_on),
         repair=answer == "valid",
+        together=solver if makes_many(model) else None,
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from geometry.arrays import Floats, as_planar
 from geometry.boundary import Boundary
+from geometry.errors import InputError
 from geometry.grid import Grid
 from solvers.neural.operator import Polish
 from solvers.neural.operator import infer as infer_strip
@@ -59,6 +61,28 @@ def infer(
     told = f"the network's own boundary was off by {away:.1e} at most, and was {_DONE[answer != 'raw']}"
     notes = (told,) if away > 0.0 else ()
     return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)
+
+
+def makes_many(model: str | None) -> bool:
+    """Return whether `infer_many` has a way to make grids of many boundaries in one go."""
+    return model not in (None, "base") and kind_of(model_path(model)) == QUADS
+
+
+def infer_many(
+    boundaries: Sequence[Boundary], model: str | None = None, polish: Polish = "auto"
+) -> list[Solution]:
+    """Return what `infer` does for each of the boundaries, by one pass of a quad model.
+
+    Raises
+    ------
+    InputError
+        as `infer` does; a model that is no quad model.
+    """
+    from solvers.neural.quads.inference import infer_quads
+
+    if model is None or not makes_many(model):
+        raise InputError(f"model {model} makes one grid at a time", "name a quad model")
+    return infer_quads(boundaries, model, polish)
 
 
 _DONE = {True: "replaced by the true one", False: "left so"}

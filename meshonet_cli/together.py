@@ -1,0 +1,68 @@
+"""Members whose grids are made together: read ahead and solved in one go, then handed on one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+
+from geometry.boundary import Boundary
+from geometry.errors import MeshonetError
+from geometry.sampling import Sampling
+from geometry.shape import Shape
+from meshonet_cli.member import Item
+from solvers.solution import Solution
+
+AHEAD = 64
+"""Members that are read and solved together."""
+
+
+class Sampled:
+    """A shape whose boundary is there already, or the reason why it has none."""
+
+    def __init__(self, name: str, found: Boundary | Exception) -> None:
+        self.name, self._found = name, found
+
+    def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - sampled with the same before
+        """Return the boundary, or raise what sampling it raised."""
+        if isinstance(self._found, Exception):
+            raise self._found
+        return self._found
+
+
+class Together:
+    """A solver for one boundary that remembers what another one made of many.
+
+    Parameters
+    ----------
+    alone : solves one boundary.
+    many : solves boundaries of four-sided domains in one go.
+    """
+
+    def __init__(
+        self, alone: Callable[[Boundary], Solution], many: Callable[[Sequence[Boundary]], list[Solution]]
+    ) -> None:
+        self._alone, self._many = alone, many
+        self._made: dict[int, Solution] = {}
+
+    def __call__(self, boundary: Boundary) -> Solution:
+        """Return the solution of `boundary`."""
+        return self._made.pop(id(boundary), None) or self._alone(boundary)
+
+    def ahead(self, found: Iterator[Item[Shape]], sampling: Sampling) -> Iterator[Item[Shape]]:
+        """Yield the members of `found`, solved `AHEAD` at a time; one that fails does so in its turn."""
+        while group := list(islice(found, AHEAD)):
+            sampled = [_sampled(item.what, sampling) for item in group]
+            quads = [one for one in sampled if isinstance(one, Boundary) and one.topology == "quad"]
+            if len(quads) > 1:
+                solutions = self._many(quads)
+                self._made = {id(one): solution for one, solution in zip(quads, solutions, strict=True)}
+            for item, one in zip(group, sampled, strict=True):
+                yield replace(item, what=Sampled(item.what.name, one))
+
+
+def _sampled(shape: Shape, sampling: Sampling) -> Boundary | Exception:
+    try:
+        return shape.boundary(sampling)
+    except (MeshonetError, ArithmeticError, ValueError, OSError) as error:
+        return error
