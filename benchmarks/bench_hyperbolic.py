@@ -180,7 +180,7 @@ def line(name: str, table: Floats, ni: int, nj: int, first: float) -> str:
 
 def measured(case: Case, ni: int, nj: int, first: float) -> list[float]:
     """Return folded cells, error of the first cell, three angles, two growths and milliseconds."""
-    sampling = Sampling(ni, nj, case.topology, "curvature", te=case.te)  # type: ignore[arg-type]
+    sampling = Sampling(ni, nj, case.topology, "curvature", te=case.te, viscous=True)  # type: ignore[arg-type]
     spent = []
     for _ in range(3):
         begun = time.process_time()

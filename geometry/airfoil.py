@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
@@ -28,6 +28,8 @@ _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
 
 
+_PARTS = 32
+"""Parts into which a stretch is cut to find the place farthest from the trailing edge."""
 _WIDEST_WEDGE = 50.0
 """Largest angle in degrees between surfaces whose edge a C grid takes by itself."""
 
@@ -213,7 +215,9 @@ class Airfoil:
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
-        found = o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit)
+        found = o_boundary(
+            wall, nj, centre, radius, body.curve, self.name, self.unit, turned=not sampling.viscous
+        )
         return replace(found, notes=notes) if notes else found
 
     def _c_boundary(self, sampling: Sampling, given: Airfoil, notes: tuple[str, ...]) -> Boundary:
@@ -299,25 +303,18 @@ def _farthest(curve: Curve, point: Floats) -> float:
         return float(0.5 * (s[best[0]] + s[best[-1]]))
     low, high = float(s[best[0] - 1]), float(s[min(best[-1] + 1, len(s) - 1)])
 
-    def slope(arc: float) -> float:
-        at = np.array([arc])
-        return float((curve.at(at)[0] - point) @ curve.tangent(at)[0])
-
-    if slope(low) <= 0 or slope(high) >= 0:
+    slopes = _slopes(curve, point, arcs := np.array([low, high]))
+    if slopes[0] <= 0 or slopes[1] >= 0:
         return float(s[best[0]])
-    return _root(slope, low, high)
+    for _ in range(4):  # parts of parts, all places at once: a call costs more than a place
+        arcs = np.linspace(low, high, _PARTS + 1)
+        slopes = _slopes(curve, point, arcs)
+        k = max(int(np.argmax(slopes <= 0)), 1)
+        low, high = float(arcs[k - 1]), float(arcs[k])
+    fall = float(slopes[k - 1] - slopes[k])
+    return low + (high - low) * float(slopes[k - 1]) / fall if fall > 0 else low
 
 
-def _root(f: Callable[[float], float], low: float, high: float) -> float:
-    """Return where a function is zero that falls from `low` to `high` (Illinois method)."""
-    top, bottom, at, side = f(low), f(high), low, 0
-    for _ in range(60):
-        before, at = at, (low * bottom - high * top) / (bottom - top)
-        value = f(at)
-        if value == 0 or abs(at - before) < 1e-14 * high:
-            break
-        if value > 0:
-            low, top, bottom, side = at, value, bottom * (0.5 if side > 0 else 1.0), 1
-        else:
-            high, bottom, top, side = at, value, top * (0.5 if side < 0 else 1.0), -1
-    return at
+def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
+    """Return by how much half the squared distance from `point` grows (m,) along the curve at `arcs` (m,)."""
+    return np.asarray(((curve.at(arcs) - point) * curve.tangent(arcs)).sum(axis=1))

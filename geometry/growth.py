@@ -34,19 +34,24 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
             f"({length:.3g})",
             "use a smaller wall spacing or fewer rows",
         )
-    low, high = 0.0, math.log(LARGEST)
-    if _sum(high, cells) < length / first:
+    wanted, most = length / first, math.log(LARGEST)
+    if _sum(most, cells) < wanted:
         raise InputError(
             f"{cells} cells from {first:.3g} to the far field at {length:.3g} would grow by more than "
             f"{LARGEST:g} each",
             "use more rows or a larger wall spacing",
         )
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
+    if cells == 1 or wanted <= cells:
+        return 1.0
+    rate = min(math.log(wanted) / (cells - 1), most)  # where the last cell alone is as long: above the root
+    for _ in range(100):  # Newton's method on ln of the sum, which is convex
+        total = _sum(rate, cells)
+        slope = cells / -math.expm1(-rate * cells) + 1.0 / math.expm1(-rate)
+        change = math.log(total / wanted) / slope
+        rate -= change
+        if abs(change) < 1e-15 or rate <= 0.0:
             break
-        low, high = (low, middle) if _sum(middle, cells) > length / first else (middle, high)
-    return round(math.exp(0.5 * (low + high)), 15)
+    return round(math.exp(max(rate, 0.0)), 15)
 
 
 def cells_for_growth(first: float, length: float, ratio: float) -> int:

@@ -117,7 +117,7 @@ def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -
 def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
     """Return the absolute curvature at arc lengths s, averaged over `_WINDOW`, at least 0.01 a chord."""
     low, high = min(s[0], s[-1]), max(s[0], s[-1])
-    t = np.linspace(low, high, 4 * _SAMPLES)
+    t = np.linspace(low, high, 2 * _SAMPLES)
     d = curve.tangent(np.clip(t, low + 1e-9 * (high - low), high - 1e-9 * (high - low)))
     angle = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
     before, after = np.maximum(s - _WINDOW * chord, low), np.minimum(s + _WINDOW * chord, high)

@@ -31,10 +31,15 @@ def _start(wall: Floats, centre: Floats) -> float:
     """Return the angle (radians) of the first far-field node around a closed wall (ni, 2)."""
     try:
         lift, w, _ = lift_body(mirrored(wall[:-1]))
-    except InputError:  # no conformal map: the direction of the first node
-        return float(np.arctan2(wall[0, 1] - centre[1], wall[0, 0] - centre[0]))
+    except InputError:  # no conformal map
+        return _direction(wall, centre)
     lead = float(np.mean(w.imag - 2.0 * np.pi * np.arange(len(w)) / len(w)))
     return -(float(np.angle(lift.quarter)) + lift.phase + lead)
+
+
+def _direction(wall: Floats, centre: Floats) -> float:
+    """Return the angle (radians) of the first wall node, seen from the centre."""
+    return float(np.arctan2(wall[0, 1] - centre[1], wall[0, 0] - centre[0]))
 
 
 def o_boundary(
@@ -45,6 +50,7 @@ def o_boundary(
     curve: Curve | None = None,
     name: str = "",
     chord: float = 0.0,
+    turned: bool = True,
 ) -> Boundary:
     """Return the O boundary of a closed wall within a circle.
 
@@ -56,12 +62,15 @@ def o_boundary(
     curve : the curve the wall was sampled from.
     name : of the shape.
     chord : its unit for spacings, see `Boundary`.
+    turned : whether the far field begins where the map below says, or, for marches that bring their own, in
+        the direction of the first node.
 
     The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal
     map, which for a symmetric body is straight behind it: a grid in between is then not sheared. West and
     east are the straight cut from there to the wall.
     """
     middle = np.asarray(centre, dtype=np.float64)
-    north = far_circle(middle, radius, len(wall), _start(wall, middle))
+    start = _start(wall, middle) if turned else _direction(wall, middle)
+    north = far_circle(middle, radius, len(wall), start)
     cut = straight(wall[0], north[0], nj)
     return Boundary(wall, north, cut, cut, topology="o", name=name, wall=curve, chord=chord)

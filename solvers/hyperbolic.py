@@ -222,7 +222,7 @@ def _distance_to_march(
             part = step * (1.0 - slow) / (1.0 + (1.0 + settings.theta + 2.0 * slow) * step / r)
             curved = front.curved(r)
             r += curved * part + (1.0 - curved) * step
-        if abs(r - front.outer) < 1e-3 * front.outer:
+        if abs(r - front.outer) < 3e-3 * front.outer:
             break
         distance *= (front.outer - front.inner) / (r - front.inner)
     return distance
