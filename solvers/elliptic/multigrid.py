@@ -18,6 +18,7 @@ from geometry.arrays import Floats, planar_nodes
 from solvers.elliptic._multigrid import Level, scratch_size
 from solvers.elliptic.coarsening import Direction
 from solvers.elliptic.control import Controls
+from solvers.elliptic.patches import Patch, patches, reentrant
 from solvers.tfi import Four, interpolate, parameters
 
 
@@ -61,6 +62,8 @@ class Multigrid:
         self._edges: list[Four] = []
         self._along: list[Four] = []
         self._directions: list[tuple[Direction, Direction]] = []
+        self._patches: list[list[Patch]] = []
+        corners = [] if periodic else reentrant(edges)
         along = parameters(edges, "arclength")
         xi = Direction(np.arange(float(nodes.shape[0])), periodic)
         eta = Direction(np.arange(float(nodes.shape[1])), False)
@@ -72,6 +75,7 @@ class Multigrid:
             coarse = bool(self.levels)
             level = Level(*planes, xi.differences(), eta.differences(), periodic, scratch, coarse)
             self.levels.append(level)
+            self._patches.append(patches(level, xi, eta, corners))
             self._edges.append(edges)
             self._along.append(along)
             self._directions.append((xi, eta))
@@ -84,7 +88,8 @@ class Multigrid:
             self.control(controls)
 
     def control(self, controls: Controls) -> None:
-        """Set the control functions of every level."""
+        """Set the control functions of every level; the patches at corners know none."""
+        self._patches = [[] for _ in self.levels]
         phi, psi = controls.phi, controls.psi
         for k, (level, (xi, eta)) in enumerate(zip(self.levels, self._directions, strict=True)):
             if k > 0:
@@ -133,12 +138,17 @@ class Multigrid:
             self._relax_coarsest(forced, 1e-2, 10)
             return 0.0
         fine, coarse = self.levels[k], self.levels[k + 1]
-        fine.smooth(forced, self.settings.sweeps)
+        self._smooth(k, forced)
         fine.restrict(coarse, forced)
         self.cycle(k + 1, True)
         correction = float(np.sqrt(fine.correct(coarse) / coarse.x.size))
-        fine.smooth(forced, self.settings.sweeps)
+        self._smooth(k, forced)
         return correction
+
+    def _smooth(self, k: int, forced: bool) -> None:
+        self.levels[k].smooth(forced, self.settings.sweeps)
+        for patch in self._patches[k]:
+            patch.smooth(forced)
 
     def _relax_coarsest(self, forced: bool, reduction: float, rounds: int) -> None:
         level = self.levels[-1]
