@@ -22,7 +22,7 @@ from solvers.repair import repair
 from solvers.solution import Solution
 from solvers.spline import spline_matrix
 from solvers.tfi import tfi
-from solvers.variational._variational import Stiffness, energy, workspace
+from solvers.variational._variational import Minimiser, Stiffness, energy, workspace
 from solvers.variational.functional import AROUND, Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
 
@@ -43,6 +43,9 @@ STILL = 1e-4
 
 MOST = 1000
 """Iterations on a coarser level at the most."""
+
+SMALL = 33
+"""Nodes along a direction up to which a folded grid is unfolded as a whole before local repair is tried."""
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
@@ -206,26 +209,43 @@ def descend(
     if min(ni, nj) < 3:
         return 0, count_folded(nodes) == 0
     z = np.moveaxis(nodes, -1, 0)
-    cells, aspect = (ni - 1) * (nj - 1), aspect_of(nodes, periodic)
+    aspect = aspect_of(nodes, periodic)
     relief = relief_of(nodes[:, 0]) if periodic else None
     descent = minimiser(ni, nj, periodic, aspect, weights)
-    if stiffness is not None:
+    if stiffness is not None and max(ni, nj) > SMALL:
         hessian, (m, n) = stiffness
         descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
     terms = aspect, weights.shape, weights.smoothness
-    if count_folded(nodes) and repair(nodes, periodic):
-        if periodic or max(ni, nj) > UNFOLDED:
-            return 0, False
-        cell = _area(nodes) / cells
-        smallest = energy(z, *terms, 0.0, False, None, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
-        epsilon = max(0.05 * cell, -0.5 * smallest)
-        for _ in range(25):
-            if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:
-                break
-            epsilon *= 0.4
-        else:
-            return 0, False
-    return descent.run(z, *terms, 0.0, relief, still * np.sqrt(cells), REACH, most)[2], True
+    if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
+        return 0, False
+    return descent.run(z, *terms, 0.0, relief, still * np.sqrt((ni - 1) * (nj - 1)), REACH, most)[2], True
+
+
+def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
+    """Unfold planar `nodes` in place, small grids as a whole first, others by repair; return success."""
+    largest, z = max(nodes.shape[:2]), np.moveaxis(nodes, -1, 0)
+    if not periodic and largest <= SMALL:
+        start = nodes.copy(order="K")
+        if _unfold(z, descent, terms):
+            return True
+        nodes[...] = start
+    if repair(nodes, periodic) == 0:
+        return True
+    return not periodic and largest <= UNFOLDED and _unfold(z, descent, terms)
+
+
+def _unfold(z: Floats, descent: Minimiser, terms: tuple[float, float, float]) -> bool:
+    """Unfold the planes `z` (2, ni, nj) in place by minimising with regularised Jacobians; return success."""
+    nodes = np.moveaxis(z, 0, -1)
+    ni, nj = nodes.shape[:2]
+    cell = _area(nodes) / ((ni - 1) * (nj - 1))
+    smallest = energy(z, *terms, 0.0, False, None, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
+    epsilon = max(0.05 * cell, -0.5 * smallest)
+    for _ in range(25):
+        if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:
+            return True
+        epsilon *= 0.4
+    return False
 
 
 def _inside(boundary: Boundary, initial: Grid) -> Floats:
