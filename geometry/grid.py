@@ -65,8 +65,9 @@ class Grid:
         nodes = as_planar(nodes)
         if self.topology not in TOPOLOGIES:
             raise InputError(f"topology {self.topology!r} is not known", "use " + "/".join(TOPOLOGIES))
-        # a sum is finite exactly when (overflow aside) its terms are: one pass and no temporary
-        if not np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()):
+        # sums are finite exactly when (overflow aside) their terms are: one pass, no temporary, by BLAS
+        ones = np.ones(nodes.shape[1])
+        if not np.isfinite((nodes[..., 0] @ ones).sum() + (nodes[..., 1] @ ones).sum()):
             finite = np.isfinite(nodes).all(axis=-1)
             if not finite.all():
                 i, j = (int(k) for k in np.argwhere(~finite)[0])

@@ -25,6 +25,7 @@ import numpy as np
 
 from geometry.arrays import Complexes, Floats
 from geometry.errors import InputError
+from geometry.mirror import farthest
 
 SHARP_TURN = np.radians(80.0)  # a first node that turns more than this is a sharp trailing edge
 CORNER_TURN = np.radians(
@@ -66,7 +67,7 @@ class Corner:
 class Lift:
     """The composed map of one body: `lift_body` makes it.
 
-    `centre` and `quarter` carry the user's position, rotation and size; `turns` is the phase that puts
+    `centre` and `quarter` carry the user's position, rotation and size; `phase` is what puts
     the first wall node at phi = 0.
     """
 
@@ -110,12 +111,14 @@ def mirrored(nodes: Floats) -> Complexes:
     return points
 
 
-def lift_body(wall: Complexes) -> tuple[Lift, Complexes, tuple[int, ...]]:
+def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
     """Return the lift of a body, its wall in the strip and its trailing corners.
 
     Parameters
     ----------
     wall : (n,) nodes counter-clockwise from the trailing edge, first node not repeated.
+    swap : remove the second corner of a blunt edge first. The two removals do not commute, so a mirrored
+        body is lifted to the mirrored strip when its corners are swapped.
 
     Returns
     -------
@@ -136,7 +139,7 @@ def lift_body(wall: Complexes) -> tuple[Lift, Complexes, tuple[int, ...]]:
     pole = _centroid(zeta)
     corners: list[Corner] = []
     ends = [(0, 0.5 * (1.0 + turn[0] / np.pi))] if not base else [(i, 1.0 + turn[i] / np.pi) for i in base]
-    for i, k in ends if (base or tail) else []:
+    for i, k in ends[:: -1 if swap else 1] if (base or tail) else []:
         if not (0.55 < k < 0.995 or 1.03 < k < 1.9):
             continue
         corner = _corner(complex(zeta[i]), pole, float(k))
@@ -181,29 +184,27 @@ def _slit(wall: Complexes, sharp: bool, base: list[int]) -> tuple[complex, compl
     Its ends sit inside the body, off each tip by a(1 - sqrt(1 - r/a)) where r is the tip's radius and a the
     half chord: the foci when the body is an ellipse. A sharp edge is itself an end.
     """
-    reach = np.abs(wall - wall[0])
-    nose = int(np.argmax(reach > (1.0 - 1e-12) * reach.max()))  # the first of equals, rounding aside
+    first, last = farthest(wall)
+    nose = complex(0.5 * (wall[first] + wall[last]))
     if sharp:
         tail = complex(wall[0])
     elif len(base) == 2:
         gap = abs(wall[base[0]] - wall[base[1]])
         middle = 0.5 * (wall[base[0]] + wall[base[1]])
-        tail = complex(middle + 0.25 * gap * _unit(wall[nose] - middle))
+        tail = complex(middle + 0.25 * gap * _unit(nose - middle))
     else:
         tail = _focus(wall, 0, nose)
-    head = _focus(wall, nose, 0)
-    if abs(tail - head) < 0.2 * abs(
-        wall[nose] - wall[0]
-    ):  # round bodies: the foci meet, the map must not vanish
+    head = 0.5 * (_focus(wall, first, complex(wall[0])) + _focus(wall, last, complex(wall[0])))
+    if abs(tail - head) < 0.2 * abs(nose - wall[0]):  # round bodies: the foci meet, the map must not vanish
         middle = 0.5 * (tail + head)
-        spread = 0.1 * (wall[0] - wall[nose])
+        spread = 0.1 * (wall[0] - nose)
         tail, head = complex(middle + spread), complex(middle - spread)
     return 0.5 * (tail + head), 0.25 * (tail - head)
 
 
-def _focus(wall: Complexes, tip: int, other: int) -> complex:
+def _focus(wall: Complexes, tip: int, other: complex) -> complex:
     """Return the focus behind node `tip`: the circle through it and nodes .004 chord away tells."""
-    n, chord = len(wall), abs(wall[other] - wall[tip])
+    n, chord = len(wall), abs(other - wall[tip])
     far = np.abs(wall - wall[tip]) > 0.004 * chord
     ahead = next((m for m in range(1, n // 2) if far[(tip + m) % n]), 1)
     behind = next((m for m in range(1, n // 2) if far[(tip - m) % n]), 1)
@@ -212,7 +213,7 @@ def _focus(wall: Complexes, tip: int, other: int) -> complex:
     radius = abs(a - b) * abs(c - b) * abs(a - c) / (4.0 * area + 1e-12 * chord**2)
     ratio = float(np.clip(2.0 * radius / chord, 4e-4, 0.8))
     inwards = 1j * (a - c)
-    if (np.conj(inwards) * (wall[other] - b)).real < 0.0:
+    if (np.conj(inwards) * (other - b)).real < 0.0:
         inwards = -inwards
     return complex(b + _unit(inwards) * 0.5 * chord * (1.0 - np.sqrt(1.0 - ratio)))
 
@@ -220,6 +221,7 @@ def _focus(wall: Complexes, tip: int, other: int) -> complex:
 def _joukowski(z: Complexes, centre: complex, quarter: complex) -> Complexes:
     """Return the outer root zeta of z = centre + quarter (zeta + 1/zeta); the slit is its only cut."""
     Z = (z - centre) / quarter
+    Z = np.where(np.abs(Z - 2.0) < 1e-13, 2.0, Z)  # an end of the slit is a branch point: no rounding there
     return 0.5 * (Z + np.sqrt(Z - 2.0) * np.sqrt(Z + 2.0))
 
 

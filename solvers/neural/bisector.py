@@ -8,7 +8,6 @@ node gets there at once, and dies out within a few cells.
 from __future__ import annotations
 
 from cmath import phase
-from itertools import pairwise
 from math import isfinite, pi
 
 import numpy as np
@@ -20,8 +19,8 @@ from solvers.neural.evaluate import StripGrid
 
 CELLS = 5.0  # reach of a nudge, in cells either way
 LARGEST = 0.4  # of a cell's width in theta: beyond it the neighbours would suffer
-SWEEPS = 2  # over the corners, which feel each other a little
-STEPS = 3  # of the secant method
+SWEEPS = 3  # over the corners, which feel each other a little
+STEPS = 5  # of the secant method
 
 
 def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> None:
@@ -36,40 +35,28 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
     if len(corners) == 2:
         between = (corners[0] - corners[1]) % n
         width = min(CELLS, 0.5 * min(between, n - between))
-    first = np.array([grid.at(c, 1) for c in corners])
+    first = grid.at(corners, 1)
     pull = _along(np.subtract.outer(corners, corners), n, width)
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
-        for k, c in enumerate(corners):
-            rest = float(pull[k] @ shift - shift[k])
-            shift[k] = _secant(lift, wall, c, complex(first[k]) + 1j * rest, float(shift[k]), LARGEST * step)
+        moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
+        shift = np.array(
+            [
+                _secant(lift, wall, c, complex(w), float(s), LARGEST * step)
+                for c, w, s in zip(corners, moved, shift, strict=True)
+            ]
+        )
 
     def across(eta: Floats) -> Floats:
         cells = eta / grid.eta[1]
         fading: Floats = cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - grid.eta[1])
         return fading
 
-    reach = int(np.ceil(6.0 * width))
-    for c, s in zip(corners, shift, strict=True):
-        if s == 0.0:
-            continue
-        rows = np.arange(c - reach, c + reach + 1)
-        along = s * _along(rows - c, n, width)
-        for part in _pieces(rows, n):
-            where = rows[part] % n
-            grid.nudge(slice(int(where[0]), int(where[-1]) + 1), along[part], across)
+    grid.nudge(_along(np.subtract.outer(np.arange(n), corners), n, width) @ shift, across)
 
 
 def _along(offset: NDArray[np.intp], n: int, width: float) -> Floats:
     return np.asarray(np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2)))
-
-
-def _pieces(rows: NDArray[np.intp], n: int) -> list[slice]:
-    """Return slices of `rows` that do not cross the seam, at most n rows in all."""
-    if len(rows) > n:
-        rows = rows[:n]
-    cuts = [0, *(int(k) + 1 for k in np.flatnonzero(np.diff(rows % n) < 0)), len(rows)]
-    return [slice(a, b) for a, b in pairwise(cuts)]
 
 
 def _secant(lift: Lift, wall: Complexes, c: int, w: complex, start: float, limit: float) -> float:
@@ -80,8 +67,9 @@ def _secant(lift: Lift, wall: Complexes, c: int, w: complex, start: float, limit
         line = lift.point(w + 1j * s) - corner
         return _turn(behind - corner, line) - _turn(line, ahead - corner)
 
-    a, b = start, start + 0.05 * limit
-    fa, fb = unequal(a), unequal(b)
+    a, fa = start, unequal(start)
+    b = start - 0.05 * limit if fa > 0.0 else start + 0.05 * limit
+    fb = unequal(b)
     for _ in range(STEPS):
         if fa == fb:
             break

@@ -38,28 +38,26 @@ def encode(wall: Complexes, far: Complexes) -> tuple[Floats, Floats, Floats]:
     a, b = wall.copy(), far.copy()
     a[:, 0] = b[:, 0] = 0.0
     size = np.maximum(np.sqrt((np.abs(a) ** 2 + np.abs(b) ** 2).sum(axis=1)), 1e-12)
-    channels = np.empty((len(wall), CHANNELS, to_columns(a.T).shape[0]))
-    for m in range(len(wall)):
-        near, away = decay(k, float(height[m]), DEPTHS)
-        h = (a[m][:, None] * near + b[m][:, None] * away) / size[m]
-        value, slope = to_columns(h).T, SLOPE * to_columns(1j * k[:, None] * h).T
-        channels[m] = np.stack([value.real, value.imag, slope.real, slope.imag], axis=1).reshape(CHANNELS, -1)
+    near, away = np.array([decay(k, float(T), DEPTHS) for T in height]).swapaxes(0, 1).swapaxes(2, 3)
+    h = (a[:, None] * near + b[:, None] * away) / size[:, None, None]
+    value, slope = to_columns(h, -1), SLOPE * to_columns(1j * k * h, -1)
+    channels = np.stack([value.real, value.imag, slope.real, slope.imag], axis=2)
     scalars = np.stack([np.log(size) + 2.5, height - 4.0, shear], axis=1)
-    return channels, scalars, size
+    return channels.reshape(len(wall), CHANNELS, -1), scalars, size
 
 
-def decode(coefficients: Floats, basis: Floats, scale: float, size: float) -> Complexes:
-    """Return the modes (2 MODES + 1, LEVELS) of R from the network's answer for one strip.
+def decode(coefficients: Floats, basis: Floats, scale: float, size: Floats) -> Complexes:
+    """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's answers.
 
     Parameters
     ----------
-    coefficients : (2 Q, COLUMNS) real parts, then imaginary parts.
+    coefficients : (batch, 2 Q, COLUMNS) real parts, then imaginary parts.
     basis : (Q, LEVELS - 2) functions of the inner Chebyshev points.
     scale : of the training targets.
-    size : from `encode`.
+    size : (batch,) from `encode`.
     """
     q = len(basis)
-    spectrum = np.fft.fft(coefficients[:q] + 1j * coefficients[q:], axis=1) / coefficients.shape[1]
-    kept = np.concatenate([spectrum[:, : MODES + 1], spectrum[:, -MODES:]], axis=1)
-    inner = (kept.T @ basis) * (scale * size**2)
-    return np.pad(inner, ((0, 0), (1, 1)))
+    spectrum = np.fft.fft(coefficients[:, :q] + 1j * coefficients[:, q:]) / coefficients.shape[2]
+    kept = np.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], axis=2)
+    inner = (kept.swapaxes(1, 2) @ basis) * (scale * size**2)[:, None, None]
+    return np.pad(inner, ((0, 0), (0, 0), (1, 1)))

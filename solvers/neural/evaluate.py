@@ -1,25 +1,29 @@
 """A grid at any resolution from a strip solution, at the speed of memory.
 
-The strip solution is separable: (cosines and sines along theta) x (Chebyshev points across). What the first
-`MODES` modes leave out of the walls dies within a few levels of them and is added there exactly. Levels near
-the walls go through the compiled maps one by one; all others are interpolated along eta in the plane, from
-the few Chebyshev points of each panel.
+The strip solution is separable: Fourier modes along theta, Chebyshev points across. What the first `MODES`
+modes leave out of the walls dies within a few levels of them and is added there exactly. Levels near the
+walls go through the compiled maps one by one; all others are interpolated along eta in the plane, from the
+few Chebyshev points of each panel. The points of a row::
+
+    levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from geometry.arrays import Complexes, Floats
 from geometry.lift import Lift
-from solvers.neural._maps import to_plane
-from solvers.neural.panels import panels
-from solvers.neural.strip import MODES, interpolation
+from geometry.mirror import Axis
+from solvers.neural._strip_rows import fill
+from solvers.neural.panels import NODES, panels
+from solvers.neural.strip import MODES, interpolation, wavenumbers
+from solvers.neural.waves import SHARPNESS, columns
 
-BLOCK = 1 << 16  # nodes a block: both coordinates stay in the second-level cache
-FAINT = 1e-9  # a wall's high modes are followed until their sum is below this (radians in the strip)
+FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
 
 
 class StripGrid:
@@ -33,96 +37,129 @@ class StripGrid:
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
-        n = len(wall)
+        n, nj = len(wall), len(eta)
         self.theta = 2.0 * np.pi * np.arange(n) / n
         self.eta = eta
-        self._levels = c.shape[1]
-        self._columns = _at_nodes(c, n)
-        self._near = _high_modes(wall, wall, far, eta)
-        self._away = _high_modes(far, wall, far, 1.0 - eta[::-1])[:, ::-1]
-        self._nudges: list[tuple[slice, Floats, Callable[[Floats], Floats]]] = []
+        self._c = c
+        self._nudges: list[tuple[Floats, Callable[[Floats], Floats]]] = []
         psi = wall.real
-        inner, outer = self._near.shape[1], len(eta) - self._away.shape[1]
         height, spread = float(far.real.mean() - psi.mean()), float(psi.max() - psi.min())
-        self._panels = panels(eta, height, spread, inner, outer)
+        self._near, self._away = _HighModes.of(wall, height), _HighModes.of(far, height)
+        outer = nj - max(self._away.reach(1.0 - eta[::-1]), 1)
+        self._panels = panels(eta, height, spread, 1, outer)
+        ends = (self._panels[0].start, self._panels[-1].stop) if self._panels else (nj - 1, nj - 1)
+        self._begin, self._end = ends
 
-    def at(self, i: int, j: int) -> complex:
-        """Return w at node (i, j), nudges left out."""
-        F = complex((self._columns[:, :, i] @ interpolation(self.eta[j : j + 1])[:, 0]) @ (1.0, 1j))
-        return F + 1j * self.theta[i] + (self._near[i, j] if j < self._near.shape[1] else 0.0)
+    def at(self, rows: Sequence[int], j: int) -> Complexes:
+        """Return w at nodes (rows, j) near the wall, nudges left out."""
+        theta = self.theta[list(rows)]
+        low = self._c @ interpolation(self.eta[j : j + 1])[:, 0]
+        k, high = self._near.at(float(self.eta[j]))
+        F = np.exp(1j * np.outer(theta, wavenumbers())) @ low + np.exp(1j * np.outer(theta, k)) @ high
+        return np.asarray(F + 1j * theta)
 
-    def nudge(self, rows: slice, along: Floats, across: Callable[[Floats], Floats]) -> None:
-        """Add `along` (rows) times ``across(eta)`` to phi."""
-        self._nudges.append((rows, along, across))
+    def nudge(self, along: Floats, across: Callable[[Floats], Floats]) -> None:
+        """Add `along` (n,) times ``across(eta)`` to phi."""
+        self._nudges.append((along, across))
 
-    def fill(self, lift: Lift, out: Floats) -> None:
-        """Write the grid in the plane to `out` (n + 1, nj, 2) planar; the last row repeats the first bitwise.
+    def fill(self, lift: Lift, out: Floats, axis: Axis | None = None) -> None:
+        """Write the grid in the plane to `out` (n + 1, nj, 2) planar, its two walls left out.
 
-        The walls are as exact as the maps are: the caller puts the given nodes there.
+        The last row repeats the first bitwise. With an `axis`, rows i and n - i become mirror images.
         """
-        n, nj = len(self.theta), len(self.eta)
-        begin, end = (self._panels[0].start, self._panels[-1].stop) if self._panels else (nj, nj)
-        directly = np.r_[0:begin, end:nj]
-        eta = np.concatenate([self.eta[directly], *(panel.eta for panel in self._panels)])
-        across = interpolation(eta)
-        nudges = [(rows, along, profile(eta)) for rows, along, profile in self._nudges]
-        step = max(1, BLOCK // nj)
-        for start in range(0, n, step):
-            rows = slice(start, min(start + step, n))
-            psi, phi = (np.ascontiguousarray(part[:, rows].T) @ across for part in self._columns)
-            phi += self.theta[rows, None]
-            self._add_bands(rows, psi, phi, len(directly))
-            for where, along, profile in nudges:
-                a, b = max(where.start, rows.start), min(where.stop, rows.stop)
-                if a < b:
-                    phi[a - start : b - start] += np.outer(along[a - where.start : b - where.start], profile)
-            to_plane(psi, phi, lift)
-            for values, target in ((psi, out[rows, :, 0]), (phi, out[rows, :, 1])):
-                target[:, :begin], target[:, end:] = values[:, :begin], values[:, begin : len(directly)]
-                taken = len(directly)
-                for panel in self._panels:
-                    points = values[:, taken : taken + len(panel.eta)]
-                    np.matmul(points, panel.matrix, out=target[:, panel.start : panel.stop])
-                    taken += len(panel.eta)
-        out[-1] = out[0]
+        n, nj, begin = len(self.theta), len(self.eta), self._begin
+        far = self.eta[self._end : nj - 1]
+        eta = np.concatenate([self.eta[1:begin], *(panel.eta for panel in self._panels), far])
+        along, across = np.empty((len(self._nudges), n)), np.empty((len(self._nudges), len(eta)))
+        for k, (rows, profile) in enumerate(self._nudges):
+            along[k], across[k] = rows, profile(eta)
+        matrix = np.concatenate([np.empty((NODES, 0)), *(panel.matrix for panel in self._panels)], axis=1)
+        cuts = np.array([begin, *(panel.stop for panel in self._panels)]) - begin
+        order = np.arange(n)
+        if axis is not None:
+            half = np.arange(n // 2 + 1)
+            order = np.stack([half, -half % n], axis=1).ravel()
+        sums = list(self._columns(eta, len(eta) - len(far)))
+        x, y = out[..., 0], out[..., 1]
+        fill(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
+        out[-1, 1:-1] = out[0, 1:-1]
 
-    def _add_bands(self, rows: slice, psi: Floats, phi: Floats, direct: int) -> None:
-        near, away = self._near[rows], self._away[rows]
-        for band, where in (
-            (near, slice(0, near.shape[1])),
-            (away, slice(direct - away.shape[1], direct)),
-        ):
-            if band.shape[1]:
-                psi[:, where] += band.real
-                phi[:, where] += band.imag
+    def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, Complexes]]:
+        """Yield the points at `eta` in slices, by their first, and the columns of their modes.
 
-
-def _at_nodes(c: Complexes, n: int) -> Floats:
-    """Return samples (2, LEVELS, n), real and imaginary, at equal steps of theta of the modes c."""
-    full = np.zeros((c.shape[1], n), complex)
-    for row, k in enumerate((*range(MODES + 1), *range(-MODES, 0))):
-        full[:, k % n] += c[row]  # few nodes cannot tell high modes from low ones
-    samples = np.fft.ifft(full, norm="forward")
-    return np.stack([samples.real, samples.imag])
+        Those before `last` may feel the high modes of the wall, the others those of the far field.
+        """
+        base = np.ascontiguousarray(self._c.T)
+        low = (interpolation(eta).T @ base.view(np.float64)).view(np.complex128)
+        first = 0
+        for where, ahead, behind in self._near.bands(eta[:last]):
+            yield where.start, columns(_widened(low[where], ahead, behind))
+            first = where.stop
+        depth, beyond = 1.0 - eta[last:][::-1], len(eta)
+        for where, ahead, behind in self._away.bands(depth):
+            start, stop = len(eta) - where.stop, len(eta) - where.start
+            yield start, columns(_widened(low[start:stop], ahead[::-1], behind[::-1]))
+            beyond = start
+        yield first, columns(low[first:beyond])
 
 
-def _high_modes(F: Complexes, wall: Complexes, far: Complexes, depth: Floats) -> Complexes:
-    """Return what `MODES` modes leave out of F on one wall, (n, as many levels of `depth` as it reaches).
+def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
+    """Return modes k = 0 .. K, -K .. -1 from those up to `MODES` and those beyond."""
+    return np.hstack([low[:, : MODES + 1], ahead, behind, low[:, MODES + 1 :]])
 
-    `depth` rises from 0 at that wall. Such modes never see the opposite wall: to round-off, exp(-kT depth) is
-    their sinh ratio.
+
+@dataclass(frozen=True)
+class _HighModes:
+    """What `MODES` modes leave out of a wall: `ahead` for k = MODES + 1 .. K, `behind` for -K .. -MODES - 1.
+
+    They never see the opposite wall: to round-off, exp(-|k| height depth) is their sinh ratio.
     """
-    n, T = len(F), float((far.mean() - wall.mean()).real)
-    k = np.minimum(np.arange(n), n - np.arange(n))
-    rest = np.fft.fft(F)
-    rest[k <= min(MODES, (n - 1) // 2)] = 0.0
-    strength = np.abs(rest) / n
-    high = np.flatnonzero(strength > 1e-3 * FAINT / n)
-    some = [0]
-    while some[-1] < len(depth) - 1:
-        some.append(min(some[-1] + 1 + some[-1] // 4, len(depth) - 1))
-    felt = np.exp(np.outer(-depth[some] * T, k[high])) @ strength[high] > FAINT
-    levels = 0 if not felt[0] else len(depth) if felt.all() else int(some[np.argmin(felt)])
-    band = np.zeros((levels, n), complex)
-    band[:, high] = rest[high] * np.exp(np.outer(-depth[:levels] * T, k[high]))
-    return np.asarray(np.fft.ifft(band, axis=1).T) if levels else band.T
+
+    ahead: Complexes
+    behind: Complexes
+    height: float
+
+    @classmethod
+    def of(cls, F: Complexes, height: float) -> _HighModes:
+        n = len(F)
+        c, highest = np.fft.fft(F, norm="forward"), max(n // 2, MODES)
+        ahead, behind = c[MODES + 1 : highest + 1], c[max(n - highest, 0) : max(n - MODES, 0)].copy()
+        if n % 2 == 0 and len(behind):
+            behind[0] = 0.0  # n samples hold k = n/2 once
+        return cls(ahead, behind, height)
+
+    def at(self, depth: float) -> tuple[Floats, Complexes]:
+        """Return wave numbers (2 m,) and how strong their modes are at one depth."""
+        k = np.arange(MODES + 1.0, MODES + 1.0 + len(self.ahead))
+        fade = np.exp(-self.height * depth * k)
+        modes = np.concatenate([self.ahead * fade, self.behind[::-1] * fade])
+        return np.concatenate([k, -k]), modes
+
+    def reach(self, depth: Floats) -> int:
+        """Return how many levels of `depth` (rising) feel any of the modes."""
+        return max((count for count, _ in self._felt(depth)), default=0)
+
+    def bands(self, depth: Floats) -> Iterator[tuple[slice, Complexes, Complexes]]:
+        """Yield slices of `depth`, from the wall outwards, with the modes (levels, m) felt there."""
+        start = 0
+        for count, some in self._felt(depth):
+            if count > start:
+                levels = slice(start, count)
+                k = np.arange(MODES + 1, MODES + 1 + some)
+                fade = np.exp(np.outer(depth[levels], -self.height * k))
+                yield levels, self.ahead[:some] * fade, self.behind[-some:] * fade[:, ::-1]
+                start = count
+
+    def _felt(self, depth: Floats) -> list[tuple[int, int]]:
+        """Return, highest octave of modes first, how many levels feel it and how many modes it ends."""
+        found: list[tuple[int, int]] = []
+        strength = np.abs(self.ahead) + np.abs(self.behind[::-1])
+        begin = 0
+        while begin < len(strength):
+            low = MODES + 1 + begin
+            end = min(begin + low, len(strength))
+            total = float(strength[begin:end].sum())
+            felt = np.log(max(total / FAINT, 1.0)) / (low * self.height)
+            found.append((int(np.searchsorted(depth, felt)), end))
+            begin = end
+        return found[::-1]

@@ -48,9 +48,13 @@ class StripNetwork:
         self._spectral_out = _mixing(weights, "spectral_out")
 
     def __call__(self, channels: Reals, scalars: Reals) -> Reals:
-        """Return the answer (outputs, columns) for `channels` (inputs, columns) and `scalars` (count,)."""
-        constant = np.repeat(scalars[:, None], channels.shape[1], axis=1)
-        h = self._lift(np.concatenate([channels, constant]).astype(self.dtype))
+        """Return answers (batch, outputs, columns).
+
+        `channels` are (batch, inputs, columns), `scalars` (batch, count).
+        """
+        columns = channels.shape[2]
+        constant = np.repeat(scalars[:, :, None], columns, axis=2)
+        h = self._lift(np.concatenate([channels, constant], axis=1).swapaxes(0, 1).astype(self.dtype))
         width = len(h) // 2
         h = h[:width] * h[width:] + gelu(h[:width])
         for (taps, bias), mixing, expand in self._layers:
@@ -61,7 +65,7 @@ class StripNetwork:
             gate *= self.dtype.type(GATE)
             gate += expand(gelu(a + spectral(mixing, h)))
             h = h + gate
-        return np.asarray(self._project(h) + spectral(self._spectral_out, h))
+        return np.asarray(self._project(h) + spectral(self._spectral_out, h)).swapaxes(0, 1)
 
 
 def misfit(weights: Mapping[str, Reals]) -> str:
@@ -103,25 +107,25 @@ def gelu(x: Reals) -> Reals:
 
 
 def spectral(mixing: Reals, h: Reals) -> Reals:
-    """Return h (c, n) with its first modes mixed by a complex matrix each: `mixing` (modes, c, d)."""
-    count, n = len(mixing), h.shape[1]
-    spectrum = np.fft.rfft(h)[:, :count].T
-    out = np.zeros((mixing.shape[2], n // 2 + 1), mixing.dtype)
-    out[:, :count] = (spectrum[:, None, :] @ mixing)[:, 0].T
+    """Return h (c, batch, n) with its first modes mixed by a complex matrix each: `mixing` (modes, c, d)."""
+    count, n = len(mixing), h.shape[2]
+    spectrum = np.ascontiguousarray(np.fft.rfft(h)[..., :count].T)
+    out = np.zeros((mixing.shape[2], h.shape[1], n // 2 + 1), mixing.dtype)
+    out[..., :count] = (spectrum @ mixing).T
     return np.fft.irfft(out, n).astype(h.dtype, copy=False)
 
 
 class _Pointwise:
-    """A linear map of the channels, the same in every column."""
+    """A linear map of the channels (c, batch, n), the same in every column."""
 
     def __init__(self, weights: Mapping[str, Reals], name: str) -> None:
         self._matrix = np.ascontiguousarray(weights[f"{name}.weight"][:, :, 0])
         self._bias = weights[f"{name}.bias"][:, None]
 
     def __call__(self, h: Reals) -> Reals:
-        out = self._matrix @ h
+        out = self._matrix @ h.reshape(len(h), -1)
         out += self._bias
-        return np.asarray(out)
+        return out.reshape(-1, *h.shape[1:])
 
 
 def _taps(weights: Mapping[str, Reals], name: str) -> tuple[Reals, Reals]:
@@ -139,12 +143,12 @@ def _mixing(weights: Mapping[str, Reals], name: str) -> Reals:
 
 def _convolve(taps: Reals, bias: Reals, h: Reals) -> Reals:
     """Return the circular convolution over `TAPS` columns as one matrix product."""
-    width, n = h.shape
+    width, batch, n = h.shape
     half = TAPS // 2
-    around = np.concatenate([h[:, -half:], h, h[:, :half]], axis=1)
-    shifted = np.empty((TAPS * width, n), h.dtype)
+    around = np.concatenate([h[..., -half:], h, h[..., :half]], axis=2)
+    shifted = np.empty((TAPS, width, batch, n), h.dtype)
     for t in range(TAPS):
-        shifted[t * width : (t + 1) * width] = around[:, t : t + n]
-    out = taps @ shifted
+        shifted[t] = around[..., t : t + n]
+    out = taps @ shifted.reshape(TAPS * width, -1)
     out += bias
-    return np.asarray(out)
+    return out.reshape(-1, batch, n)

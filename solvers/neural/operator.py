@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.lift import Lift, lift_body, mirrored
+from geometry.mirror import Axis, handedness
 from solvers.neural.bisector import halve_corners
 from solvers.neural.evaluate import StripGrid
 from solvers.neural.strip import MODES, across, harmonic, modes, picard
@@ -91,17 +92,33 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     )
 
 
-def walls(boundary: Boundary) -> tuple[Lift, Complexes, Complexes, Complexes, tuple[int, ...]]:
-    """Return the lift, F on the wall and on the far field (n,), the wall's nodes, its corners.
+class Walls(NamedTuple):
+    """A body's two walls in the strip.
 
-    F = w - i theta is periodic; n = ni - 1. Raises InputError when the body cannot be lifted.
+    `lift` to the plane; F on the `wall` and on the `far` field (n,), where F = w - i theta is periodic and
+    n = ni - 1; the wall's nodes `z`; its trailing `corners`; the `axis` of a boundary that is its own mirror
+    image, and which of the two mirror images it is otherwise (`hand`).
     """
+
+    lift: Lift
+    wall: Complexes
+    far: Complexes
+    z: Complexes
+    corners: tuple[int, ...]
+    axis: Axis | None
+    hand: int
+
+
+def walls(boundary: Boundary) -> Walls:
+    """Return the walls of an O boundary in the strip. Raises InputError when the body cannot be lifted."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
-    lift, w, corners = lift_body(z)
+    hand, (point, direction) = handedness(z, far)
+    lift, w, corners = lift_body(z, swap=hand < 0)
     theta = 2.0 * np.pi * np.arange(len(z)) / len(z)
     away = lift.to_strip(far)
     away -= 2j * np.pi * np.round((away.imag - w.imag).mean() / (2.0 * np.pi))
-    return lift, w - 1j * theta, away - 1j * theta, z, corners
+    axis = None if hand else (point.conjugate(), direction.conjugate())
+    return Walls(lift, w - 1j * theta, away - 1j * theta, z, corners, axis, hand)
 
 
 def _check_smooth(wall: Complexes, far: Complexes) -> None:
@@ -118,12 +135,12 @@ def _check_smooth(wall: Complexes, far: Complexes) -> None:
 
 
 def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple[Floats, list[float]]:
-    lift, wall, far, z, corners = walls(boundary)
+    lift, wall, far, z, corners, axis, hand = walls(boundary)
     _check_smooth(wall, far)
     a, b = modes(wall), modes(far)
     c = harmonic(a, b, across().eta)
     if network is not None:
-        c = c + network.residual(a, b)
+        c = c + network.residual(a[None], b[None], np.array([hand]))[0]
     changes: list[float] = []
     for _ in range(AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish):
         c, change = picard(c, 1)
@@ -133,7 +150,7 @@ def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple
     nodes = planar_nodes(boundary.ni, boundary.nj)
     grid = StripGrid(c, wall, far, np.linspace(0.0, 1.0, boundary.nj))
     halve_corners(grid, lift, z, corners)
-    grid.fill(lift, nodes)
+    grid.fill(lift, nodes, axis)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     return nodes, changes
 

@@ -120,11 +120,12 @@ def harmonic(wall: Complexes, far: Complexes, eta: Floats) -> Complexes:
     return wall[:, None] * near + far[:, None] * away
 
 
-def to_columns(c: Complexes) -> Complexes:
-    """Return samples (COLUMNS, ...) of the function with modes c."""
-    full = np.zeros((COLUMNS, *c.shape[1:]), complex)
-    full[: MODES + 1], full[-MODES:] = c[: MODES + 1], c[-MODES:]
-    return np.fft.ifft(full, axis=0) * COLUMNS
+def to_columns(c: Complexes, axis: int = 0) -> Complexes:
+    """Return samples at `COLUMNS` equal steps of theta of the functions whose modes lie along `axis` of c."""
+    c = np.moveaxis(c, axis, -1)
+    full = np.zeros((*c.shape[:-1], COLUMNS), complex)
+    full[..., : MODES + 1], full[..., -MODES:] = c[..., : MODES + 1], c[..., -MODES:]
+    return np.moveaxis(np.fft.ifft(full, norm="forward"), -1, axis)
 
 
 def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
@@ -136,24 +137,29 @@ def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
     """
     grid, k = across(), wavenumbers()
     T = float((c[0, -1] - c[0, 0]).real)
-    stiffness = grid.eigenvalues[None, :] - (k[:, None] * T) ** 2
-    smooth = np.exp(-36.0 * (np.abs(k) / (MODES + 1)) ** 12)[:, None]  # against aliasing of the products
+    stiffness = grid.eigenvalues[:, None] - (k * T) ** 2
+    smooth = np.exp(-36.0 * (np.abs(k) / (MODES + 1)) ** 12) / stiffness  # the first against aliasing
+    levels = np.ascontiguousarray(c.T)
     changes: list[float] = []
     for _ in range(steps):
-        Wt = to_columns(1j * k[:, None] * c) + 1j
-        Wtt = to_columns(-(k[:, None] ** 2) * c)
-        ce = c @ grid.d1.T
-        We, Wte = to_columns(ce), to_columns(1j * k[:, None] * ce)
-        Wee = to_columns(c @ grid.d2.T)
+        ce = _product(grid.d1, levels)
+        slopes = np.stack([1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, _product(grid.d2, levels)])
+        Wt, Wtt, We, Wte, Wee = to_columns(slopes, -1)[:, 1:-1]
+        Wt += 1j
         alpha, gamma = _square(We), _square(Wt)
         beta = Wt.real * We.real + Wt.imag * We.imag
         residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
-        r = modes(residual[:, 1:-1]) * smooth
-        update = ((r @ grid.inverse.T) / stiffness) @ grid.vectors.T
-        c = c.copy()
-        c[:, 1:-1] -= update
-        changes.append(float(np.abs(to_columns(update)).max()))
-    return c, changes
+        r = np.fft.fft(residual, norm="forward")
+        kept = np.concatenate([r[:, : MODES + 1], r[:, -MODES:]], axis=1)
+        update = _product(grid.vectors, _product(grid.inverse, kept) * smooth)
+        levels[1:-1] -= update
+        changes.append(float(np.abs(to_columns(update, -1)).max()))
+    return np.ascontiguousarray(levels.T), changes
+
+
+def _product(matrix: Floats, c: Complexes) -> Complexes:
+    """Return matrix @ c for a real matrix and a contiguous c."""
+    return np.asarray((matrix @ c.view(np.float64)).view(np.complex128))
 
 
 def _square(W: Complexes) -> Floats:

@@ -69,10 +69,10 @@ def solve_strips(
 
 def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None:
     try:
-        _, wall, far, _, _ = walls(boundary)
+        found = walls(boundary)
     except InputError:
         return None
-    a, b = modes(wall), modes(far)
+    a, b = modes(found.wall), modes(found.far)
     base = harmonic(a, b, across().eta)
     c, last = base, np.inf
     for _ in range(MOST_STEPS):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.arrays import Complexes, Floats
 from geometry.errors import InputError
@@ -38,11 +39,19 @@ class Model:
     scale: float
     header: Mapping[str, Any]
 
-    def residual(self, wall: Complexes, far: Complexes) -> Complexes:
-        """Return modes (2 MODES + 1, LEVELS) of Winslow - harmonic for wall modes (2 MODES + 1,)."""
-        channels, scalars, size = encode(wall[None], far[None])
-        answer = self.network(channels[0], scalars[0])
-        return decode(answer.astype(np.float64), self.basis, self.scale, float(size[0]))
+    def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
+        """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
+
+        `hand` (batch,) is that of `geometry.mirror.handedness`: of a strip and its mirror image, whose modes
+        are conjugate, the network sees the same one, and the answer for a symmetric strip is made symmetric.
+        """
+        flip = np.zeros((len(wall), 1), bool) if hand is None else hand[:, None] < 0
+        channels, scalars, size = encode(np.where(flip, wall.conj(), wall), np.where(flip, far.conj(), far))
+        answer = decode(self.network(channels, scalars).astype(np.float64), self.basis, self.scale, size)
+        answer.imag[flip[:, 0]] *= -1.0
+        if hand is not None:
+            answer.imag[hand == 0] = 0.0
+        return answer
 
 
 SECOND = {"quad-winslow": "quad-general"}
@@ -97,7 +106,7 @@ def _load(path: str) -> Model:
         ) from None
     if basis.shape != (outputs // 2, LEVELS - 2) or inputs != CHANNELS + SCALARS or not np.isfinite(scale):
         raise InputError("its arrays do not fit this version's network", "train it again", source=path)
-    weights: dict[str, Reals] = {name: array.astype(np.float32) for name, array in tensors.items()}
+    weights: dict[str, Reals] = {name: array.astype(np.float64) for name, array in tensors.items()}
     problem = misfit(weights)
     if problem:
         raise InputError(problem, "use a file made by meshonet train", source=path)

@@ -85,7 +85,7 @@ class StripTask(Task):
             out = self.net(_tensor(channels).to(self.device), _tensor(scalars).to(self.device)).cpu()
         found = out.numpy().astype(np.float64)
         basis, scale = targets.basis, targets.scale
-        return [decode(one, basis, scale, float(s)) for one, s in zip(found, size, strict=True)]
+        return list(decode(found, basis, scale, size))
 
 
 def train_strip(

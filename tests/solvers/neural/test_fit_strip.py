@@ -62,7 +62,8 @@ def test_the_file_answers_as_the_network_did(strips: Strips, tmp_path: Path) -> 
     output = tmp_path / "m.safetensors"
     figures = train_strip(strips, output, replace(SMALL, epochs=12), ALONE, **REST)  # type: ignore[arg-type]
     model, test = load_model(str(output)), strips[-4:]
-    found = [distance(model.residual(test.wall[m], test.far[m]), test.residual[m]) for m in range(len(test))]
+    answers = model.residual(test.wall, test.far)
+    found = [distance(answer, goal) for answer, goal in zip(answers, test.residual, strict=True)]
     assert np.median(found) == pytest.approx(figures["network"]["median"], rel=0.02)
 
 

@@ -19,9 +19,8 @@ def test_numpy_equals_torch_to_round_off() -> None:
     with torch.no_grad():
         wanted = net(torch.tensor(channels), torch.tensor(scalars)).numpy()
     weights = {name: value.numpy() for name, value in net.state_dict().items()}
-    for m in range(2):
-        found = StripNetwork(weights)(channels[m], scalars[m])
-        assert np.abs(found - wanted[m]).max() <= 1e-12 * np.abs(wanted).max()
+    found = StripNetwork(weights)(channels, scalars)
+    assert np.abs(found - wanted).max() <= 1e-12 * np.abs(wanted).max()
 
 
 def test_the_network_commutes_with_shifts_of_theta() -> None:
@@ -29,8 +28,8 @@ def test_the_network_commutes_with_shifts_of_theta() -> None:
     net = StripFNO(CHANNELS, SCALARS, 4, width=8, modes=12, layers=2).double()
     weights = {name: value.numpy() for name, value in net.state_dict().items()}
     rng = np.random.default_rng(2)
-    channels, scalars = rng.normal(size=(CHANNELS, COLUMNS)), rng.normal(size=SCALARS)
-    shifted = StripNetwork(weights)(np.roll(channels, 17, axis=1), scalars)
+    channels, scalars = rng.normal(size=(1, CHANNELS, COLUMNS)), rng.normal(size=(1, SCALARS))
+    shifted = StripNetwork(weights)(np.roll(channels, 17, axis=2), scalars)
     np.testing.assert_allclose(
-        shifted, np.roll(StripNetwork(weights)(channels, scalars), 17, axis=1), atol=1e-12
+        shifted, np.roll(StripNetwork(weights)(channels, scalars), 17, axis=2), atol=1e-12
     )

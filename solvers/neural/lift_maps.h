@@ -1,9 +1,6 @@
-/* Argument reduction below lives on the order of its operations. */
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-associative-math")
-#endif
-
-#include "maps_kernel.h"
+/* From strip points w = psi + i phi to the plane; see geometry/lift.py for the maps. */
+#ifndef MESHONET_LIFT_MAPS_H
+#define MESHONET_LIFT_MAPS_H
 
 #include <math.h>
 
@@ -17,6 +14,17 @@ extern double atan2(double, double) __attribute__((simd("notinbranch")));
 #endif
 
 #define CHUNK 256
+
+typedef struct { double re, im; } Cplx;
+
+typedef struct { Cplx p, q, P, Q; double k; } CornerMap;
+
+typedef struct {
+    Cplx centre, quarter, pole;
+    double phase;
+    int n_corners;
+    const CornerMap *corners; /* in the order in which they are restored */
+} LiftMaps;
 
 /* exp(x) for |x| < 700: x = n ln 2 + r, Taylor to r^13 on |r| < .347: 2 ulp */
 MESHONET_INLINE double fast_exp(double x) {
@@ -102,10 +110,11 @@ MESHONET_INLINE void restore_corner(const CornerMap *m, long n, double *restrict
     }
 }
 
-static void to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *m) __attribute__((always_inline));
-static inline void to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *m) {
-    double vr[CHUNK], vi[CHUNK], a[CHUNK], b[CHUNK];
-    unroll(psi_x, phi_y, m->phase, n, vr, vi);
+/* At most CHUNK points: psi + i phi in, x + i y out (y mirrored back: minus the imaginary part of z), in place. */
+MESHONET_INLINE void lift_to_plane(Cplx *points, long n, const LiftMaps *m) {
+    double psi[CHUNK], phi[CHUNK], vr[CHUNK], vi[CHUNK], a[CHUNK], b[CHUNK];
+    for (long j = 0; j < n; j++) psi[j] = points[j].re, phi[j] = points[j].im;
+    unroll(psi, phi, m->phase, n, vr, vi);
     for (long j = 0; j < n; j++) {
         vr[j] += m->pole.re;
         vi[j] += m->pole.im;
@@ -114,12 +123,9 @@ static inline void to_plane(double *psi_x, double *phi_y, long n, const LiftMaps
     for (long j = 0; j < n; j++) {
         double w = 1.0 / (vr[j] * vr[j] + vi[j] * vi[j]);
         double zr = vr[j] * (1.0 + w), zi = vi[j] * (1.0 - w);
-        psi_x[j] = m->centre.re + m->quarter.re * zr - m->quarter.im * zi;
-        phi_y[j] = -(m->centre.im + m->quarter.re * zi + m->quarter.im * zr);
+        points[j].re = m->centre.re + m->quarter.re * zr - m->quarter.im * zi;
+        points[j].im = -(m->centre.im + m->quarter.re * zi + m->quarter.im * zr);
     }
 }
 
-MESHONET_CLONES
-void lift_to_plane(double *psi_x, double *phi_y, long n, const LiftMaps *maps) {
-    for (long j = 0; j < n; j += CHUNK) to_plane(psi_x + j, phi_y + j, n - j < CHUNK ? n - j : CHUNK, maps);
-}
+#endif

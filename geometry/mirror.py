@@ -1,0 +1,41 @@
+"""Mirror images of closed walls: whether a body is its own, and which of the two it is otherwise."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+
+from geometry.arrays import Complexes
+
+Axis: TypeAlias = tuple[complex, complex]
+"""A straight line: a point of it, and its direction squared (a unit complex number)."""
+
+EQUAL = 1e-10  # of the wall's reach: nodes closer than this are mirror images
+
+
+def farthest(wall: Complexes) -> tuple[int, int]:
+    """Return the first and the last of the nodes that are farthest from node 0, rounding aside."""
+    reach = np.abs(wall - wall[0])
+    found = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())
+    return int(found[0]), int(found[-1])
+
+
+def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
+    """Return 1 or -1 for two walls (n,) and the opposite for their mirror images; 0 when they are their own.
+
+    Node i of the mirror image is the image of node n - i. The axis runs from the first node to the middle of
+    the farthest; the node that misses its partner's image most decides, far wall after wall.
+    """
+    a, b = farthest(wall)
+    along = 0.5 * (wall[a] + wall[b]) - wall[0]
+    unit = along / abs(along)
+    for nodes in (wall, far):
+        local = (nodes - wall[0]) / along
+        half = np.arange(len(nodes) // 2 + 1)
+        one, other = local[half], local[-half % len(nodes)]
+        amiss = np.concatenate([one.imag + other.imag, one.real - other.real])
+        worst = float(amiss[np.argmax(np.abs(amiss))])
+        if abs(worst) > EQUAL * float(np.abs(local).max()):
+            return (1 if worst > 0.0 else -1), (complex(wall[0]), complex(unit**2))
+    return 0, (complex(wall[0]), complex(unit**2))
