@@ -81,24 +81,25 @@ train-airfoils: $(VENV)/.developing
 	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume
 	cp train/airfoil-o.safetensors $(MODELS)
 
-# the same domains by both methods; Winslow's with twice the nodes, of which every other one is kept
+# the same domains by both methods; Winslow's with twice the nodes, of which every other one is kept.
+# Exit code 3 tells that a few domains have no valid grid: they are left out
 SEEDED := sample-boundary --family four-sided --count 18600 --seed 1
 train-quads: train/winslow.h5 train/variational.h5
 	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o train/quad-general.safetensors \
 	  --epochs 32 --seed 0 --resume
 	cp train/quad-general.safetensors $(MODELS)
 
-train/winslow.h5: $(VENV)/.developing
+train/winslow.h5: | $(VENV)/.developing
 	@mkdir -p train
 	$(BIN)/meshonet $(SEEDED) --res 65 -q -o train/quads-65.h5
-	$(BIN)/meshonet solve-pde train/quads-65.h5 -q -o train/winslow-65.h5
+	$(BIN)/meshonet solve-pde train/quads-65.h5 -q -o train/winslow-65.h5 || test $$? -eq 3
 	$(BIN)/meshonet convert train/winslow-65.h5 --coarsen 2 -q -o $@
 	rm train/winslow-65.h5 train/quads-65.h5
 
-train/variational.h5: $(VENV)/.developing
+train/variational.h5: | $(VENV)/.developing
 	@mkdir -p train
 	$(BIN)/meshonet $(SEEDED) --res 33 -q -o train/quads-33.h5
-	$(BIN)/meshonet solve-pde train/quads-33.h5 --method variational -q -o $@
+	$(BIN)/meshonet solve-pde train/quads-33.h5 --method variational -q -o $@ || test $$? -eq 3
 	rm train/quads-33.h5
 
 # --- the MeshONet paper from its families to docs/paper: hours (it goes on where it stopped), or minutes
