@@ -44,6 +44,7 @@ class Recipe:
     allow_invalid : whether a folded grid is a result.
     gates : conditions that end the program with 1.
     repair : whether a folded grid goes to the guard, which unfolds it or makes another.
+    margin : cells around folded ones that the guard moves with them; None for its own.
     refine : how often the cells that `sampling` asks for are halved.
     history : file that the cycles go to.
     together : the part of `method` that solves many boundaries in one go, when it has one.
@@ -54,6 +55,7 @@ class Recipe:
     allow_invalid: bool = False
     gates: tuple[Gate, ...] = ()
     repair: bool = True
+    margin: int | None = None
     refine: int = 0
     history: str | None = None
     facts: dict[str, object] = field(default_factory=dict)
@@ -116,7 +118,9 @@ class Recipe:
     def _guarded(self, solution: Solution, boundary: Boundary) -> tuple[Grid, tuple[str, ...]]:
         grid = solution.grid
         if self.repair:
-            return guard(grid, solution.boundary or boundary, allow_invalid=self.allow_invalid)
+            return guard(
+                grid, solution.boundary or boundary, allow_invalid=self.allow_invalid, margin=self.margin
+            )
         folded = count_folded(grid.nodes)
         if folded and not self.allow_invalid:
             cells = (grid.ni - 1) * (grid.nj - 1)

@@ -16,7 +16,9 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 Stage = tuple[str, Callable[[], Floats]]
 
 
-def guard(grid: Grid, boundary: Boundary, *, allow_invalid: bool = False) -> tuple[Grid, tuple[str, ...]]:
+def guard(
+    grid: Grid, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
+) -> tuple[Grid, tuple[str, ...]]:
     """Return a valid grid inside `boundary`: `grid` when it is one, else the first way out that works.
 
     Tried in turn: local repair of `grid`; Winslow's solution from that start; transfinite interpolation;
@@ -27,6 +29,7 @@ def guard(grid: Grid, boundary: Boundary, *, allow_invalid: bool = False) -> tup
     grid : what a solver made.
     boundary : what it was made for.
     allow_invalid : return `grid` as it is when nothing works.
+    margin : of `solvers.repair.repair`, or None for its own.
 
     Returns
     -------
@@ -44,7 +47,7 @@ def guard(grid: Grid, boundary: Boundary, *, allow_invalid: bool = False) -> tup
     failure = _open_corner(grid)
     if failure is None:
         least = grid.nodes
-        for path, nodes in _ways(grid, boundary):
+        for path, nodes in _ways(grid, boundary, margin):
             if count_folded(nodes) == 0:
                 facts = {**grid.provenance, "path": path}
                 return Grid(nodes, grid.topology, grid.parts, grid.name, facts), path
@@ -57,13 +60,14 @@ def guard(grid: Grid, boundary: Boundary, *, allow_invalid: bool = False) -> tup
     raise failure
 
 
-def _ways(grid: Grid, boundary: Boundary) -> Iterator[tuple[tuple[str, ...], Floats]]:
+def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Yield the stages and nodes of one try after another; a valid one ends the search."""
-    from solvers.repair import repair
+    from solvers.repair import MARGIN, repair
 
+    margin = margin or MARGIN
     periodic = grid.topology == "o"
     repaired = grid.nodes.copy(order="K")
-    repair(repaired, periodic)
+    repair(repaired, periodic, margin)
     yield ("repair",), repaired
     starts: list[Stage] = [("tfi", partial(_interpolated, boundary))]
     if grid.provenance.get("method") != "winslow":
@@ -75,7 +79,7 @@ def _ways(grid: Grid, boundary: Boundary) -> Iterator[tuple[tuple[str, ...], Flo
             continue
         yield (name,), nodes
         nodes = nodes.copy(order="K")
-        repair(nodes, periodic)
+        repair(nodes, periodic, margin)
         yield (name, "repair"), nodes
 
 

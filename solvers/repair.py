@@ -18,8 +18,11 @@ from geometry.quality import count_folded, folded_cells, per_cell
 from solvers.unfold import smooth, unfold
 from solvers.windows import Window, windows
 
-MARGINS = (6, 12, 16)
-"""Cells around a group of folded ones that move with them, round by round."""
+MARGIN = 6
+"""Cells around a group of folded ones that move with them, at first."""
+
+MARGINS = (12, 16)
+"""Those of later rounds, where cells stay folded."""
 
 PATCHES = (32, 64)
 """The same for windows that are unfolded through coarser copies."""
@@ -37,34 +40,35 @@ SHARP = 0.5
 """Radians by which an edge turns at a node that coarser copies must keep."""
 
 
-def repair(nodes: Floats, periodic: bool) -> int:
+def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     """Unfold planar `nodes` (ni, nj, 2) in place; return how many cells stay folded.
 
     Parameters
     ----------
     nodes : the grid; its rim stays as it is.
     periodic : an O grid: column ni-1 repeats column 0, and both move together.
+    margin : cells around a group of folded ones that move with them, at first.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
         return len(bad)
-    if _few(len(bad), nodes) and unfold_windows(nodes, periodic) == 0:
-        smooth_windows(nodes, periodic, bad)
+    if _few(len(bad), nodes) and unfold_windows(nodes, periodic, margin) == 0:
+        smooth_windows(nodes, periodic, bad, margin)
         return 0
     left = unfold_nested(nodes, periodic) and unfold_patches(nodes, periodic)
     poor = np.argwhere(per_cell(Grid(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR)
     if left == 0 and _few(len(poor), nodes):
-        smooth_windows(nodes, periodic, poor)
+        smooth_windows(nodes, periodic, poor, margin)
     return left
 
 
-def unfold_windows(nodes: Floats, periodic: bool) -> int:
+def unfold_windows(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     """Unfold windows around folded cells, as `repair`."""
     left = count_folded(nodes)
-    for margin in MARGINS:
+    for cells in (margin, *(wider for wider in MARGINS if wider > margin)):
         if left == 0:
             break
-        for window in windows(folded_cells(nodes), margin, nodes.shape[:2], periodic, LARGEST):
+        for window in windows(folded_cells(nodes), cells, nodes.shape[:2], periodic, LARGEST):
             patch = _cut(nodes, window, periodic)
             before = count_folded(patch)
             if before and unfold(patch) < before:
@@ -73,9 +77,9 @@ def unfold_windows(nodes: Floats, periodic: bool) -> int:
     return left
 
 
-def smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64]) -> None:
+def smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], margin: int) -> None:
     """Smooth windows around `cells` (n, 2) of valid planar `nodes` (ni, nj, 2), in place."""
-    for window in windows(cells, 2 * MARGINS[0], nodes.shape[:2], periodic, LARGEST):
+    for window in windows(cells, 2 * margin, nodes.shape[:2], periodic, LARGEST):
         patch = _cut(nodes, window, periodic)
         smooth(patch)
         if count_folded(patch) == 0:

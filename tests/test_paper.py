@@ -36,7 +36,11 @@ def test_results_are_made_of_meshonet_commands(tmp_path: Path) -> None:
     for model in ("meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "mionet"):
         for seed in (0, 1, 2):
             assert re.search(rf"train \S+ --model {model} --epochs 1000 --seed {seed} ", text)
-    assert len(re.findall(r"--epochs 15000 ", text)) == 24
+    assert len(re.findall(r"--epochs 15000 ", text)) == 20
+    assert len(re.findall(r"meshonet-hard --set modes=24 --points 300 --epochs 3000 ", text)) == 4
+    for words in ("mgnet", "mgnet --set finite=0.01", "mgnet --set lines=3", "meshnet"):
+        assert re.search(rf"train \S+ --model {words} --epochs 5000 ", text)
+    assert len(re.findall(r"--answer valid ", text)) == 24
     for size in (100, 200, 400, 800, 1600, 3200):
         assert f"sample-boundary --family arch --range 0.15:0.15 --count 1 --res {size} " in text
 

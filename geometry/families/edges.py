@@ -7,9 +7,13 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.stretch import on_corners
 
+Corners = list[tuple[float, float]]
 
-def polyline(corners: list[tuple[float, float]], n: int) -> Floats:
+
+def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
     """Return n nodes (n, 2) along straight pieces, in nearly equal steps, every corner bitwise a node.
+
+    With `like`, as many corners, each lies on the node where that polyline has it.
 
     Examples
     --------
@@ -17,7 +21,8 @@ def polyline(corners: list[tuple[float, float]], n: int) -> Floats:
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
     """
     points = np.array(corners, dtype=np.float64)
-    knots = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    pieces = np.diff(points if like is None else np.array(like), axis=0)
+    knots = np.concatenate([[0.0], np.cumsum(np.hypot(*pieces.T))])
     s = on_corners(np.linspace(0.0, knots[-1], n), knots[1:-1])
     nodes = np.stack([np.interp(s, knots, points[:, 0]), np.interp(s, knots, points[:, 1])], axis=1)
     nodes[np.searchsorted(s, knots)] = points

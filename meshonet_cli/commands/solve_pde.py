@@ -68,6 +68,14 @@ Refine = Annotated[
 Initial = Annotated[
     str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
 ]
+RepairMargin = Annotated[
+    int | None,
+    typer.Option(
+        "--repair-margin", metavar="CELLS", min=2, max=24, show_default=False,
+        help="Cells around folded ones that move with them when they are unfolded. 12 takes longer and "
+        "blends in better. [default: 6, more where that is not enough]",
+    ),
+]
 History = Annotated[
     str | None,
     typer.Option(
@@ -111,6 +119,7 @@ def solve_pde(
     wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
+    repair_margin: RepairMargin = None,
     allow_invalid: o.AllowInvalid = False,
     fail_on: o.FailOn = None,
     from_format: o.From = None,
@@ -159,6 +168,7 @@ def solve_pde(
         ),
         allow_invalid,
         parse_gates(fail_on),
+        margin=repair_margin,
         refine=refine,
         history=history,
     )

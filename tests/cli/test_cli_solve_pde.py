@@ -368,3 +368,21 @@ def test_mistakes_get_a_line(meshonet: Meshonet, duct_h5: Path, words: tuple[str
     assert told in done.err
     assert done.err.count("\n") == 1
     assert not Path("g.vts").exists()
+
+
+def test_a_wider_repair_moves_more(meshonet: Meshonet, tmp_path: Path) -> None:
+    words = ("--family", "wrench", "--count", "1", "--range", "0.3:0.3", "--res", "41", "--quiet")
+    assert meshonet("sample-boundary", *words, "-o", "wrench.h5").code == 0
+    told = [
+        meshonet("solve-pde", "wrench.h5", *more, "-o", f"g{k}.vts", "--json").only
+        for k, more in enumerate([(), ("--repair-margin", "6"), ("--repair-margin", "12")])
+    ]
+    assert [one["folded"] for one in told] == [0, 0, 0]
+    assert all(one["path"] == ["repair"] for one in told)
+    own, six, twelve = (next(read_grids(f"g{k}.vts")).nodes for k in range(3))
+    np.testing.assert_array_equal(own, six)
+    assert np.abs(twelve - own).max() > 1e-3
+    done = meshonet("solve-pde", "wrench.h5", "--repair-margin", "1", "-o", "no.vts")
+    assert done.code == 2
+    assert "repair-margin" in done.err
+    assert not Path("no.vts").exists()

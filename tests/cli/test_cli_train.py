@@ -145,6 +145,28 @@ def test_compile_goes_through_the_compiler(
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_without_a_compiler_compile_is_refused(
+    meshonet: Meshonet, arches_h5: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """torch's compiler says so at the first step, by an error of its own."""
+    import torch
+    from torch._inductor.exc import InvalidCxxCompiler
+
+    def compiler(_: object, **__: object) -> object:
+        def step(*_: object) -> object:
+            raise InvalidCxxCompiler
+
+        return step
+
+    monkeypatch.setattr(torch, "compile", compiler)
+    done = meshonet("train", arches_h5, *BRIEF, "--compile", "-o", "m.safetensors")
+    assert done.code == 2
+    assert "--compile: torch.compile cannot (No working C++ compiler found" in done.err.splitlines()[-1]
+    assert "leave it out, or install a C++ compiler" in done.err.splitlines()[-1]
+    assert not Path("m.safetensors").exists()
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
 def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, arches_h5: str) -> None:
     meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, "--quiet")
     done = meshonet("infer", "naca:2412", "--model", "m.safetensors", "-o", "g.vts")

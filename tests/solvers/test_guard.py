@@ -73,7 +73,7 @@ def test_a_repaired_grid_says_so_and_keeps_its_names() -> None:
 
 
 def test_a_grid_beyond_repair_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("solvers.repair.repair", lambda nodes, periodic: folded(nodes))
+    monkeypatch.setattr("solvers.repair.repair", lambda nodes, *_: folded(nodes))
     boundary = arch(30, 20)
     nodes = tfi(boundary).nodes.copy()
     nodes[1:-1, 1:-1] = nodes[-2:0:-1, 1:-1]
@@ -97,7 +97,7 @@ def test_an_impossible_corner_is_named_at_once() -> None:
 
 
 def test_failure_counts_and_places_the_worst_cells(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("solvers.repair.repair", lambda nodes, periodic: folded(nodes))
+    monkeypatch.setattr("solvers.repair.repair", lambda nodes, *_: folded(nodes))
     boundary = wrench(60, 60)
     with pytest.raises(
         NoValidGridError, match=r"\d+ of 3481 cells stay folded after repair, winslow and tfi; use more"

@@ -6,6 +6,7 @@ from solver_shapes import arch, folded, hole, l_shape, naca, spike, wrench
 
 from geometry.arrays import Floats, as_planar
 from geometry.boundary import Boundary
+from geometry.families.family import family
 from solvers._repair import energy, minimise
 from solvers.elliptic.solve import solve
 from solvers.repair import repair
@@ -131,6 +132,20 @@ def test_repaired_corners_are_open_not_merely_positive() -> None:
         / np.linalg.norm(v, axis=-1)
     )
     assert sine.min() > 0.2
+
+
+def test_shapes_that_are_nearly_the_same_are_repaired_alike_with_a_wide_margin() -> None:
+    """The jaw of a wrench is opened by 0.01: nodes of its boundary move by 0.005."""
+    moved = {}
+    for margin in (6, 12):
+        made = []
+        for opening in (0.25, 0.26):
+            nodes = solve(family("wrench").boundary(opening, 101, 101)).grid.nodes.copy(order="K")
+            assert folded(nodes) > 0
+            assert repair(nodes, False, margin) == 0
+            made.append(nodes)
+        moved[margin] = np.abs(made[1] - made[0]).max()
+    assert moved[12] < 0.01 < moved[6]
 
 
 @pytest.mark.parametrize("shape", [(2, 5), (5, 2), (2, 2)])

@@ -146,7 +146,7 @@ def _one_epoch(
             optimiser.zero_grad()
             parts.sum().backward()  # type: ignore[no-untyped-call]
         except (RuntimeError, MemoryError) as error:
-            raise _too_large(error, plan) from error
+            raise _explained(error, plan) from error
         parts = team.mean(parts.detach())
         if not torch.isfinite(parts).all():
             raise SolverError(
@@ -161,8 +161,13 @@ def _one_epoch(
     return rate
 
 
-def _too_large(error: Exception, plan: Plan) -> Exception:
-    """Return what to raise for an error of a step: not enough memory is the user's to mend."""
+def _explained(error: Exception, plan: Plan) -> Exception:
+    """Return what to raise for an error of a step: a compiler or memory that is missing is the user's."""
+    if plan.compiled and type(error).__module__.startswith(("torch._dynamo", "torch._inductor")):
+        first = str(error).splitlines()[0]
+        return InputError(
+            f"torch.compile cannot ({first})", "leave it out, or install a C++ compiler", source="--compile"
+        )
     short = isinstance(error, (torch.OutOfMemoryError, MemoryError)) or "allocate memory" in str(error)
     if not short:
         return error

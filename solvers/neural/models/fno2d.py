@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -38,12 +38,15 @@ class FNO2D(Operator):
     padding : nodes of zeros in either direction before the transform.
     """
 
-    native: ClassVar[bool] = True
-
     width: int = 12
     modes: int = 8
     layers: int = 4
     padding: int = 9
+
+    @property
+    def native(self) -> bool:
+        """Whether it answers on the nodes of its training grids only: yes."""
+        return True
 
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of what is trained."""

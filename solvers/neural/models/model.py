@@ -36,18 +36,21 @@ class Operator:
     Attributes
     ----------
     base : what the network's answer is added to: nothing, or the harmonic extension of the boundary.
-    native : it answers on the nodes of its training grids only; other grids are splined from those.
     physics : it learns from Winslow's equations, a network for each geometry.
     interior, boundary : weights of the two parts of its loss.
     """
 
     base: ClassVar[Literal["none", "harmonic"]] = "none"
-    native: ClassVar[bool] = False
     physics: ClassVar[bool] = False
     interior: ClassVar[float] = 1.0
     boundary: ClassVar[float] = 1.0
 
     sensors: int = 50
+
+    @property
+    def native(self) -> bool:
+        """Whether it answers on the nodes of its training grids only; other grids are splined from those."""
+        return False
 
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of what is trained."""

@@ -13,7 +13,7 @@ Lu et al., Computer Methods in Applied Mechanics and Engineering 393 (2022) 1147
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 
@@ -33,10 +33,13 @@ class PODDeepONet(Operator):
     features : modes; fewer where the training set has fewer grids.
     """
 
-    native: ClassVar[bool] = True
-
     hidden: tuple[int, ...] = (64, 128, 64)
     features: int = 16
+
+    @property
+    def native(self) -> bool:
+        """Whether it answers on the nodes of its training grids only: yes."""
+        return True
 
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of what is trained."""

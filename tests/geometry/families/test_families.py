@@ -63,6 +63,13 @@ def test_members_at_the_ends_of_what_is_possible_are_simple(name, end):
     assert ring.is_simple
 
 
+def test_the_nodes_of_a_wrench_move_straight_with_the_opening():
+    """Its kinks move so, and lie on the same nodes whatever the opening: no node jumps."""
+    a, b, c = (family("wrench").boundary(p, 101, 33).north for p in (0.15, 0.25, 0.35))
+    np.testing.assert_allclose(a + c, 2 * b, atol=1e-14)
+    assert np.abs(a - b).max() == pytest.approx(0.05)
+
+
 def test_the_airfoil_family_is_as_thick_as_asked():
     south = family("airfoil").boundary(0.18, 401, 9).south
     assert np.ptp(south[:, 1]) == pytest.approx(0.18, rel=2e-3)

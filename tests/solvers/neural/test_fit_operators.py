@@ -21,6 +21,7 @@ from solvers.neural.fit.operators import train_operator
 from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.task import Task
 from solvers.neural.fit.team import Team, team
+from solvers.neural.harmonic import extend
 from solvers.neural.registry import OPERATORS, operator
 from solvers.neural.samples import Samples
 from solvers.neural.trained import load_trained
@@ -53,6 +54,21 @@ def test_the_loss_falls(tmp_path: Path, kind: str, samples: Samples) -> None:
     assert told[-1].loss < 0.6 * told[0].loss
     assert told[-1].loss == pytest.approx(sum(told[-1].parts.values()))
     assert told[-1].seen == 60 * len(samples.where("train"))
+
+
+@pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])
+def test_coefficients_of_modes_are_learnt(tmp_path: Path, samples: Samples) -> None:
+    path = tmp_path / "m.safetensors"
+    settings = {"sensors": 12, "hidden": [8], "modes": 3}
+    model = operator("meshonet-hard", samples.topology, settings)
+    plan = replace(SMALL, epochs=120)
+    figures = train_operator(samples, path, "meshonet-hard", model, plan, ALONE, recipe={})
+    assert figures["test"]["boundary"] <= 1e-12
+    found = load_trained(path).model
+    assert (found, found.native) == (model, True)
+    bare = np.array([extend(edges) for edges in samples.boundaries()])
+    base = np.linalg.norm(bare - samples.nodes) / np.linalg.norm(samples.nodes)
+    assert figures["test"]["median"] < 0.5 * base
 
 
 def test_test_grids_are_never_seen(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ from families import arches, rings
 from safetensors.numpy import load_file, save_file
 
 from geometry.errors import InputError
+from solvers.neural.fit.operator_task import differences
 from solvers.neural.inference import answered, infer
 from solvers.neural.layers import count, initial
 from solvers.neural.models.model import Frame
@@ -28,15 +29,22 @@ def random(kind: str, samples: Samples, **settings: object) -> Trained:
     """A model with random weights."""
     model = operator(kind, samples.topology, settings)
     frame = Frame(samples.topology, samples.ni, samples.nj, len(samples))
-    arrays = initial(model.shapes(frame), np.random.default_rng(3)) | model.fixed(samples, samples.nodes)
+    fixed = model.fixed(samples, differences(model, samples))
+    arrays = initial(model.shapes(frame), np.random.default_rng(3)) | fixed
     return Trained("random", model, frame, {k: v.astype(np.float32) for k, v in arrays.items()}, {})
 
 
+KINDS: list[tuple[str, dict[str, int]]] = [
+    *((kind, {}) for kind in OPERATORS),
+    ("meshonet-hard", {"modes": 4}),
+]
+
+
 @pytest.mark.parametrize("topology", FAMILIES)
-@pytest.mark.parametrize("kind", OPERATORS)
-def test_numpy_and_torch_agree(kind: str, topology: str) -> None:
+@pytest.mark.parametrize(("kind", "settings"), KINDS)
+def test_numpy_and_torch_agree(kind: str, settings: dict[str, int], topology: str) -> None:
     samples = FAMILIES[topology]
-    trained = random(kind, samples)
+    trained = random(kind, samples, **settings)
     inputs = trained.model.encode(samples.boundaries())
     where, index = square(samples.ni, samples.nj), np.arange(samples.ni * samples.nj)
     answer = trained.model.answer
@@ -65,11 +73,12 @@ def test_the_page_counts_every_models_parameters() -> None:
 
 @pytest.mark.parametrize("topology", FAMILIES)
 @pytest.mark.parametrize("size", [None, 40, 150])
-def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int | None) -> None:
+@pytest.mark.parametrize("modes", [0, 4])
+def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int | None, modes: int) -> None:
     from geometry.sampling import Sampling
 
     samples = FAMILIES[topology]
-    trained = random("meshonet-hard", samples)
+    trained = random("meshonet-hard", samples, modes=modes)
     for edges in samples.boundaries()[:2]:
         boundary = edges.boundary(Sampling(size, size)) if size else edges
         nodes, away = answered(trained, boundary, paste=False)
@@ -77,6 +86,23 @@ def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int 
         assert np.abs(nodes[3, 1:-1] - samples.nodes[0, 3, :1]).max() > 0
         if topology == "o":
             np.testing.assert_array_equal(nodes[0], nodes[-1])
+
+
+@pytest.mark.parametrize("topology", FAMILIES)
+def test_modes_hold_the_differences_they_are_made_of(topology: str) -> None:
+    """Six grids have twelve modes of x and y; those that are asked for beyond are zero."""
+    samples = FAMILIES[topology]
+    model = operator("meshonet-hard", topology, {"modes": 14})  # type: ignore[arg-type]
+    wanted = differences(model, samples)
+    modes = model.fixed(samples, wanted)["fixed/modes"]
+    assert modes.shape == (samples.ni * samples.nj, 14)
+    assert np.abs(modes[:, 12:]).max() == 0
+    assert (modes[:, 0] ** 2).mean() == pytest.approx(1.0)
+    rows = np.moveaxis(wanted, -1, 0).reshape(12, -1).T
+    kept, _ = np.linalg.qr(modes[:, :12])
+    np.testing.assert_allclose(kept @ (kept.T @ rows), rows, atol=1e-9 * np.abs(rows).max())
+    missed = [rows - q @ (q.T @ rows) for q in (np.linalg.qr(modes[:, :k])[0] for k in (1, 3))]
+    assert (missed[1] ** 2).sum() < 0.2 * (missed[0] ** 2).sum()
 
 
 def test_a_batch_answers_like_its_members() -> None:
