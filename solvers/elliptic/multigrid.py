@@ -75,7 +75,7 @@ class Multigrid:
             coarse = bool(self.levels)
             level = Level(*planes, xi.differences(), eta.differences(), periodic, scratch, coarse)
             self.levels.append(level)
-            self._patches.append(patches(level, xi, eta, corners))
+            self._patches.append(patches(level, xi, eta, corners, scratch))
             self._edges.append(edges)
             self._along.append(along)
             self._directions.append((xi, eta))

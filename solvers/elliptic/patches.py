@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.corners import find_corners, turning
-from solvers.elliptic._multigrid import Level, scratch_size
+from solvers.elliptic._multigrid import Level
 from solvers.elliptic.coarsening import Direction
 from solvers.tfi import Four
 
@@ -40,13 +40,13 @@ class Patch:
     level : whose nodes they are.
     xi, eta : its directions.
     window : rows and columns of the nodes.
+    scratch : of the level.
     """
 
-    def __init__(self, level: Level, xi: Direction, eta: Direction, window: Window) -> None:
+    def __init__(self, level: Level, xi: Direction, eta: Direction, window: Window, scratch: Floats) -> None:
         self._level, self._window = level, window
         x, y = (np.array(plane[window], order="C") for plane in (level.x, level.y))
         of_xi, of_eta = _part(xi, window[0]), _part(eta, window[1])
-        scratch = np.empty(scratch_size(x.shape[0] - 1, x.shape[1] - 1))
         self._own = Level(x, y, of_xi, of_eta, False, scratch, True)
 
     def smooth(self, forced: bool) -> None:
@@ -75,11 +75,13 @@ def reentrant(edges: Four) -> list[Corner]:
     return found
 
 
-def patches(level: Level, xi: Direction, eta: Direction, corners: list[Corner]) -> list[Patch]:
+def patches(
+    level: Level, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
+) -> list[Patch]:
     """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
     if min(xi.cells, eta.cells) < LEAST:
         return []
-    return [Patch(level, xi, eta, _window(xi, eta, side, index)) for side, index in corners]
+    return [Patch(level, xi, eta, _window(xi, eta, side, index), scratch) for side, index in corners]
 
 
 def _window(xi: Direction, eta: Direction, side: str, index: int) -> Window:
