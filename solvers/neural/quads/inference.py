@@ -28,10 +28,12 @@ SOLVED = 65
 """Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
 
 DESCENDED, OTHERWISE = 513, 257
-"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with.
+"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
 
-Steps on the network's own grid gain as much of the angles in the mean, but leave folds and kinks between its
-nodes; at full resolution these go first.
+LAST = 2
+"""Steps of a descent that are taken at full resolution; those before, on the network's own grid.
+
+There they gain most of the angles in the mean; the last take out folds and kinks between its nodes.
 """
 
 STILL = 1e-4
@@ -96,9 +98,12 @@ def _polished(
     coarse = coarse_grids(edges, model, head, dtype)
     if not steps:
         return evaluate(coarse, edges), [0] * len(boundaries)
+    last = steps if head == WINSLOW else min(steps, LAST)
+    taken = [_descent(one, steps - last) for one in coarse]
     counts = tuple(_polished_on(n, head) for n in edges.counts)
     planes = evaluate(coarse, edges.thinned(*counts))
-    taken = [_cycles(one, steps) if head == WINSLOW else _descent(one, steps) for one in planes]
+    for k, one in enumerate(planes):
+        taken[k] += _cycles(one, last) if head == WINSLOW else _descent(one, last)
     return (planes if counts == edges.counts else evaluate(planes, edges)), taken
 
 
@@ -110,6 +115,8 @@ def _polished_on(n: int, head: int) -> int:
 
 def _descent(planes: Floats, steps: int) -> int:
     """Descend from the planes (2, n, n) in place; return the steps taken."""
+    if not steps:
+        return 0
     from solvers.variational.functional import Weights
     from solvers.variational.solve import descend
 

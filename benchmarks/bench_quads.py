@@ -1,0 +1,325 @@
+"""Four-sided domains by the quad network beside every way without one: folds, angles, distances, time.
+
+    python benchmarks/bench_quads.py [--sizes 65:120,193:60,385:30] [--page docs/quad-operator.md]
+
+Domains are the random ones of the tests, of a generator that no model was trained on, and the paper's
+families. Folds are counted before the guard. Processor time of one thread, in one run.
+"""
+
+from __future__ import annotations
+
+import os
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(variable, "1")
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
+from random_quads import random_quad
+from solver_shapes import arch
+
+from formats.registry import read_shapes
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.compare import compare
+from geometry.quality import count_folded, measure
+from solvers.coarse import solve_coarse
+from solvers.elliptic.solve import solve as winslow
+from solvers.neural.quads.inference import infer_quads
+from solvers.solution import Solution
+from solvers.tfi import tfi
+from solvers.variational.solve import solve as variational
+
+ROOT = Path(__file__).parents[1]
+FIRST = 1000
+"""Seed of the first random domain."""
+
+Way = Callable[[Boundary], Solution]
+
+
+def main() -> None:
+    """Measure and print; write the page when asked."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sizes", default="65:120,193:60,385:30", help="nodes:domains")
+    parser.add_argument("--large", type=int, default=800, help="one more size, of the arch alone")
+    parser.add_argument("--model", default="quad-general")
+    parser.add_argument("--twin", default="quad-winslow")
+    parser.add_argument("--page", type=Path, help="markdown page to write")
+    options = parser.parse_args()
+    network = partial(operate, options.model)
+    parts = [HEAD]
+    for size in options.sizes.split(","):
+        n, count = (int(word) for word in size.split(":"))
+        boundaries = domains(n, count)
+        parts += [angles(n, boundaries, network), distances(n, boundaries, partial(operate, options.twin))]
+    parts += [large(options.large, network), batches(options.model), families(options.twin), TAIL]
+    text = "\n".join(parts)
+    print(text)
+    if options.page:
+        options.page.write_text(text)
+
+
+def operate(model: str, polish: int, boundary: Boundary) -> Solution:
+    """Return the solution of `boundary` alone by a quad model."""
+    return infer_quads([boundary], model, polish)[0]
+
+
+def domains(n: int, count: int) -> list[Boundary]:
+    """Return random domains with n x n nodes, as many as `count` seeds give."""
+    return [b for seed in range(FIRST, FIRST + count) if (b := random_quad(seed, n, n)) is not None]
+
+
+def angles(n: int, boundaries: list[Boundary], network: Callable[..., Solution]) -> str:
+    """Return the table of folds and angles at n x n nodes."""
+    ways: dict[str, Way] = {
+        "TFI": lambda b: Solution(tfi(b), "tfi"),
+        "Winslow": winslow,
+        "Winslow --coarse 65": partial(solve_coarse, method=winslow, n=65, smooth=True),
+        "variational": variational,
+        "variational --coarse 33": partial(solve_coarse, method=variational, n=33, smooth=True),
+        "variational --coarse 65": partial(solve_coarse, method=variational, n=65, smooth=True),
+        "**network**": partial(network, 0),
+        "**network, 2 steps**": partial(network, 2),
+        "**network, 5 steps**": partial(network, 5),
+    }
+    if n <= 65:
+        del ways["Winslow --coarse 65"], ways["variational --coarse 65"]
+    found = {name: [judged(way, boundary) for boundary in boundaries] for name, way in ways.items()}
+    table = {name: np.array(rows) for name, rows in found.items()}
+    before, best = table["Winslow"], table["variational"]
+    valid = before[:, 0] == 0
+    lines = [f"\n## {len(boundaries)} random domains, {n} x {n}\n", *ANGLES]
+    for name, rows in table.items():
+        folds, largest, mean, spent = rows.T
+        low = (folds == 0) & (largest <= before[:, 1] + 1e-6) & (mean <= before[:, 2] + 1e-6)
+        gains = [
+            (before[valid, k] - rows[valid, k]).sum() / (before[valid, k] - best[valid, k]).sum()
+            for k in (2, 1)
+        ]
+        each = np.median((before[valid, 2] - mean[valid]) / (before[valid, 2] - best[valid, 2]))
+        lines.append(
+            f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
+            f"| {100 * gains[0]:.0f} / {100 * each:.0f} | {100 * gains[1]:.0f} "
+            f"| {1e3 * np.median(spent):.1f} |"
+        )
+    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; gains are over these.")
+    return "\n".join(lines)
+
+
+def judged(way: Way, boundary: Boundary) -> tuple[float, float, float, float]:
+    """Return folded cells, largest angle, mean angle and processor seconds."""
+    begun = time.process_time()
+    grid = way(boundary).grid
+    spent = time.process_time() - begun
+    summary = measure(grid)["max_angle"]
+    return count_folded(grid.nodes), summary.max, summary.mean, spent
+
+
+def percent(where: Floats) -> str:
+    """Return the share of a mask in percent."""
+    return f"{100 * where.mean():.1f}"
+
+
+def distances(n: int, boundaries: list[Boundary], network: Callable[..., Solution]) -> str:
+    """Return the table of distances to Winslow's solution at n x n nodes."""
+    ways: dict[str, Way] = {
+        "TFI": lambda b: Solution(tfi(b), "tfi"),
+        "Winslow --coarse 33": partial(solve_coarse, method=winslow, n=33, smooth=False),
+        "Winslow --coarse 65": partial(solve_coarse, method=winslow, n=65, smooth=False),
+        "**quad-winslow**": partial(network, 0),
+        "**quad-winslow, 1 cycle**": partial(network, 1),
+        "**quad-winslow, 2 cycles**": partial(network, 2),
+    }
+    goals = [winslow(boundary, tol=1e-8).grid for boundary in boundaries]
+    lines = [
+        "\n| way | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
+        "| --- | --- | --- |",
+    ]
+    for name, way in ways.items():
+        if name.endswith("65") and n <= 65:
+            continue
+        errors, spent = [], []
+        for boundary, goal in zip(boundaries, goals, strict=True):
+            begun = time.process_time()
+            grid = way(boundary).grid
+            spent.append(time.process_time() - begun)
+            errors.append(compare(grid, goal).relative_l2)
+        median, high = np.quantile(errors, (0.5, 0.9))
+        lines.append(f"| {name} | {median:.1e} / {high:.1e} | {1e3 * np.median(spent):.1f} |")
+    return "\n".join(lines)
+
+
+def large(n: int, network: Callable[..., Solution]) -> str:
+    """Return the table of the arch at n x n nodes."""
+    boundary = arch(n, n)
+    ways: dict[str, Way] = {
+        "Winslow": winslow,
+        "variational": variational,
+        "variational --coarse 129": partial(solve_coarse, method=variational, n=129, smooth=True),
+        "**network**": partial(network, 0),
+        "**network, 5 steps**": partial(network, 5),
+    }
+    lines = [
+        f"\n## The arch at {n} x {n}\n",
+        "| way | folded | max / mean angle | CPU ms |",
+        "| --- | --- | --- | --- |",
+    ]
+    for name, way in ways.items():
+        runs = [judged(way, boundary) for _ in range(1 if name == "variational" else 3)]
+        folds, largest, mean, spent = min(runs, key=lambda run: run[3])
+        lines.append(f"| {name} | {folds} | {largest:.1f} / {mean:.2f} | {1e3 * spent:.1f} |")
+    return "\n".join(lines)
+
+
+def batches(model: str) -> str:
+    """Return the table of batches at 65 x 65 nodes, in memory."""
+    boundaries = domains(65, 80)[:64]
+    lines = [
+        "\n## 64 domains together, 65 x 65\n",
+        "| way | CPU ms a grid | grids a second and core |",
+        "| --- | --- | --- |",
+    ]
+    ways: dict[str, Callable[[], object]] = {
+        "variational --coarse 33, one by one": lambda: [
+            solve_coarse(b, variational, 33, smooth=True) for b in boundaries
+        ]
+    }
+    for dtype in ("float32", "float64"):
+        for polish in (0, 2):
+            name = f"**network in {dtype}, {polish} steps**"
+            ways[name] = partial(infer_quads, boundaries, model, polish, dtype)
+    for name, way in ways.items():
+        spent = min(clocked(way) for _ in range(3 if "variational" in name else 12)) / len(boundaries)
+        lines.append(f"| {name} | {1e3 * spent:.2f} | {1 / spent:.0f} |")
+    return "\n".join(lines)
+
+
+def clocked(call: Callable[[], object]) -> float:
+    """Return the processor seconds of `call`."""
+    begun = time.process_time()
+    call()
+    return time.process_time() - begun
+
+
+def families(twin: str) -> str:
+    """Return the table of the paper's families: the twin, never shown them, beside a model of each."""
+    lines = [FAMILIES]
+    for name in ("arch", "hexagon", "wrench", "semicircle"):
+        for split in ("interpolation", "extrapolation"):
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / "test.h5"
+                words = [
+                    "--family",
+                    name,
+                    "--count",
+                    "36",
+                    "--res",
+                    "101",
+                    "--split",
+                    split,
+                    "-o",
+                    str(path),
+                    "-q",
+                ]
+                subprocess.run([sys.executable, "-m", "meshonet_cli", "sample-boundary", *words], check=True)
+                boundaries = list(read_shapes(f"{path}#test"))
+            goals = [winslow(b, tol=1e-8).grid for b in boundaries]
+            cells = []
+            for polish in (0, 1):
+                grids = [solution.grid for solution in infer_quads(boundaries, twin, polish)]
+                errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
+                folded = sum(count_folded(grid.nodes) > 0 for grid in grids)
+                cells.append(f"{np.median(errors):.1e} ({folded})")
+            raw = {
+                kind: published(f"{name}.{split}.{kind}") for kind in ("meshonet.raw", "meshonet-hard.raw")
+            }
+            lines.append(f"| {name}, {split} | {' | '.join(cells)} | {' | '.join(raw.values())} |")
+    return "\n".join(lines)
+
+
+def published(name: str) -> str:
+    """Return the median error of a paper model in docs/paper/results, and how many of its grids fold."""
+    path = ROOT / "docs" / "paper" / "results" / f"{name}.json"
+    if not path.exists():
+        return ""
+    told = json.loads(path.read_text())["summary"]
+    return f"{told['relative_l2']['median']:.1e} ({told['folded']['members']})"
+
+
+ANGLES = (
+    "| way | valid % | max and mean not above Winslow's % | max / mean angle, averaged "
+    "| gain in the mean %, of all / median | gain in the max % | CPU ms, median |",
+    "| --- | --- | --- | --- | --- | --- | --- |",
+)
+FAMILIES = """
+## The paper's families, 101 x 101, test members
+
+Relative L2 to Winslow's solution, median, and grids with folds in brackets: Winslow's own wrenches fold.
+`quad-winslow` has seen none of these shapes; the paper's models were trained on 30 members of each
+([the paper, done again](paper/README.md)).
+
+| family | quad-winslow | 1 cycle | MeshONet | MeshONet-hard |
+| --- | --- | --- | --- | --- |"""
+HEAD = """# The operator for four-sided domains
+
+<!-- made by python benchmarks/bench_quads.py --page docs/quad-operator.md -->
+
+`infer --model quad-general` makes the variational grid of any four-sided domain by one pass of a network on
+33 x 33 nodes, evaluated at any resolution; `quad-winslow` is the same network's other answer, Winslow's grid.
+`--polish N` takes N steps of descent after it (of multigrid for Winslow's).
+
+The network works on the difference from transfinite interpolation in a frame without place, turn and size,
+and commutes with the eight relabellings of a quad by construction, so a mirrored domain has the mirrored grid
+to rounding. Edges are met bitwise. Grids may fold before the guard; its repairs are not in these tables.
+
+Angles are the largest included angle of each cell, in degrees. The gain is what a way improves on Winslow's
+figure, over what the full variational grid does. Processor time of one thread of a shared, busy machine.
+"""
+TAIL = """
+## Which to use
+
+For a single domain the coarse variational solve has the last percent of the mean angle, and it is what
+`infer` does unless a model is named. For batches name `--model quad-general`: its members go through the
+network together, at a fraction of the time of any solve, and `--polish 2` to 5 takes out folds and kinks.
+
+## Gradients
+
+`solvers.neural.quads.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
+every node to the nodes of the boundary; on a GPU with `device="cuda"`. Bending the top of a channel to where
+cells are least skewed:
+
+```python
+import torch
+from solvers.neural.quads.differentiable import QuadGrids
+
+grids, n = QuadGrids("quad-general"), 65
+t = torch.linspace(0, 1, n, dtype=torch.float64)
+low, left = torch.stack([t, 0 * t], -1)[None], torch.stack([0 * t, t], -1)[None]
+high, right = low + left[:, -1:], left + low[:, -1:]
+arched = torch.stack([0 * t, t * (1 - t)], -1)
+height = torch.tensor(0.4, dtype=torch.float64, requires_grad=True)
+optimiser = torch.optim.Adam([height], lr=0.02)
+for _ in range(40):
+    nodes = grids(low, high + height * arched, left, right)
+    u, v = nodes[:, 1:, :-1] - nodes[:, :-1, :-1], nodes[:, :-1, 1:] - nodes[:, :-1, :-1]
+    skew = ((u * v).sum(-1) ** 2 / ((u * u).sum(-1) * (v * v).sum(-1))).mean()
+    optimiser.zero_grad()
+    skew.backward()
+    optimiser.step()
+print(float(height))  # towards 0: a rectangle
+```
+"""
+
+if __name__ == "__main__":
+    main()
