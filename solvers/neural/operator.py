@@ -9,6 +9,7 @@ says so.
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import replace
 from typing import Literal, NamedTuple
 
@@ -16,10 +17,11 @@ import numpy as np
 
 from geometry.arrays import Complexes, Floats, planar_nodes
 from geometry.boundary import Boundary
-from geometry.errors import InputError
+from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
 from geometry.lift import Lift, lift_body, mirrored
 from geometry.mirror import Axis, handedness
+from geometry.quality import count_folded
 from solvers.neural.bisector import halve_corners
 from solvers.neural.evaluate import StripGrid
 from solvers.neural.strip import MODES, across, harmonic, modes, picard
@@ -35,6 +37,8 @@ SHARPEST = {
     "wall": 0.017,
     "far field": 1e-3,
 }  # amplitude (radians) that a wall may have beyond half the modes
+ROUGHEST = 0.05  # of an airfoil's wall, when it is spacing that is uneven and not the body
+BENT = np.radians(75.0)  # a turn at one node, trailing corners aside: of a body with other corners
 
 
 def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto") -> Solution:
@@ -74,11 +78,16 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     across()  # like the model, made once a process: neither is part of a grid's time
     begun = time.perf_counter()
     try:
-        nodes, changes = _operate(boundary, network, polish)
+        nodes, changes, rough = _operate(boundary, network, polish)
     except InputError as error:
         return _elliptic(boundary, f"the operator cannot take this body ({error.problem})", begun)
     if changes and not changes[-1] < WILD:
         return _elliptic(boundary, "the operator's polish diverged", begun)
+    if rough and count_folded(nodes):
+        with suppress(SolverError):
+            found = _elliptic(boundary, "the operator folds cells of uneven spacing", begun)
+            if not count_folded(found.grid.nodes):
+                return found
     spent = time.perf_counter() - begun
     facts = {"method": "operator", "model": network.name if network else "base", "polish": len(changes)}
     grid = Grid(nodes, "o", boundary.parts, boundary.name, facts)
@@ -121,22 +130,37 @@ def walls(boundary: Boundary) -> Walls:
     return Walls(lift, w - 1j * theta, away - 1j * theta, z, corners, axis, hand)
 
 
-def _check_smooth(wall: Complexes, far: Complexes) -> None:
-    """Raise InputError when a corner the lift does not know, or uneven spacing, outruns the strip's modes.
+def _roughness(found: Walls) -> bool:
+    """Return whether uneven spacing outruns the strip's modes a little, so that a grid may fold.
 
-    Airfoils have at most 0.013 in the wall, polygons at least 0.02; a square far field has 0.01.
+    Airfoils have at most 0.013 in the wall, 0.05 where nodes are evenly spaced around the leading edge;
+    polygons at least 0.02; a square far field has 0.01. Raises InputError when the strip does not resolve it.
     """
-    n = len(wall)
+    n = len(found.wall)
     k = np.minimum(np.arange(n), n - np.arange(n))
-    for name, F in (("wall", wall), ("far field", far)):
+    rough = False
+    for name, F in (("wall", found.wall), ("far field", found.far)):
         sharp = float(np.abs(np.fft.fft(F))[(k > MODES // 2) & (k <= MODES)].sum() / n)
         if sharp > SHARPEST[name]:
-            raise InputError(f"its {name} has corners or spacing that the strip does not resolve")
+            rough = name == "wall" and sharp < ROUGHEST and bool(found.corners) and not _bent(found)
+            if not rough:
+                raise InputError(f"its {name} has corners or spacing that the strip does not resolve")
+    return rough
 
 
-def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple[Floats, list[float]]:
-    lift, wall, far, z, corners, axis, hand = walls(boundary)
-    _check_smooth(wall, far)
+def _bent(found: Walls) -> bool:
+    """Return whether the body has a corner that is no trailing one."""
+    z = found.z
+    turn = np.abs(np.angle((np.roll(z, -1) - z) / (z - np.roll(z, 1))))
+    turn[list(found.corners)] = 0.0
+    return bool(turn.max() > BENT)
+
+
+def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple[Floats, list[float], bool]:
+    """Return the nodes, the largest change in each Picard step, and whether the wall is rough."""
+    found = walls(boundary)
+    lift, wall, far, z, corners, axis, hand = found
+    rough = _roughness(found)
     a, b = modes(wall), modes(far)
     c = harmonic(a, b, across().eta)
     if network is not None:
@@ -152,7 +176,7 @@ def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple
     halve_corners(grid, lift, z, corners)
     grid.fill(lift, nodes, axis)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    return nodes, changes
+    return nodes, changes, rough
 
 
 def _elliptic(boundary: Boundary, why: str, begun: float) -> Solution:

@@ -138,6 +138,25 @@ def test_a_body_the_lift_cannot_take_goes_to_the_elliptic_solver_and_says_why() 
     assert "the operator cannot take this body" in solution.notes[0]
 
 
+def test_even_spacing_around_the_leading_edge_stays_with_the_operator() -> None:
+    solution = infer(boundary("2412-sharp", 200, 100, spacing="uniform"))
+    assert solution.method == "operator"
+    assert count_folded(solution.grid.nodes) == 0
+
+
+@pytest.mark.parametrize(
+    ("designation", "i", "j", "x", "y"),
+    [
+        ("2412", 0, 1, 1.00284543308, -0.000185295027267),
+        ("2412", 50, 30, -1.64806816431, 0.088785531457),
+        ("0012-sharp", 20, 5, 0.645053529148, -0.212983411974),
+        ("0012-sharp", 99, 40, 4.63061623235, 0.258988901051),
+    ],
+)
+def test_grids_stay_what_they_were(designation: str, i: int, j: int, x: float, y: float) -> None:
+    np.testing.assert_allclose(infer(boundary(designation, 101, 60)).grid.nodes[i, j], [x, y], atol=1e-9)
+
+
 @pytest.mark.parametrize("name", ["hole", "square"])
 def test_bodies_and_far_fields_with_corners_go_to_the_elliptic_solver(name: str) -> None:
     if name == "hole":
