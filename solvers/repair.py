@@ -2,7 +2,8 @@
 
 A grid with a few folded cells is unfolded on windows around them, which grow while they stay folded. What
 that cannot undo is unfolded on coarser copies of the grid first: the coarsest at once, then each finer one
-follows, and what is left is unfolded on windows. Only inner nodes move, so the boundary stays as it is.
+follows, and what is left is unfolded on windows. Only inner nodes move, so the boundary stays as it is. What
+cannot be unfolded is given up after a second or two.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from geometry.arrays import Floats, as_planar
 from geometry.grid import Grid
 from geometry.quality import count_folded, folded_cells, per_cell
-from solvers.unfold import smooth, unfold
+from solvers.unfold import Patience, smooth, unfold
 from solvers.windows import Window, windows
 
 MARGIN = 6
@@ -52,17 +53,18 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
         return len(bad)
-    if _few(len(bad), nodes) and unfold_windows(nodes, periodic, margin) == 0:
+    if _few(len(bad), nodes) and unfold_windows(nodes, periodic, Patience(), margin) == 0:
         smooth_windows(nodes, periodic, bad, margin)
         return 0
-    left = unfold_nested(nodes, periodic) and unfold_patches(nodes, periodic)
+    patience = Patience()
+    left = unfold_nested(nodes, periodic, patience) and unfold_patches(nodes, periodic, patience)
     poor = np.argwhere(per_cell(Grid(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR)
     if left == 0 and _few(len(poor), nodes):
         smooth_windows(nodes, periodic, poor, margin)
     return left
 
 
-def unfold_windows(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
+def unfold_windows(nodes: Floats, periodic: bool, patience: Patience, margin: int = MARGIN) -> int:
     """Unfold windows around folded cells, as `repair`."""
     left = count_folded(nodes)
     for cells in (margin, *(wider for wider in MARGINS if wider > margin)):
@@ -71,7 +73,7 @@ def unfold_windows(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
         for window in windows(folded_cells(nodes), cells, nodes.shape[:2], periodic, LARGEST):
             patch = _cut(nodes, window, periodic)
             before = count_folded(patch)
-            if before and unfold(patch) < before:
+            if before and unfold(patch, False, patience) < before:
                 _put(nodes, window, periodic, patch)
         left = count_folded(nodes)
     return left
@@ -86,7 +88,7 @@ def smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], marg
             _put(nodes, window, periodic, patch)
 
 
-def unfold_patches(nodes: Floats, periodic: bool) -> int:
+def unfold_patches(nodes: Floats, periodic: bool, patience: Patience) -> int:
     """Unfold larger windows through coarser copies, as `repair`."""
     left = count_folded(nodes)
     for margin in PATCHES:
@@ -95,30 +97,30 @@ def unfold_patches(nodes: Floats, periodic: bool) -> int:
         for window in windows(folded_cells(nodes), margin, nodes.shape[:2], periodic, 16 * LARGEST):
             patch = _cut(nodes, window, periodic)
             before = count_folded(patch)
-            if before and unfold_nested(patch, False) < before:
+            if before and unfold_nested(patch, False, patience) < before:
                 _put(nodes, window, periodic, patch)
         left = count_folded(nodes)
     return left
 
 
-def unfold_nested(nodes: Floats, periodic: bool) -> int:
+def unfold_nested(nodes: Floats, periodic: bool, patience: Patience) -> int:
     """Unfold coarser copies first and let this grid follow, as `repair`."""
     ni, nj = nodes.shape[:2]
     tangled = not _few(count_folded(nodes), nodes)
     small = ni * nj <= LARGEST
     if ni * nj > LARGEST // 2 and min(ni, nj) > 5:
-        _follow_coarser(nodes, periodic)
+        _follow_coarser(nodes, periodic, patience)
     elif tangled:
-        unfold(nodes, periodic)
-    left = unfold_windows(nodes, periodic)
+        unfold(nodes, periodic, patience)
+    left = unfold_windows(nodes, periodic, patience)
     if left and small:
-        left = unfold(nodes, periodic)
+        left = unfold(nodes, periodic, patience)
     if left == 0 and small and tangled:
         smooth(nodes, periodic)
     return left
 
 
-def _follow_coarser(nodes: Floats, periodic: bool) -> None:
+def _follow_coarser(nodes: Floats, periodic: bool, patience: Patience) -> None:
     """Unfold a coarser copy of planar `nodes` (ni, nj, 2); move them as it moved, or fill them from it."""
     ni, nj = nodes.shape[:2]
     i, j = _kept(nodes[:, 0], nodes[:, -1]), _kept(nodes[0], nodes[-1])
@@ -126,7 +128,7 @@ def _follow_coarser(nodes: Floats, periodic: bool) -> None:
     if count_folded(coarse) == 0:
         return
     before = coarse.copy(order="K")
-    unfold_nested(coarse, periodic)
+    unfold_nested(coarse, periodic, patience)
     moved = nodes + _between(coarse - before, i, j, ni, nj)
     filled = _between(coarse, i, j, ni, nj)
     filled[:, 0], filled[:, -1] = nodes[:, 0], nodes[:, -1]

@@ -25,7 +25,23 @@ PATIENCE = 3
 """Regularisations at the most, and those without gain after which unfolding is given up."""
 
 
-def unfold(patch: Floats, periodic: bool = False) -> int:
+FUTILE = 1e5
+"""Nodes times regularisations that may be spent on patches which stay folded: a second or two."""
+
+
+class Patience:
+    """What may still be spent in vain. What unfolds a patch costs nothing, so many folds do not tire it.
+
+    Parameters
+    ----------
+    left : nodes times regularisations.
+    """
+
+    def __init__(self, left: float = FUTILE) -> None:
+        self.left = left
+
+
+def unfold(patch: Floats, periodic: bool, patience: Patience) -> int:
     """Unfold, then smooth, the inner nodes of `patch` in place; return how many cells stay folded.
 
     The regularisation ε shrinks with the worst corner, at least by half: small enough to tell folded from
@@ -35,11 +51,16 @@ def unfold(patch: Floats, periodic: bool = False) -> int:
     ----------
     patch : (m, n, 2) planar.
     periodic : row m-1 repeats row 0, and both are inner.
+    patience : once it is at its end the patch is left as it is.
     """
+    if patience.left <= 0:
+        return count_folded(patch)
     x, y = patch[..., 0], patch[..., 1]
     width, height = reference_lengths(patch, periodic)
     epsilon, best, idle = 1.0, -np.inf, 0
+    spent = 0.0
     for _ in range(REGULARISATIONS):
+        spent += x.size
         _, _, smallest = minimise(x, y, width, height, periodic, 0.0, epsilon, STEPS, STILL, VALID)
         if smallest > 0:
             smooth(patch, periodic)
@@ -49,7 +70,10 @@ def unfold(patch: Floats, periodic: bool = False) -> int:
             break
         best = max(best, smallest)
         epsilon = min(0.5 * epsilon, max(0.2 * abs(smallest), 1e-6))
-    return count_folded(patch)
+    left = count_folded(patch)
+    if left:
+        patience.left -= spent
+    return left
 
 
 def smooth(patch: Floats, periodic: bool = False) -> None:

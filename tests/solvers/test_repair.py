@@ -7,11 +7,12 @@ from solver_shapes import arch, folded, hole, l_shape, naca, spike, wrench
 from geometry.arrays import Floats, as_planar
 from geometry.boundary import Boundary
 from geometry.families.family import family
+from solvers import unfold as unfolding
 from solvers._repair import energy, minimise
 from solvers.elliptic.solve import solve
 from solvers.repair import repair
 from solvers.tfi import tfi
-from solvers.unfold import reference_lengths, unfold
+from solvers.unfold import FUTILE, Patience, reference_lengths, unfold
 
 
 def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
@@ -83,7 +84,7 @@ def test_a_minimum_is_found_to_the_tolerance_and_kept() -> None:
 def test_random_tangles_unfold(boundary: Boundary) -> None:
     nodes = tangled(boundary, 0.05)
     assert folded(nodes) > 10
-    assert unfold(nodes, boundary.topology == "o") == 0
+    assert unfold(nodes, boundary.topology == "o", Patience()) == 0
     assert folded(nodes) == 0
 
 
@@ -154,3 +155,21 @@ def test_a_grid_without_inner_nodes_is_left_alone(shape: tuple[int, int]) -> Non
     before = nodes.copy()
     assert repair(nodes, False) == folded(nodes)
     assert np.array_equal(nodes, before)
+
+
+def test_what_cannot_be_unfolded_is_given_up_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two nodes of an edge in the wrong order fold a cell for good; without a limit it took minutes."""
+    xi, eta = np.meshgrid(np.linspace(0, 2, 81), np.linspace(0, 1, 61) ** 4, indexing="ij")
+    nodes = as_planar(np.stack([xi, eta], axis=-1))
+    for i in (20, 50):
+        nodes[[i, i + 1], 0] = nodes[[i + 1, i], 0]
+    spent = 0
+
+    def counted(x: Floats, *rest: object) -> tuple[int, float, float]:
+        nonlocal spent
+        spent += x.size
+        return minimise(x, *rest)  # type: ignore[no-any-return]
+
+    monkeypatch.setattr(unfolding, "minimise", counted)
+    assert repair(nodes, False) > 0
+    assert 0 < spent < 4 * FUTILE
