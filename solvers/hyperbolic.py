@@ -61,11 +61,12 @@ class MarchSettings:
 ATTEMPTS = (
     MarchSettings(0.7, 0.5, 20, 0.1, 0.03),
     MarchSettings(0.5, 0.5, 10),
+    MarchSettings(0.3, 0.0, 4),
     MarchSettings(1.0, 0.5, 20),
     MarchSettings(1.0, 1.0, 40),
     MarchSettings(2.0, 2.0, 40),
 )
-"""Settings tried in turn while cells are folded."""
+"""Settings tried in turn while cells are folded; the third suits first cells nearly as high as long."""
 OPEN_ATTEMPTS = (
     MarchSettings(0.5, 0.5, 10, 0.02, 0.03),
     MarchSettings(0.5, 0.5, 4, 0.15, 0.05),

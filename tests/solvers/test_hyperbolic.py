@@ -306,6 +306,14 @@ BODIES = {
 }
 
 
+def test_first_cells_nearly_as_high_as_long_at_a_sharp_edge_do_not_fold() -> None:
+    boundary = naca("0012-sharp").boundary(Sampling(800, 120, "o", "cosine"))
+    assert np.hypot(*np.diff(boundary.south[:2], axis=0).T)[0] < 2e-5
+    nodes = hyperbolic(boundary, wall_spacing=1e-5).grid.nodes
+    assert count_folded(nodes) == 0
+    np.testing.assert_allclose(first_cells(nodes), 1e-5, rtol=1e-8)
+
+
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("height", [1e-3, 1e-5])
 def test_bodies_that_are_no_airfoils_get_valid_grids(name: str, height: float) -> None:
