@@ -19,20 +19,25 @@ from geometry.airfoil import Airfoil
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
-from geometry.sampling import Sampling
+from geometry.sampling import Sampling, Spacing
 from geometry.topology import straight
 
 POINTS = 120  # a surface
 ORDER = 6  # of the Bernstein polynomials
 
 
-def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random airfoil's O boundary: random section, wall spacing and far field (4 to 60 chords)."""
+def boundary(rng: np.random.Generator, ni: int, nj: int, spacing: Spacing | None = None) -> Boundary:
+    """Return a random airfoil's O boundary: random section, wall spacing and far field (4 to 60 chords).
+
+    With `spacing` every wall has that law.
+    """
     while True:
+        settings: dict[str, Any] = {"spacing": spacing} if spacing else {}
         far_field = float(np.exp(rng.uniform(np.log(4.0), np.log(60.0))))
         try:
             airfoil = Airfoil(_section(rng), "procedural")
-            edges = airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **_spacing(rng)))
+            settings = settings or _spacing(rng)
+            edges = airfoil.boundary(Sampling(ni, nj, "o", far_field=far_field, **settings))
         except InputError:
             continue  # a section that crosses itself, or cells that do not fit it: draw another
         return _turned(edges, float(rng.normal(0.0, 0.08))) if rng.random() < 0.5 else edges
