@@ -32,7 +32,7 @@ from solvers.solution import Solution
 
 _FADE = 12.0
 """Rows over which the correction of the first cell fades out."""
-_REACHED = 0.015
+_REACHED = 0.025
 """How near, as a part, the far field must come to the distance asked for."""
 _MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
