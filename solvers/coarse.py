@@ -55,8 +55,8 @@ def solve_coarse(
     boundary : quad, o or c.
     method : a solver of boundary to solution.
     n : coarse nodes along each direction that has more.
-    smooth : whether to end a solution of Winslow's equations with sweeps at full resolution around kinks of
-        the boundary (elsewhere they change nothing that counts).
+    smooth : whether to end a solution of Winslow's equations, or one that came out folded, with sweeps of
+        these equations at full resolution around kinks of the boundary (elsewhere they change nothing).
 
     Returns
     -------
@@ -77,7 +77,7 @@ def solve_coarse(
     begun = time.perf_counter()
     solution = method(thinned(boundary, *counts))
     nodes = evaluate(solution.grid.nodes, boundary)
-    if smooth and solution.method == "winslow":
+    if smooth and (solution.method == "winslow" or count_folded(nodes)):
         sweep_kinks(nodes, boundary, counts)
     facts = {**solution.grid.provenance, "coarse": counts}
     grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)

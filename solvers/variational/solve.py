@@ -45,7 +45,7 @@ MOST = 1000
 """Iterations on a coarser level at the most."""
 
 SMALL = 33
-"""Nodes along a direction up to which a folded grid is unfolded as a whole before local repair is tried."""
+"""Nodes along a direction up to which a descent does without the coarsest level's Hessian: it is as quick."""
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
@@ -222,16 +222,11 @@ def descend(
 
 
 def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
-    """Unfold planar `nodes` in place, small grids as a whole first, others by repair; return success."""
-    largest, z = max(nodes.shape[:2]), np.moveaxis(nodes, -1, 0)
-    if not periodic and largest <= SMALL:
-        start = nodes.copy(order="K")
-        if _unfold(z, descent, terms):
-            return True
-        nodes[...] = start
+    """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
     if repair(nodes, periodic) == 0:
         return True
-    return not periodic and largest <= UNFOLDED and _unfold(z, descent, terms)
+    small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
+    return small and _unfold(np.moveaxis(nodes, -1, 0), descent, terms)
 
 
 def _unfold(z: Floats, descent: Minimiser, terms: tuple[float, float, float]) -> bool:

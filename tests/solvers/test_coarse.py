@@ -152,3 +152,10 @@ def test_large_quads_take_fewer_nodes_and_more_where_those_fold(make, counts, na
 def test_too_few_coarse_nodes_are_refused() -> None:
     with pytest.raises(InputError, match="8 coarse nodes along a direction are too few; use at least 9"):
         solve_coarse(arch(100, 100), solve, 8, smooth=True)
+
+
+def test_what_kinks_fold_sweeps_unfold() -> None:
+    from solvers.variational.solve import solve as minimise
+
+    boundary = wrench(400, 400)
+    assert folded(solve_coarse(boundary, minimise, 65, smooth=True).grid.nodes) == 0
