@@ -23,7 +23,7 @@ from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.curves import Curve, resample_like
 from geometry.errors import InputError
-from geometry.growth import cells_for_growth, growth_ratio
+from geometry.growth import LARGEST, cells_for_growth, growth_ratio
 from geometry.parts import Part, c_parts, wake_nodes
 from geometry.sampling import TanhLaw
 from geometry.topology import straight
@@ -130,7 +130,14 @@ def _growing(first: float, length: float, cells: int) -> Floats:
     """
     if first * cells >= length or cells < 2:
         return np.arange(cells + 1.0)
-    growth_ratio(first, length, cells)  # raises where cells would grow too fast
+    try:
+        growth_ratio(first, length, cells)
+    except InputError:
+        raise InputError(
+            f"{cells} cells from {first:.3g} on along a wake of {length:.3g} would grow by more than "
+            f"{LARGEST:g} each",
+            "use more nodes, --wake-nodes or a larger --te-spacing",
+        ) from None
     k = np.arange(1.0, cells)
     shape = np.append(0.0, np.cumsum(-np.expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
     g = math.log(length / first) / shape[-1]

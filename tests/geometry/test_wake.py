@@ -184,3 +184,10 @@ def test_a_wake_asked_of_an_o_grid_is_not_ignored(asked: dict[str, Any]) -> None
         naca("0012").boundary(Sampling(ni=60, nj=20, topology="o", **asked))
     with pytest.raises(InputError, match="an O grid has no wake"):
         naca("0012").boundary(Sampling(ni=60, nj=20, viscous=True, **asked))  # blunt: an O by itself
+
+
+def test_a_wake_of_too_few_nodes_says_what_to_change() -> None:
+    with pytest.raises(
+        InputError, match="2 cells from .* would grow by more than 10 each; use more nodes, --wake"
+    ):
+        c(wake_nodes=3)
