@@ -114,6 +114,7 @@ paper-quick: $(VENV)/.developing
 bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_operator.py --page docs/benchmarks.md
 	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md
+	$(BIN)/python benchmarks/bench_quads.py --page docs/quad-operator.md
 	for name in tfi variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done
 
 docs: $(VENV)/.developing

@@ -21,10 +21,10 @@ from solvers.solution import Solution
 WINSLOW = 0
 """Number of the answer that is Winslow's grid."""
 
-AUTO = {WINSLOW: 1, 1: 5}
+AUTO = {WINSLOW: 2, 1: 5}
 """Steps of "auto": cycles of multigrid, or of descent."""
 
-SOLVED = 65
+SOLVED = 129
 """Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
 
 DESCENDED, OTHERWISE = 513, 257
