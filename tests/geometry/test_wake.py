@@ -188,6 +188,6 @@ def test_a_wake_asked_of_an_o_grid_is_not_ignored(asked: dict[str, Any]) -> None
 
 def test_a_wake_of_too_few_nodes_says_what_to_change() -> None:
     with pytest.raises(
-        InputError, match="2 cells from .* would grow by more than 10 each; use more nodes, --wake"
+        InputError, match=r"2 cells from .* would grow by more than 10 each; use more nodes, --wake"
     ):
         c(wake_nodes=3)
