@@ -105,6 +105,19 @@ def test_modes_hold_the_differences_they_are_made_of(topology: str) -> None:
     assert (missed[1] ** 2).sum() < 0.2 * (missed[0] ** 2).sum()
 
 
+@pytest.mark.parametrize("spoil", ["nodes", "modes", "none"])
+def test_modes_that_do_not_fit_are_found_when_the_file_is_read(tmp_path: Path, spoil: str) -> None:
+    path = tmp_path / "m.safetensors"
+    trained = random("meshonet-hard", FAMILIES["quad"], modes=4)
+    arrays = dict(trained.weights)
+    modes = arrays.pop("fixed/modes")
+    if spoil != "none":
+        arrays["fixed/modes"] = modes[:9] if spoil == "nodes" else modes[:, :3]
+    write_trained(path, "m", trained.model, "meshonet-hard", trained.frame, arrays)
+    with pytest.raises(InputError, match="its header or arrays do not fit"):
+        load_trained(path)
+
+
 def test_a_batch_answers_like_its_members() -> None:
     samples = FAMILIES["quad"]
     trained = random("meshonet", samples)
