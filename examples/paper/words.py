@@ -30,7 +30,7 @@ middle of the range and trains on both ends, extrapolation tests one end, random
 is measured on test grids only, against the converged Winslow solution. *Boundary off by* is the largest distance of
 a boundary node from its place before anything is pasted. Angles in degrees. The PDE rows are the grids the models
 learn from, repaired where Winslow's equations fold them: the wrench, 4 to 18 cells a grid at the two corners of 270
-degrees, whatever the resolution. `meshonet-hard` has a trained trunk, on wrench and airfoil modes of the training
+degrees, more on finer ones. `meshonet-hard` has a trained trunk, on wrench and airfoil modes of the training
 grids ([why](../paper-models.md#meshonet-hard)).
 """
 
