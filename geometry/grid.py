@@ -67,7 +67,9 @@ class Grid:
             raise InputError(f"topology {self.topology!r} is not known", "use " + "/".join(TOPOLOGIES))
         # sums are finite exactly when (overflow aside) their terms are: one pass, no temporary, by BLAS
         ones = np.ones(nodes.shape[1])
-        if not np.isfinite((nodes[..., 0] @ ones).sum() + (nodes[..., 1] @ ones).sum()):
+        with np.errstate(invalid="ignore"):  # infinity less infinity
+            total = (nodes[..., 0] @ ones).sum() + (nodes[..., 1] @ ones).sum()
+        if not np.isfinite(total):
             finite = np.isfinite(nodes).all(axis=-1)
             if not finite.all():
                 i, j = (int(k) for k in np.argwhere(~finite)[0])
