@@ -1,0 +1,47 @@
+"""The shipped quad network: golden nodes, folds and angles on domains that it was not trained on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from random_quads import random_quad
+from solver_shapes import arch
+
+from geometry.compare import compare
+from geometry.quality import count_folded, measure
+from solvers.elliptic.solve import solve as winslow
+from solvers.neural.quads.inference import infer_quads
+
+GOLDEN = {
+    "quad-general": [[0.2576366885377341, 0.2363288700168999], [0.5, 0.7030768844306834]],
+    "quad-winslow": [[0.2495969394511454, 0.2600897717203973], [0.5, 0.8518926073482758]],
+}
+"""Nodes (16, 16) and (32, 48) of the arch on 65 x 65, without polish."""
+
+
+@pytest.mark.parametrize("model", list(GOLDEN))
+def test_golden_nodes(model: str) -> None:
+    nodes = infer_quads([arch(65, 65)], model, "off")[0].grid.nodes
+    np.testing.assert_allclose(nodes[[16, 32], [16, 48]], GOLDEN[model], rtol=0, atol=1e-9)
+
+
+def test_polished_grids_are_valid_and_no_worse_than_winslows() -> None:
+    drawn = (random_quad(seed, 65, 65) for seed in range(2000, 2012))
+    boundaries = [boundary for boundary in drawn if boundary is not None]
+    for boundary, solution in zip(boundaries, infer_quads(boundaries, "quad-general"), strict=True):
+        assert count_folded(solution.grid.nodes) == 0
+        own, other = (measure(grid)["max_angle"] for grid in (solution.grid, winslow(boundary).grid))
+        assert own.mean < other.mean
+        assert own.max <= other.max + 0.5
+
+
+def test_the_twin_is_near_winslows_grid_and_a_cycle_brings_it_nearer() -> None:
+    drawn = (random_quad(seed, 65, 65) for seed in range(2000, 2012))
+    boundaries = [boundary for boundary in drawn if boundary is not None]
+    goals = [winslow(boundary, tol=1e-8).grid for boundary in boundaries]
+    medians = [
+        np.median([compare(s.grid, goal).relative_l2 for s, goal in zip(found, goals, strict=True)])
+        for found in (infer_quads(boundaries, "quad-winslow", steps) for steps in (0, 1))
+    ]
+    assert medians[0] < 6e-3
+    assert medians[1] < 5e-4
