@@ -136,18 +136,24 @@ def final_name(part: Path) -> str:
     return match["final"] if match else part.name
 
 
-def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
+def check_place(destination: Path, name: str) -> None:
+    """Raise InputError, called `name`, where no file can be: `destination` is a folder, or has none."""
     target = Path(os.path.realpath(destination))
     if target.is_dir():
         raise InputError("is a folder", "name a file in it", source=name)
-    if make_folder:
-        target.parent.mkdir(parents=True, exist_ok=True)
     if not target.parent.is_dir():
         raise InputError(
             "its folder does not exist",
             f"make it: mkdir -p {printable(str(destination.parent))}",
             source=name,
         )
+
+
+def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
+    target = Path(os.path.realpath(destination))
+    if make_folder and not target.is_dir():
+        target.parent.mkdir(parents=True, exist_ok=True)
+    check_place(destination, name)
     _sweep(target.parent)
     part = _part_name(target)
     # made here, not by tempfile, so that the permissions are those of the umask as for any new file

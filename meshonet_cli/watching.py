@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
+from formats.output import check_place
 from geometry.errors import InputError
 from solvers.progress import Cycle
 from solvers.solution import Solution
@@ -94,9 +95,12 @@ class Live:
 
 
 def check_file(text: str | None) -> None:
-    """Raise InputError when a file of cycles does not end in ``.csv``, standard output included."""
-    if text is not None and Path(text).suffix.lower() != ".csv":
+    """Raise InputError when a file of cycles does not end in ``.csv`` or has no folder to be in."""
+    if text is None:
+        return
+    if Path(text).suffix.lower() != ".csv":
         raise InputError("cycles are written as a table of commas", "name a file, F.csv", source="--history")
+    check_place(Path(text), text)
 
 
 def write(path: Path, members: Iterable[tuple[str, Iterable[Row]]]) -> None:

@@ -160,7 +160,6 @@ def solve_pde(
             {
                 "--tol": tol,
                 "--max-cycles": max_cycles,
-                "--history": history,
                 "--initial": initial,
                 "--coarse": None if coarse == "auto" else coarse,
                 "--refine": refine or None,

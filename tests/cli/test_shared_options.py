@@ -368,7 +368,6 @@ MARCHED = ("naca:2412", "--res", "81x31", "--wall-spacing", "1e-4", "-o", "none.
     ("command", "words"),
     [
         ("solve-pde", ("--max-cycles", "3")),
-        ("solve-pde", ("--history", "cycles.csv")),
         ("solve-pde", ("--slide",)),
         ("solve-pde", ("--tol", "1e-9")),
         ("infer", ("--answer", "raw")),
