@@ -47,6 +47,8 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     data = source.read_bytes()
     if data.startswith(b"AutoCAD Binary DXF"):
         raise InputError("is a binary DXF", "save it as text (ASCII) DXF")
+    if b"\0" in data:  # no text has one, and a reader of drawings takes seconds to find out
+        raise InputError("is no DXF drawing that can be read (zero bytes)", "save it again as ASCII DXF")
     try:
         drawing = read(io.StringIO(data.decode("utf-8", "replace").replace("\r\n", "\n")))
         found = [
