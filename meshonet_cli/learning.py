@@ -116,9 +116,7 @@ def _train_strip(
     from solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
     from solvers.neural.strips import solve_strips
 
-    if run.settings or run.split or run.plan.get("points"):
-        told = "the strip operator takes no --set, --split or --points"
-        raise InputError(told, "leave them out, or choose another --model")
+    _refuse_settings(run, "strip")
     plan = _planned(PLAN, run.plan, long=False)
     strips = solve_strips(_boundaries(sources, fmt), _counted(session))
     session.note(f"{len(strips)} shapes lifted and solved")
@@ -136,9 +134,7 @@ def _train_quads(
     from solvers.neural.fit.quads import HELD_OUT, PLAN, quads, train_quads
     from solvers.neural.quads.encoding import HEADS
 
-    if run.settings or run.split or run.plan.get("points"):
-        told = "the quad operator takes no --set, --split or --points"
-        raise InputError(told, "leave them out, or choose another --model")
+    _refuse_settings(run, "quad")
     plan = _planned(PLAN, run.plan, long=False)
     solved = dict(_by_method(source, fmt) for source in sources)
     if sorted(solved) != sorted(HEADS):
@@ -157,6 +153,13 @@ def _train_quads(
         )
         session.note(f"{run.output}: held-out distance to {head} grids {told} (medians)")
     return {"shapes": len(given), "figures": figures}
+
+
+def _refuse_settings(run: Run, name: str) -> None:
+    """Refuse what only models of the registry take."""
+    if run.settings or run.split or run.plan.get("points"):
+        told = f"the {name} operator takes no --set, --split or --points"
+        raise InputError(told, "leave them out, or choose another --model")
 
 
 def _by_method(source: str, fmt: str | None) -> tuple[str, Samples]:

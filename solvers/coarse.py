@@ -26,7 +26,7 @@ from geometry.grid import Grid
 from geometry.quality import count_folded
 from solvers._combine import add_rows
 from solvers.solution import Solution
-from solvers.spline import Kinks, bending, kinked_matrix, kinks, places
+from solvers.spline import Kinks, bending, between, kinked_matrix, kinks, places
 from solvers.tfi import Four, interpolate, parameters
 
 AUTOMATIC = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
@@ -114,8 +114,8 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
     A C becomes a quad: thinned, its trailing edge need not be a node.
     """
     topology: Topology = "quad" if boundary.topology == "c" else boundary.topology
-    south, north = _between(boundary.south, ni), _between(boundary.north, ni)
-    west, east = _between(boundary.west, nj), _between(boundary.east, nj)
+    south, north = _thinned(boundary.south, ni), _thinned(boundary.north, ni)
+    west, east = _thinned(boundary.west, nj), _thinned(boundary.east, nj)
     return Boundary(south, north, west, east, topology, name=boundary.name)
 
 
@@ -129,8 +129,8 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     base = planar_nodes(m, n)
     edges: Four = (coarse[:, 0], coarse[:, -1], coarse[0], coarse[-1])
     if periodic:
-        edges = (*edges[:2], _between(boundary.west, n), _between(boundary.east, n))
-    thin_along = [_between(law[:, None], count)[:, 0] for law, count in zip(along, counts, strict=True)]
+        edges = (*edges[:2], _thinned(boundary.west, n), _thinned(boundary.east, n))
+    thin_along = [between(law, count) for law, count in zip(along, counts, strict=True)]
     interpolate(base[..., 0], base[..., 1], edges, tuple(thin_along))  # type: ignore[arg-type]
     nodes = planar_nodes(boundary.ni, boundary.nj)
     interpolate(nodes[..., 0], nodes[..., 1], fine, along)
@@ -211,12 +211,5 @@ def _sweep(nodes: Floats) -> None:
     level.smooth(False, SWEEPS)
 
 
-def _between(values: Floats, n: int) -> Floats:
-    """Return (n, k), linear between the rows of `values` (m, k), at equal steps; the ends are kept."""
-    m = len(values)
-    at = np.arange(n) * ((m - 1) / (n - 1))
-    k = np.minimum(at.astype(np.intp), m - 2)
-    t = (at - k)[:, None]
-    result = values[k] + t * (values[k + 1] - values[k])
-    result[-1] = values[-1]
-    return np.asarray(result)
+def _thinned(edge: Floats, n: int) -> Floats:
+    return np.asarray(between(edge.T, n).T)

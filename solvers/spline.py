@@ -100,6 +100,21 @@ def kinks(m: int, n: int, at: NDArray[np.intp]) -> Kinks:
     return Kinks(np.asarray(bends), np.asarray(jumps), tuple(rows), tuple(added))
 
 
+def between(values: Floats, n: int) -> Floats:
+    """Return (..., n), linear between the columns of `values` (..., m), at equal steps; the ends are kept."""
+    m = values.shape[-1]
+    if n == m:
+        return values
+    at = np.arange(n) * ((m - 1) / (n - 1))
+    first = np.minimum(at.astype(np.intp), m - 2)
+    t = at - first
+    if not t[:-1].any():
+        return np.ascontiguousarray(values[..., np.append(first[:-1], m - 1)])
+    result = values[..., first] + t * (values[..., first + 1] - values[..., first])
+    result[..., -1] = values[..., -1]
+    return np.ascontiguousarray(result)
+
+
 @lru_cache(maxsize=16)
 def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
     """Return for n uniform places over m knots the knot before each (n,) and four weights (n, 4).

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from geometry.arrays import Complexes, Floats
 from solvers.neural.encoding import VERSION
 from solvers.neural.strip import across, harmonic, picard
 from solvers.neural.strips import Strips
-from solvers.neural.weights import HEADER, KIND
+from solvers.neural.weights import KIND, write_tensors
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}
 
@@ -60,11 +59,8 @@ def write_model(
     figures: Mapping[str, Any],
 ) -> None:
     """Write a model file: float16 weights, the basis in float32, the header that `weights` checks."""
-    from safetensors.numpy import save
-
-    # safetensors takes an array's memory as it lies: C order, or it comes back scrambled
-    arrays = {key: np.ascontiguousarray(value, dtype=np.float16) for key, value in state.items()}
-    arrays["basis"] = np.ascontiguousarray(basis, dtype=np.float32)
+    arrays: dict[str, Any] = {key: value.astype(np.float16) for key, value in state.items()}
+    arrays["basis"] = basis.astype(np.float32)
     header = {
         "kind": KIND,
         "encoding": VERSION,
@@ -74,7 +70,4 @@ def write_model(
         "recipe": dict(recipe),
         "figures": dict(figures),
     }
-    part = path.with_name(path.name + ".part")
-    # one entry: safetensors writes several in an order that changes from run to run
-    part.write_bytes(save(arrays, metadata={HEADER: json.dumps(header, sort_keys=True)}))
-    part.replace(path)
+    write_tensors(path, arrays, header)

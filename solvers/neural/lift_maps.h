@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "clones.h"
+#include "exponential.h"
 
 /* glibc's vector versions of these, for the loops below; elsewhere they stay scalar calls */
 #if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
@@ -26,27 +27,13 @@ typedef struct {
     const CornerMap *corners; /* in the order in which they are restored */
 } LiftMaps;
 
-/* exp(x) for |x| < 700: x = n ln 2 + r, Taylor to r^13 on |r| < .347: 2 ulp */
+/* exp(x) for |x| < 700: x = n ln 2 + r, |r| < .347: 2 ulp */
 MESHONET_INLINE double fast_exp(double x) {
     double n = rint(x * 1.4426950408889634);
     double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
-    double p = 1.0 / 6227020800.0;
-    p = p * r + 1.0 / 479001600.0;
-    p = p * r + 1.0 / 39916800.0;
-    p = p * r + 1.0 / 3628800.0;
-    p = p * r + 1.0 / 362880.0;
-    p = p * r + 1.0 / 40320.0;
-    p = p * r + 1.0 / 5040.0;
-    p = p * r + 1.0 / 720.0;
-    p = p * r + 1.0 / 120.0;
-    p = p * r + 1.0 / 24.0;
-    p = p * r + 1.0 / 6.0;
-    p = p * r + 0.5;
-    p = p * r + 1.0;
-    p = p * r + 1.0;
     union { double d; long long i; } scale;
     scale.i = (long long)((int)n + 1023) << 52;
-    return p * scale.d;
+    return exp_reduced(r) * scale.d;
 }
 
 /* sin and cos for |x| < 1e5: quadrant by rounding, Cody & Waite reduction, Taylor on |r| < pi/4: 2 ulp */

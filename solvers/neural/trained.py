@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,7 +18,7 @@ from solvers.neural.layers import Arrays, Weights
 from solvers.neural.models.model import Frame, Operator
 from solvers.neural.places import square
 from solvers.neural.registry import OPERATORS, operator, settings_of
-from solvers.neural.weights import HEADER, read_tensors
+from solvers.neural.weights import read_tensors, write_tensors
 from solvers.spline import spline_matrix
 
 KIND = "meshonet operator"
@@ -115,8 +114,6 @@ def write_trained(
     kind : name of the model in the registry.
     facts : recipe and figures.
     """
-    from safetensors.numpy import save
-
     header = {
         "kind": KIND,
         "version": VERSION,
@@ -129,10 +126,7 @@ def write_trained(
         "count": frame.count,
         **facts,
     }
-    tensors = {key: np.ascontiguousarray(value, dtype=np.float32) for key, value in arrays.items()}
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(save(tensors, metadata={HEADER: json.dumps(header, sort_keys=True)}))
-    part.replace(path)
+    write_tensors(path, {key: value.astype(np.float32) for key, value in arrays.items()}, header)
 
 
 @lru_cache(maxsize=4)

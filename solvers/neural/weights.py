@@ -152,6 +152,18 @@ def read_tensors(path: Path) -> tuple[dict[str, Any], dict[str, Floats]]:
     return header, tensors
 
 
+def write_tensors(path: Path, arrays: Mapping[str, Floats], header: Mapping[str, Any]) -> None:
+    """Write a model file that `read_tensors` reads, whole or not at all; each array in its own precision."""
+    from safetensors.numpy import save
+
+    # safetensors takes an array's memory as it lies: C order, or it comes back scrambled
+    tensors = {key: np.ascontiguousarray(value) for key, value in arrays.items()}
+    part = path.with_name(path.name + ".part")
+    # one entry: safetensors writes several in an order that changes from run to run
+    part.write_bytes(save(tensors, metadata={HEADER: json.dumps(header, sort_keys=True)}))
+    part.replace(path)
+
+
 def described(name: str) -> dict[str, Any]:
     """Return what a shipped model says of itself: name, topology, recipe, figures, file."""
     path = model_path(name)

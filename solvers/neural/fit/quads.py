@@ -22,12 +22,12 @@ from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.task import Task
 from solvers.neural.fit.team import Team
 from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.edges import Edges, rims
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.export import held_out_figures, write_model
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
 from solvers.neural.samples import Samples
-from solvers.tfi import interpolate, parameters
 
 PLAN = Plan(
     epochs=32, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
@@ -172,7 +172,7 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
         raise InputError("no domain is in both datasets", "solve the same boundaries with both methods")
     first, second = (list(rows) for rows in zip(*pairs, strict=True))
     goal, other = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
-    base = np.stack([transfinite(z) for z in goal])
+    base = transfinite(goal)
     middle, factor = frame(base, np)
 
     def unit(z: Complexes) -> Tensor:
@@ -187,12 +187,10 @@ def _rim(nodes: Floats) -> bytes:
 
 
 def transfinite(z: Complexes) -> Complexes:
-    """Return the transfinite grid (n, n) in the rim of the grid `z`."""
-    n = len(z)
-    sides = tuple(_pairs(side) for side in (z[:, 0], z[:, -1], z[0], z[-1]))
-    planes = np.empty((2, n, n))
-    interpolate(planes[0], planes[1], sides, parameters(sides, "arclength"))  # type: ignore[arg-type]
-    return np.asarray(planes[0] + 1j * planes[1])
+    """Return the transfinite grids (m, n, n) in the rims of the grids `z`."""
+    edges = Edges(*(np.ascontiguousarray(side) for side in rims(np.stack([z.real, z.imag], axis=1))))
+    planes = edges.interpolated(edges.laws())
+    return np.asarray(planes[:, 0] + 1j * planes[:, 1])
 
 
 def train_quads(
@@ -220,10 +218,7 @@ def train_quads(
     SolverError
         as `solvers.neural.fit.loop.fit`.
     """
-    if held_out < 1 or len(given) < held_out + plan.batch:
-        needed = max(held_out, 1) + plan.batch
-        raise InputError(f"{len(given)} domains to train on", f"give at least {needed} or hold fewer out")
-    sizes, kept = sizes or Sizes(), len(given) - held_out
+    sizes, kept = sizes or Sizes(), plan.kept(len(given), held_out, "domains")
     torch.manual_seed(plan.seed)
     steps = plan.epochs * -(-kept // plan.batch)
     task = QuadTask(given[:kept], given[kept:], sizes, steps, team.device)
@@ -250,7 +245,3 @@ def _goals(given: Quads) -> tuple[Tensor, Tensor, Tensor]:
 
 def _complex(nodes: Floats) -> Complexes:
     return np.asarray(nodes[..., 0] + 1j * nodes[..., 1])
-
-
-def _pairs(z: Complexes) -> Floats:
-    return np.stack([z.real, z.imag], axis=-1)

@@ -12,7 +12,6 @@ import torch
 from torch import Tensor
 
 from geometry.arrays import Complexes
-from geometry.errors import InputError
 from solvers.neural.encoding import CHANNELS, SCALARS, decode, encode
 from solvers.neural.export import distance, held_out_figures, write_model
 from solvers.neural.fit.checkpoint import beside
@@ -113,10 +112,7 @@ def train_strip(
     SolverError
         as `solvers.neural.fit.loop.fit`.
     """
-    if held_out < 1 or len(strips) < held_out + plan.batch:
-        needed = max(held_out, 1) + plan.batch
-        raise InputError(f"{len(strips)} shapes to train on", f"give at least {needed} or hold fewer out")
-    sizes, kept = sizes or Sizes(), len(strips) - held_out
+    sizes, kept = sizes or Sizes(), plan.kept(len(strips), held_out, "shapes")
     torch.manual_seed(plan.seed)
     task = StripTask(strips[:kept], strips[kept:], sizes, team.device)
     told = ("epochs", "batch", "rate", "warm_up", "seed")

@@ -10,6 +10,7 @@ import numpy as np
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from solvers._tfi import fill_all
+from solvers.spline import between
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Of south, north, west and east."""
@@ -63,19 +64,9 @@ class Edges:
         return nodes
 
 
-def between(values: Floats, n: int) -> Floats:
-    """Return (..., n), linear between the columns of `values` (..., m), at equal steps; the ends are kept."""
-    m = values.shape[-1]
-    if n == m:
-        return values
-    at = np.arange(n) * ((m - 1) / (n - 1))
-    first = np.minimum(at.astype(np.intp), m - 2)
-    t = at - first
-    if not t[:-1].any():
-        return np.ascontiguousarray(values[..., np.append(first[:-1], m - 1)])
-    result = values[..., first] + t * (values[..., first + 1] - values[..., first])
-    result[..., -1] = values[..., -1]
-    return np.ascontiguousarray(result)
+def rims(planes: Floats) -> Sides:
+    """Return south, north, west and east of grids (batch, 2, m, n)."""
+    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
 
 
 def _fraction(side: Floats) -> Floats:

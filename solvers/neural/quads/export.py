@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats
 from solvers.neural.quads.encoding import HEADS, KIND, VERSION
-from solvers.neural.weights import HEADER
+from solvers.neural.weights import write_tensors
 
 Grids = NDArray[np.complexfloating[Any, Any]]
 
@@ -69,10 +68,6 @@ def write_model(
     figures: Mapping[str, Any],
 ) -> None:
     """Write a model file: float32 weights by torch's names, and the header that loading checks."""
-    from safetensors.numpy import save
-
-    # safetensors takes an array's memory as it lies: C order, or it comes back scrambled
-    arrays = {key: np.ascontiguousarray(value, dtype=np.float32) for key, value in state.items()}
     header = {
         "kind": KIND,
         "encoding": VERSION,
@@ -81,10 +76,7 @@ def write_model(
         "recipe": dict(recipe),
         "figures": dict(figures),
     }
-    part = path.with_name(path.name + ".part")
-    # one entry: safetensors writes several in an order that changes from run to run
-    part.write_bytes(save(arrays, metadata={HEADER: json.dumps(header, sort_keys=True)}))
-    part.replace(path)
+    write_tensors(path, {key: value.astype(np.float32) for key, value in state.items()}, header)
 
 
 def _norm(z: Grids) -> Floats:

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "clones.h"
+#include "exponential.h"
 
 /* glibc's vector version of it; elsewhere it stays a scalar call */
 #if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
@@ -16,8 +17,7 @@
 extern double log(double) __attribute__((simd("notinbranch")));
 #endif
 
-/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n; Taylor on
-   |r| < .35; arguments beyond what 1/(1 + exp) tells from its limits are clamped. 2 ulp. */
+/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n; arguments beyond what 1/(1 + exp) tells from its limits are clamped. 2 ulp. */
 MESHONET_INLINE double exp_double(double x)
 {
     x = x > 700.0 ? 700.0 : x < -700.0 ? -700.0 : x;
@@ -25,22 +25,8 @@ MESHONET_INLINE double exp_double(double x)
     shifted.real = x * 1.4426950408889634 + 6755399441055744.0;
     const double n = shifted.real - 6755399441055744.0;
     const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
-    double p = 1.0 / 6227020800.0;
-    p = p * r + 1.0 / 479001600.0;
-    p = p * r + 1.0 / 39916800.0;
-    p = p * r + 1.0 / 3628800.0;
-    p = p * r + 1.0 / 362880.0;
-    p = p * r + 1.0 / 40320.0;
-    p = p * r + 1.0 / 5040.0;
-    p = p * r + 1.0 / 720.0;
-    p = p * r + 1.0 / 120.0;
-    p = p * r + 1.0 / 24.0;
-    p = p * r + 1.0 / 6.0;
-    p = p * r + 0.5;
-    p = p * r + 1.0;
-    p = p * r + 1.0;
     scale.bits = (shifted.bits + 1023) << 52;
-    return p * scale.real;
+    return exp_reduced(r) * scale.real;
 }
 
 MESHONET_INLINE float exp_float(float x)

@@ -19,13 +19,13 @@ from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from solvers._combine import add_rows
 from solvers.neural.quads._network import look
-from solvers.neural.quads.edges import Edges, between
+from solvers.neural.quads.edges import Edges, rims
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
-from solvers.spline import bending, places, spline_matrix
+from solvers.spline import bending, between, places, spline_matrix
 
 BATCH = 64
 """Domains in memory at a time at the most."""
@@ -71,11 +71,6 @@ def evaluate(coarse: Floats, edges: Edges) -> Floats:
     for plane, value, bend in zip(_flat(nodes), _flat(values), _flat(bends), strict=True):
         add_rows(plane, first, weights, value, bend, False)
     return nodes
-
-
-def rims(planes: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return south, north, west and east of grids (batch, 2, m, n)."""
-    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
 
 
 def in_batches(boundaries: Sequence[Boundary]) -> Iterator[list[int]]:
