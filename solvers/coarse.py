@@ -23,7 +23,7 @@ from geometry.boundary import Boundary
 from geometry.corners import Indices, find_corners
 from geometry.errors import InputError
 from geometry.grid import Grid
-from geometry.quality import count_folded
+from geometry.quality import count_folded, measure
 from solvers._combine import add_rows
 from solvers.solution import Solution
 from solvers.spline import Kinks, bending, between, kinked_matrix, kinks, places
@@ -55,8 +55,8 @@ def solve_coarse(
     boundary : quad, o or c.
     method : a solver of boundary to solution.
     n : coarse nodes along each direction that has more.
-    smooth : whether to end a solution of Winslow's equations, or one that came out folded, with sweeps of
-        these equations at full resolution around kinks of the boundary (elsewhere they change nothing).
+    smooth : whether to end with sweeps of Winslow's equations at full resolution around kinks of the
+        boundary: always where these were solved or the grid came out folded, else where angles gain by them.
 
     Returns
     -------
@@ -77,8 +77,9 @@ def solve_coarse(
     begun = time.perf_counter()
     solution = method(thinned(boundary, *counts))
     nodes = evaluate(solution.grid.nodes, boundary)
-    if smooth and (solution.method == "winslow" or count_folded(nodes)):
-        sweep_kinks(nodes, boundary, counts)
+    if smooth:
+        winslow = solution.method == "winslow" or count_folded(nodes) > 0
+        sweep_kinks(nodes, boundary, counts, only_better=not winslow)
     facts = {**solution.grid.provenance, "coarse": counts}
     grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
     return replace(solution, grid=grid, seconds={**solution.seconds, "grid": time.perf_counter() - begun})
@@ -160,11 +161,14 @@ def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks:
     return kinks(m, n, np.unique(np.concatenate([find_corners(getattr(boundary, side)) for side in sides])))
 
 
-def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> bool:
+def sweep_kinks(
+    nodes: Floats, boundary: Boundary, counts: tuple[int, int], *, only_better: bool = False
+) -> bool:
     """Relax planar `nodes` in place by sweeps of Winslow's equations around the kinks of the boundary.
 
-    There the solution is not smooth, and a spline through the `counts` coarse nodes smears it. Returns
-    whether there are kinks.
+    There the solution is not smooth, and a spline through the `counts` coarse nodes smears it. With
+    `only_better` a kink is left alone around which the largest angle would not be smaller. Returns whether
+    there are kinks.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]
@@ -182,8 +186,10 @@ def sweep_kinks(nodes: Floats, boundary: Boundary, counts: tuple[int, int]) -> b
             for start, stop in _joined(corners, reach, n):
                 window = (slice(start, stop), inside) if axis == 0 else (inside, slice(start, stop))
                 patch = as_planar(nodes[window])
+                before = _largest_angle(patch) if only_better else 0.0
                 _sweep(patch)
-                nodes[window] = patch
+                if not only_better or _largest_angle(patch) < before:
+                    nodes[window] = patch
     return any_kinks
 
 
@@ -209,6 +215,10 @@ def _sweep(nodes: Floats) -> None:
     scratch = np.empty(scratch_size(xi.cells, eta.cells))
     level = Level(nodes[..., 0], nodes[..., 1], xi.differences(), eta.differences(), False, scratch, False)
     level.smooth(False, SWEEPS)
+
+
+def _largest_angle(nodes: Floats) -> float:
+    return 360.0 if count_folded(nodes) else measure(Grid(nodes))["max_angle"].max
 
 
 def _thinned(edge: Floats, n: int) -> Floats:
