@@ -15,10 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 from solvers.neural.models.model import Frame, Operator
@@ -78,17 +81,40 @@ class FNO2D(Operator):
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
         """Return h (batch, ni, nj, width) with its lowest modes mixed, a complex matrix each."""
-        ni, nj = h.shape[1], h.shape[2]
-        size = (ni + self.padding, nj + self.padding)
-        spectrum = xp.fft.rfft2(h, size, (1, 2))
-        m, rows = self.modes, spectrum.shape[1]
-        kept = xp.concatenate([spectrum[:, :m, :m], spectrum[:, -m:, :m]], 1)
-        matrix = weight[..., 0] + 1j * weight[..., 1]
-        mixed = xp.einsum("bmnc,mncd->bmnd", kept, matrix)
-        middle = xp.zeros_like(spectrum[:, : rows - 2 * m, :m])
-        low = xp.concatenate([mixed[:, :m], middle, mixed[:, m:]], 1)
-        columns = xp.fft.ifft(low, None, 1)
-        return xp.fft.irfft(columns, size[1], 2)[:, :ni, :nj]
+        batch, ni, nj, width = h.shape
+        m = self.modes
+        along, across, back = (_constant(xp, one, h) for one in _waves(ni, nj, m, self.padding))
+        # products with the few waves that are kept take a fifth of the time of whole transforms
+        rows = (across @ h).reshape(batch, ni, m, 2, width)
+        rows = (rows[..., 0, :] + 1j * rows[..., 1, :]).reshape(batch, ni, m * width)
+        kept = (along.T @ rows).reshape(batch, 2 * m, m, width)
+        mixed = xp.einsum("bmnc,mncd->bmnd", kept, weight[..., 0] + 1j * weight[..., 1])
+        columns = (along.conj() @ mixed.reshape(batch, 2 * m, m * width)).reshape(batch, ni, m, width)
+        return back @ xp.stack([columns.real, columns.imag], 3).reshape(batch, ni, 2 * m, width)
+
+
+@cache
+def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Floats, Floats]:
+    """Return the matrices of discrete Fourier transforms of n nodes and `padding` zeros, lowest modes only.
+
+    Along xi (ni, 2 modes), complex, its modes from 0 up and from -`modes` up; across it (2 modes, nj), the
+    real and the imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
+    """
+    m, k = ni + padding, np.concatenate([np.arange(modes), np.arange(-modes, 0)])
+    along = np.exp(-2j * np.pi / m * np.outer(np.arange(ni), k))
+    n = nj + padding
+    angle = 2 * np.pi / n * np.outer(np.arange(modes), np.arange(nj))
+    across = np.stack([np.cos(angle), -np.sin(angle)], 1).reshape(2 * modes, nj)
+    twice = np.where(np.arange(2 * modes) < 2, 1.0, 2.0) / (m * n)
+    return along, across, (across * twice[:, None]).T
+
+
+def _constant(xp: Any, matrix: NDArray[Any], like: Any) -> Any:
+    """Return a matrix as `xp` has them, of the precision of `like`."""
+    both = np.iscomplexobj(matrix)
+    if xp is np:
+        return matrix.astype(np.result_type(like.dtype, np.complex64) if both else like.dtype)
+    return xp.as_tensor(matrix, dtype=like.dtype.to_complex() if both else like.dtype, device=like.device)
 
 
 def _places(xp: Any, n: int, like: Any) -> Any:
