@@ -6,6 +6,7 @@
 #ifndef MESHONET_COARSE_SPACE_H
 #define MESHONET_COARSE_SPACE_H
 #include "clones.h"
+#include "spectral.h"
 #include "variational_kernel.h"
 #include <math.h>
 #include <string.h>
@@ -56,35 +57,36 @@ MESHONET_INLINE void solve_band(const double *band, ptrdiff_t n, ptrdiff_t width
     }
 }
 
-/* Sᵀ gradient, (mi, mj) to the unknowns of coordinate c. */
-MESHONET_INLINE void to_space(const Space *s, const double *restrict gradient, ptrdiff_t mi, ptrdiff_t mj, int c,
-                              double *restrict unknowns)
+/* Sᵀ gradient, (mi, mj) to the unknowns of coordinate c; `values` holds ROWS mj floats. */
+MESHONET_CLONES
+void space_restrict(const Space *s, const double *restrict gradient, ptrdiff_t mi, ptrdiff_t mj, int c,
+                    float *restrict values, double *restrict unknowns)
 {
-    const float *restrict across = s->across;
-    float total[SPACE][SPACE];
+    Lanes total[SPACE][SPACE / LANES];
     memset(total, 0, sizeof total);
-    for (ptrdiff_t i = 0; i < mi; i++) {
-        const double *restrict g = gradient + i * mj;
-        const float *restrict along = s->along + i * SPACE;
-        float sum[4][SPACE];
+    for (ptrdiff_t i = 0; i < mi; i += ROWS) {
+        const ptrdiff_t rows = mi - i < ROWS ? mi - i : ROWS;
+        Lanes sum[ROWS][SPACE / LANES];
         memset(sum, 0, sizeof sum);
-        ptrdiff_t j = 0;
-        for (; j + 4 <= mj; j += 4)
-            for (int u = 0; u < 4; u++)
-                for (int k = 0; k < SPACE; k++)
-                    sum[u][k] += (float)g[j + u] * across[(j + u) * SPACE + k];
-        for (; j < mj; j++)
-            for (int k = 0; k < SPACE; k++)
-                sum[0][k] += (float)g[j] * across[j * SPACE + k];
-        for (int k = 0; k < SPACE; k++)
-            sum[0][k] += sum[1][k] + (sum[2][k] + sum[3][k]);
-        for (int l = 0; l < SPACE; l++)
-            for (int k = 0; k < SPACE; k++)
-                total[l][k] += along[l] * sum[0][k];
+        for (ptrdiff_t k = 0; k < rows * mj; k++)
+            values[k] = (float)gradient[i * mj + k];
+        memset(values + rows * mj, 0, (size_t)((ROWS - rows) * mj) * sizeof *values);
+        for (ptrdiff_t j = 0; j < mj; j++) {
+            const Lanes *line = (const Lanes *)(s->across + j * SPACE);
+            for (int r = 0; r < ROWS; r++)
+                for (int v = 0; v < SPACE / LANES; v++)
+                    sum[r][v] += values[r * mj + j] * line[v];
+        }
+        for (ptrdiff_t r = 0; r < rows; r++)
+            for (int l = 0; l < SPACE; l++)
+                for (int v = 0; v < SPACE / LANES; v++)
+                    total[l][v] += s->along[(i + r) * SPACE + l] * sum[r][v];
     }
+    float found[SPACE][SPACE];
+    memcpy(found, total, sizeof found);
     for (ptrdiff_t l = 0; l < s->mi; l++)
         for (ptrdiff_t k = 0; k < s->mj; k++)
-            unknowns[2 * (l * s->mj + k) + c] = (double)total[l][k];
+            unknowns[2 * (l * s->mj + k) + c] = (double)found[l][k];
 }
 
 /* result += S unknowns of coordinate c. */

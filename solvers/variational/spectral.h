@@ -24,15 +24,20 @@ typedef float Lanes;
 #define LANES 1
 #endif
 #define VECTORS (PANEL / LANES)
-#define ROWS 8 /* of a product at a time */
+#define ROWS 12   /* of a product at a time: as many sums as registers hold */
+#define DEPTH 192 /* terms of a sum at a time: their panel stays in the first cache */
 #define FOLDED 0.70710678f
 
-/* `rows` (ROWS at the most) rows of c = a b, one panel; b packed (k, PANEL), c with room for whole panels. */
+/* `rows` (ROWS at the most) rows of c = a b, or of c += a b with `add`, one panel; b packed (k, PANEL), c with room for
+   whole panels. */
 MESHONET_INLINE void product_rows(const float *restrict a, ptrdiff_t stride, const float *restrict b, ptrdiff_t k,
-                                  float *restrict c, ptrdiff_t c_stride, const int rows)
+                                  float *restrict c, ptrdiff_t c_stride, const int rows, int add)
 {
     Lanes sum[ROWS][VECTORS];
     memset(sum, 0, sizeof sum);
+    if (add)
+        for (int r = 0; r < rows; r++)
+            memcpy(sum[r], c + r * c_stride, sizeof sum[r]);
     for (ptrdiff_t l = 0; l < k; l++) {
         const Lanes *line = (const Lanes *)(b + l * PANEL);
         for (int r = 0; r < rows; r++)
@@ -43,19 +48,31 @@ MESHONET_INLINE void product_rows(const float *restrict a, ptrdiff_t stride, con
         memcpy(c + r * c_stride, sum[r], sizeof sum[r]);
 }
 
-/* c (m, n) = a (m, k) b (k, n), rows of n rounded up to whole panels; `packed` holds k PANEL floats. */
-MESHONET_INLINE void product(const float *a, ptrdiff_t a_stride, const float *b, ptrdiff_t b_stride, float *c,
+/* One panel of `product`. */
+MESHONET_CLONES
+void spectral_panel(const float *a, ptrdiff_t a_stride, const float *packed, float *c,
+                                   ptrdiff_t c_stride, ptrdiff_t m, ptrdiff_t k, int add)
+{
+    ptrdiff_t i = 0;
+    for (; i + ROWS <= m; i += ROWS)
+        product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride, c_stride, ROWS, add);
+    for (; i + 3 <= m; i += 3)
+        product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride, c_stride, 3, add);
+    for (; i < m; i++)
+        product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride, c_stride, 1, add);
+}
+
+/* c (m, n) = a (m, k) b (k, n), rows of n rounded up to whole panels; `packed` holds DEPTH PANEL floats. */
+static void product(const float *a, ptrdiff_t a_stride, const float *b, ptrdiff_t b_stride, float *c,
                              ptrdiff_t c_stride, ptrdiff_t m, ptrdiff_t k, ptrdiff_t n, float *packed)
 {
-    for (ptrdiff_t j = 0; j < n; j += PANEL) {
-        for (ptrdiff_t l = 0; l < k; l++)
-            memcpy(packed + l * PANEL, b + l * b_stride + j, PANEL * sizeof(float));
-        ptrdiff_t i = 0;
-        for (; i + ROWS <= m; i += ROWS)
-            product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride + j, c_stride, ROWS);
-        for (; i < m; i++)
-            product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride + j, c_stride, 1);
-    }
+    for (ptrdiff_t j = 0; j < n; j += PANEL)
+        for (ptrdiff_t start = 0; start == 0 || start < k; start += DEPTH) {
+            const ptrdiff_t depth = k - start < DEPTH ? k - start : DEPTH;
+            for (ptrdiff_t l = 0; l < depth; l++)
+                memcpy(packed + l * PANEL, b + (start + l) * b_stride + j, PANEL * sizeof(float));
+            spectral_panel(a + start, a_stride, packed, c + j, c_stride, m, depth, start > 0);
+        }
 }
 
 MESHONET_INLINE ptrdiff_t padded(ptrdiff_t n) { return (n + PANEL - 1) / PANEL * PANEL; }
@@ -103,7 +120,7 @@ MESHONET_INLINE void mix(float *restrict a, float *restrict b, ptrdiff_t n)
 }
 
 /* Rows times the modes of both halves, or back. */
-MESHONET_INLINE void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t rows, int back, float *packed)
+static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t rows, int back, float *packed)
 {
     const Half *e = &t->even, *o = &t->odd;
     const ptrdiff_t nodes = values_of(t), modes = modes_of(t);

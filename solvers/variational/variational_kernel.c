@@ -104,7 +104,7 @@ void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
     const ptrdiff_t nodes = values_of(&s->eta), modes = modes_of(&s->eta);
     const size_t free_nodes = (size_t)(s->mi * s->mj), widest = (size_t)(nodes > modes ? nodes : modes);
     *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj) + 4 * free_nodes;
-    *floats = (8 + 4 * PAIRS) * free_nodes + 6 * (size_t)s->mi * widest + PANEL * (size_t)(s->mi + s->mj + PANEL);
+    *floats = (8 + 4 * PAIRS) * free_nodes + 6 * (size_t)s->mi * widest + PANEL * DEPTH + (size_t)(ROWS * s->mj);
 }
 
 void descent_place(Descent *d, double *doubles, float *floats)
@@ -194,7 +194,7 @@ void descent_precondition(Descent *d, const double *restrict gradient, float *re
     if (space->mi == 0)
         return;
     for (int c = 0; c < 2; c++)
-        to_space(space, gradient + c * mi * mj, mi, mj, c, space->unknowns);
+        space_restrict(space, gradient + c * mi * mj, mi, mj, c, packed, space->unknowns);
     solve_band(space->band, 2 * space->mi * space->mj, space->width, space->unknowns);
     for (int c = 0; c < 2; c++)
         from_space(space, space->unknowns, mi, mj, c, result + c * mi * mj);
@@ -202,6 +202,7 @@ void descent_precondition(Descent *d, const double *restrict gradient, float *re
 
 /* The step along xi at each free node, from both directions: (p + q) / 2 with p = √a x_ξ and q = -i x_η / √a by centred
    differences, or the longer of the two where they oppose each other, in folded places. */
+MESHONET_CLONES
 static void set_frame(Descent *d)
 {
     const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj, n = mi * mj;
@@ -313,6 +314,7 @@ double descent_largest(const Descent *d)
 }
 
 /* Planes of z moved by `factor` directions. */
+MESHONET_CLONES
 static void move(const Descent *d, double factor, double *restrict to)
 {
     const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
@@ -340,6 +342,7 @@ static double shorter(double rise, double slope)
 
 /* Add the step, whose slope was `slope`, the gradient's change y and P y, unless the functional bends down along the
    step; then the products of all rows with the new gradient. Those with y are the changes of these. */
+MESHONET_CLONES
 static void remember(Descent *d, double factor, double slope)
 {
     const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
