@@ -6,8 +6,9 @@ describe. So the boundary is thinned to the coarse counts, a solver works there,
     x = TFI + S (x_c - TFI_c) Tᵀ
 
 with S and T the matrices of cubic splines along xi and eta (`solvers.spline`), which may turn at the lines
-that leave kinks of the boundary. Thinned edges are taken between the given nodes at equal steps of their
-index, so that both interpolations agree at the coarse nodes.
+that leave kinks of the boundary and are less curved near acute corners (`solvers.acute`). Thinned edges are
+taken between the given nodes at equal steps of their index, so that both interpolations agree at the coarse
+nodes.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from geometry.corners import Indices, find_corners
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import count_folded, measure
+from solvers import acute
 from solvers._combine import add_rows
 from solvers.solution import Solution
 from solvers.spline import Kinks, bending, between, kinked_matrix, kinks, places
@@ -138,11 +140,19 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     first, weights = places(m, boundary.ni)
     xi, eta = _kinks(boundary, 0, m), _kinks(boundary, 1, n)
     across = np.ascontiguousarray(kinked_matrix(n, boundary.nj, eta).T)
+    planes = np.moveaxis(coarse, -1, 0)
+    difference = planes - np.moveaxis(base, -1, 0)
+    values = difference @ across
+    opened = acute.openings(planes[0] + 1j * planes[1], np)
+    bends = xi.bends @ values
+    if not periodic and opened.any():
+        share = acute.taken_out(opened, m, n)
+        values -= acute.across(difference, share, eta.bends, boundary.nj)
+        bends -= acute.along(xi.bends @ difference, share, eta.bends, boundary.nj)
     for c in (0, 1):
-        values = (coarse[..., c] - base[..., c]) @ across
-        add_rows(nodes[..., c], first, weights, values, xi.bends @ values, periodic)
+        add_rows(nodes[..., c], first, weights, values[c], bends[c], periodic)
         for rows, ramp, jump in zip(xi.rows, xi.ramps, xi.jumps, strict=True):
-            nodes[rows, 1:-1, c] += np.outer(ramp, jump @ values[:, 1:-1])
+            nodes[rows, 1:-1, c] += np.outer(ramp, jump @ values[c, :, 1:-1])
     if periodic:
         nodes[-1] = nodes[0]
     return nodes

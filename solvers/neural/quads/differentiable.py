@@ -12,13 +12,14 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from solvers import acute
 from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, load_quads
 from solvers.neural.weights import model_path
-from solvers.spline import spline_matrix
+from solvers.spline import bending
 
 Sides = tuple[Tensor, Tensor, Tensor, Tensor]
 """South, north (batch, 2, ni), west and east (batch, 2, nj)."""
@@ -62,8 +63,7 @@ class QuadGrids:
         laws = _laws(sides)
         thin_laws = tuple(_between(law, m) for law in laws)
         difference = coarse - interpolated(_rims(coarse), thin_laws)
-        along, across = (_matrix(spline_matrix, m, len(side[0, 0]), side) for side in (sides[0], sides[2]))
-        fine = along @ difference @ across.mT
+        fine = _evaluated(difference, coarse, len(sides[0][0, 0]), len(sides[2][0, 0]))
         return (interpolated(sides, laws) + _without_rim(fine)).movedim(1, -1)
 
     def _coarse(self, sides: Sides) -> Tensor:
@@ -73,6 +73,20 @@ class QuadGrids:
         middle, factor = (value[:, None, None] for value in frame(z, torch))
         moved = self._network(features((z - middle) * factor, torch))[:, self._head] * (SCALE / factor)
         return base + torch.stack([moved.real, moved.imag], 1)
+
+
+def _evaluated(difference: Tensor, coarse: Tensor, ni: int, nj: int) -> Tensor:
+    """Return the splines of `difference` (batch, 2, m, m) at ni x nj places, as `solvers.acute`."""
+    m = coarse.shape[-1]
+    opened = acute.openings(torch.complex(coarse[:, 0], coarse[:, 1]), torch).reshape(-1, 4, 1, 1)
+    kept = 1.0 - (opened * _matrix(acute.fading, m, m, coarse)).amax(1, keepdim=True)
+    bends = torch.as_tensor(bending(m, False), dtype=coarse.dtype, device=coarse.device)
+    (low, high), (line, curve) = (
+        [_matrix(make, m, n, coarse) for make in (_hats, acute.cubic)] for n in (ni, nj)
+    )
+    second = bends @ difference
+    values = difference @ line.mT + (kept * (difference @ bends.mT)) @ curve.mT
+    return low @ values + high @ ((kept * second) @ line.mT + (kept * (second @ bends.mT)) @ curve.mT)
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:

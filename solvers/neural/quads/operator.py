@@ -5,8 +5,9 @@
     edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> features -> network
           -> 33 x 33 grid, its rim that of the edges -> splines -> grid at the edges' own counts
 
-The last step is that of `solvers.coarse`: the difference from transfinite interpolation is smooth, so it is
-evaluated anywhere and added to the interpolation of the full edges, which are met bitwise.
+The last step is that of `solvers.coarse`: the difference from transfinite interpolation is smooth, but near
+acute corners (`solvers.acute`), so it is evaluated anywhere and added to the interpolation of the full edges,
+which are met bitwise.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 
 from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
+from solvers import acute
 from solvers._combine import add_rows
 from solvers.neural.quads._network import look
 from solvers.neural.quads.edges import Edges, rims
@@ -66,7 +68,12 @@ def evaluate(coarse: Floats, edges: Edges) -> Floats:
     difference = coarse - rim.interpolated(thin)
     nodes = edges.interpolated(laws)
     values = difference @ np.ascontiguousarray(spline_matrix(n, nj).T)
+    opened = acute.openings(coarse[:, 0] + 1j * coarse[:, 1], np)
+    sharp = opened.any(axis=(1, 2))
+    share = acute.taken_out(opened[sharp], m, n)[:, None]
     bends = bending(m, False) @ values
+    values[sharp] -= acute.across(difference[sharp], share, bending(n, False), nj)
+    bends[sharp] -= acute.along(bending(m, False) @ difference[sharp], share, bending(n, False), nj)
     first, weights = places(m, ni)
     for plane, value, bend in zip(_flat(nodes), _flat(values), _flat(bends), strict=True):
         add_rows(plane, first, weights, value, bend, False)

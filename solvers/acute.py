@@ -1,0 +1,82 @@
+"""What a spline leaves out near acute corners, so that it does not fold the thin cells there.
+
+Between the walls of an acute corner cells are much thinner than long, and the difference from transfinite
+interpolation turns within a cell or two of the walls. A cubic through it swings by more than the thickness of
+a cell; straight lines between coarse nodes do not. So a share of the second derivatives is taken out: all of
+them at the corner itself, less with the distance from it and the wider it opens. With L the matrices of
+linear interpolation, C those of what second derivatives B add between, and K the share left at each node::
+
+    L D Lᵀ + C (K∘B D) Lᵀ + L (K∘D Bᵀ) Cᵀ + C (K∘B D Bᵀ) Cᵀ
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Floats
+from solvers.spline import between, places
+
+ACUTE, WIDE = np.radians((30.0, 60.0))
+"""Angles of a corner up to which all is taken out, and from which nothing is."""
+
+NEAR, FAR = 4.0, 10.0
+"""Coarse cells from the corner, along xi or eta, up to which all is taken out, and from which nothing is."""
+
+
+def openings(z: Any, xp: Any) -> Any:
+    """Return how much is taken out at the four corners (.., 2, 2), 0 to 1, of grids `z` (.., m, n), complex.
+
+    Parameters
+    ----------
+    xp : numpy or torch.
+    """
+    west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
+    beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)
+    corner = xp.stack([west_east[..., 0], west_east[..., -1]], -1)
+    along = xp.stack([beside[..., 0], beside[..., -1]], -1) - corner
+    up = xp.stack([west_east[..., 1], west_east[..., -2]], -1) - corner
+    angle = xp.abs(xp.angle(along * up.conj()))
+    return xp.clip((WIDE - angle) / (WIDE - ACUTE), 0.0, 1.0)
+
+
+def taken_out(at_corners: Floats, m: int, n: int) -> Floats:
+    """Return the share (.., m, n) of second derivatives to take out at coarse nodes, from `openings`."""
+    flat = at_corners.reshape(*at_corners.shape[:-2], 4, 1, 1)
+    return np.asarray((flat * fading(m, n)).max(axis=-3))
+
+
+def across(difference: Floats, share: Floats, bends: Floats, count: int) -> Floats:
+    """Return (.., m, count), what to take from a spline of `difference` (.., m, n) at `count` places of eta.
+
+    Parameters
+    ----------
+    share : (.., m, n), from `taken_out`.
+    bends : (n, n), takes values along eta to the second derivatives of that spline.
+    """
+    return np.asarray((share * (difference @ bends.T)) @ cubic(difference.shape[-1], count).T)
+
+
+def along(second: Floats, share: Floats, bends: Floats, count: int) -> Floats:
+    """Return what to take from a spline along eta of second derivatives along xi, as `across`."""
+    return between(share * second, count) + across(second, share, bends, count)
+
+
+@lru_cache(maxsize=16)
+def fading(m: int, n: int) -> Floats:
+    """Return how much of what is taken out at each of the corners reaches each node, (4, m, n)."""
+    cells = np.maximum(*np.ogrid[0.0:m, 0.0:n])
+    first = np.clip((FAR - cells) / (FAR - NEAR), 0.0, 1.0)
+    return np.stack([first, first[:, ::-1], first[::-1], first[::-1, ::-1]])
+
+
+@lru_cache(maxsize=16)
+def cubic(n: int, count: int) -> Floats:
+    """Return the matrix (count, n) that takes second derivatives at n knots to what they add between."""
+    first, weights = places(n, count)
+    matrix, rows = np.zeros((count, n)), np.arange(count)
+    matrix[rows, first] = weights[:, 2]
+    matrix[rows, first + 1] = weights[:, 3]
+    return matrix
