@@ -59,6 +59,15 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
 
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
+    nodes = np.empty((len(edges), 2, *edges.counts))
+    for k in range(0, len(edges), CHUNK):  # what is between stays in the caches
+        rows = slice(k, k + CHUNK)
+        _evaluate(coarse[rows], edges[rows], nodes[rows])
+    return nodes
+
+
+def _evaluate(coarse: Floats, edges: Edges, nodes: Floats) -> None:
+    """Do what `evaluate` does into `nodes`."""
     m, n = coarse.shape[2:]
     ni, nj = edges.counts
     laws = edges.laws()
@@ -66,18 +75,19 @@ def evaluate(coarse: Floats, edges: Edges) -> Floats:
     south, north, west, east = laws
     thin = between(south, m), between(north, m), between(west, n), between(east, n)
     difference = coarse - rim.interpolated(thin)
-    nodes = edges.interpolated(laws)
+    edges.interpolate(laws, nodes)
+    along, across = bending(m, False), bending(n, False)
     values = difference @ np.ascontiguousarray(spline_matrix(n, nj).T)
+    bends = along @ values
     opened = acute.openings(coarse[:, 0] + 1j * coarse[:, 1], np)
     sharp = opened.any(axis=(1, 2))
-    share = acute.taken_out(opened[sharp], m, n)[:, None]
-    bends = bending(m, False) @ values
-    values[sharp] -= acute.across(difference[sharp], share, bending(n, False), nj)
-    bends[sharp] -= acute.along(bending(m, False) @ difference[sharp], share, bending(n, False), nj)
+    if sharp.any():
+        share = acute.taken_out(opened[sharp], m, n)[:, None]
+        values[sharp] -= acute.across(difference[sharp], share, across, nj)
+        bends[sharp] -= acute.along(along @ difference[sharp], share, across, nj)
     first, weights = places(m, ni)
     for plane, value, bend in zip(_flat(nodes), _flat(values), _flat(bends), strict=True):
         add_rows(plane, first, weights, value, bend, False)
-    return nodes
 
 
 def in_batches(boundaries: Sequence[Boundary]) -> Iterator[list[int]]:
