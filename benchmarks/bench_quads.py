@@ -296,29 +296,11 @@ network together, at a fraction of the time of any solve, and `--polish 2` to 5 
 ## Gradients
 
 `solvers.neural.quads.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
-every node to the nodes of the boundary; on a GPU with `device="cuda"`. Bending the top of a channel to where
-cells are least skewed:
+every node to the nodes of the boundary; on a GPU with `device="cuda"`.
+[`throat.py`](../examples/shape-optimisation/throat.py) finds the wall of a duct with
+a given throat that leaves the least skewed cells:
 
-```python
-import torch
-from solvers.neural.quads.differentiable import QuadGrids
-
-grids, n = QuadGrids("quad-general"), 65
-t = torch.linspace(0, 1, n, dtype=torch.float64)
-low, left = torch.stack([t, 0 * t], -1)[None], torch.stack([0 * t, t], -1)[None]
-high, right = low + left[:, -1:], left + low[:, -1:]
-arched = torch.stack([0 * t, t * (1 - t)], -1)
-height = torch.tensor(0.4, dtype=torch.float64, requires_grad=True)
-optimiser = torch.optim.Adam([height], lr=0.02)
-for _ in range(40):
-    nodes = grids(low, high + height * arched, left, right)
-    u, v = nodes[:, 1:, :-1] - nodes[:, :-1, :-1], nodes[:, :-1, 1:] - nodes[:, :-1, :-1]
-    skew = ((u * v).sum(-1) ** 2 / ((u * u).sum(-1) * (v * v).sum(-1))).mean()
-    optimiser.zero_grad()
-    skew.backward()
-    optimiser.step()
-print(float(height))  # towards 0: a rectangle
-```
+![the duct, coloured by its largest angles](img/throat.png)
 """
 
 if __name__ == "__main__":

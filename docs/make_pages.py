@@ -124,6 +124,8 @@ def pictures(folder: Path) -> None:
     meshonet("plot", grid, "--zoom=-0.35,1.35,-0.5,0.5", "-o", DOCS / "img" / "naca2412.png")
     meshonet("infer", "naca:2412", "--te", "wedge", "--wall-spacing", "1e-5", "--res", "250x100", "-o", grid)
     meshonet("plot", grid, "--zoom=0.96,1.06,-0.03,0.03", "-o", DOCS / "img" / "c-grid-edge.png")
+    run(sys.executable, str(DOCS.parent / "examples" / "shape-optimisation" / "throat.py"), "-o", str(grid))
+    meshonet("plot", grid, "-o", DOCS / "img" / "throat.png")
     for name in FAMILIES:
         boundary = folder / f"{name}.h5"
         zoom = ["--zoom=-0.6,1.6,-0.8,0.8"] if name == "airfoil" else []

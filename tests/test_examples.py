@@ -1,6 +1,7 @@
 """The worked examples of every ``--help`` do what they say."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from formats.registry import read_grids
 from meshonet_cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[1]
@@ -76,3 +78,16 @@ def test_every_help_shows_its_examples(folder: Path, command: object) -> None:
     assert any(
         example.startswith(f"meshonet {name}") or f" meshonet {name} " in example for example in examples
     )
+
+
+def test_the_wall_that_is_optimised_has_less_skewed_cells_and_its_throat(tmp_path: Path) -> None:
+    output = tmp_path / "throat.vts"
+    script = ROOT / "examples" / "shape-optimisation" / "throat.py"
+    command = [sys.executable, str(script), "--steps", "6", "-o", str(output)]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120, check=True)
+    first, last = (float(word) for word in re.findall(r"0\.\d+", done.stdout))
+    assert last < 0.95 * first
+    top = next(read_grids(str(output))).nodes[:, -1]
+    assert top[60] == pytest.approx((1.5, 0.6))
+    assert top[0, 1] == top[-1, 1] == pytest.approx(1.0)
