@@ -111,8 +111,9 @@ QUICK := COUNT=12 RES=41 EPOCHS=60 EPOCHS_COMPARED=20 EPOCHS_PHYSICS=60 EPOCHS_M
 paper-quick: $(VENV)/.developing
 	$(PAPER) OUT=$(abspath build/paper) PAGES=$(abspath build/paper/pages) $(QUICK)
 
+# FILES: a folder of airfoil .dat files; finished rows are kept in build/bench, and a run goes on from them
 bench: $(VENV)/.developing
-	$(BIN)/python benchmarks/bench_operator.py --page docs/benchmarks.md
+	$(BIN)/python benchmarks/bench_operator.py $(if $(FILES),--files $(FILES)) --keep build/bench --page docs/benchmarks.md
 	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md
 	$(BIN)/python benchmarks/bench_quads.py --page docs/quad-operator.md
 	for name in tfi variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done

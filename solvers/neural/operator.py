@@ -2,8 +2,9 @@
 
 A boundary's two walls are lifted to a periodic strip, where the harmonic extension of the walls nearly solves
 Winslow's equations; the network adds the difference, Picard's iteration polishes, and the separable sum is
-evaluated at the grid's nodes. Boundaries the lift cannot take go to the elliptic solver, and the solution
-says so.
+evaluated at the grid's nodes. Polished until it changes nothing the answer is the same without the network,
+in less time: unless a model is named, the network answers only alone or before a given number of steps.
+Boundaries the lift cannot take go to the elliptic solver, and the solution says so.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from solvers.solution import Solution
 
 Polish = Literal["auto", "off"] | int
 
-AUTO_STEPS = 4  # the most steps that "auto" takes
+AUTO_STEPS = 8  # the most steps that "auto" takes
 SETTLED = 2e-4  # and the change (radians) below which it stops: what is left is a tenth of that, or less
 WILD = 0.5  # a change of phi above this means that Picard's iteration diverges
 SHARPEST = {
@@ -48,8 +49,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     ----------
     boundary : ``o`` goes to the operator; others to the variational method, which measures best for a single
         grid.
-    model : name of a shipped model or path to a ``.safetensors`` file; None takes the shipped one;
-        ``base`` is the harmonic base with no network.
+    model : name of a shipped model or path to a ``.safetensors`` file; ``base`` is the harmonic base with no
+        network, which None takes with ``auto`` polish, and the shipped model otherwise.
     polish : Picard steps after the network: a number, ``off`` for none, ``auto`` until they change nothing.
 
     Returns
@@ -74,7 +75,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
             return found
         note = f"no shipped model makes {boundary.topology} grids: made by the variational method"
         return replace(found, notes=(note, *found.notes))
-    network = None if model == "base" else load_model(model)
+    alone = model == "base" or (model is None and polish == "auto")
+    network = None if alone else load_model(model)
     across()  # like the model, made once a process: neither is part of a grid's time
     begun = time.perf_counter()
     try:

@@ -21,8 +21,9 @@ from functools import lru_cache
 import numpy as np
 
 from geometry.arrays import Complexes, Floats
+from solvers.neural._picard import step
 
-MODES = 63
+MODES = 63  # as in picard_kernel.h, like the next two
 COLUMNS = 128  # samples along theta
 LEVELS = 40  # Chebyshev points across the strip, both walls included
 CLUSTERING = 4.0  # eta(s) = (exp(c s) - 1)/(exp(c) - 1)
@@ -131,36 +132,27 @@ def to_columns(c: Complexes, axis: int = 0) -> Complexes:
 def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
     """Return the modes after `steps` Picard steps, and the largest change of F in each.
 
+    A step that is not finite counts as an infinite change, and is the last.
+
     Parameters
     ----------
     c : (2 MODES + 1, LEVELS) modes at the Chebyshev points; the two walls stay as they are.
     """
-    grid, k = across(), wavenumbers()
     T = float((c[0, -1] - c[0, 0]).real)
-    stiffness = grid.eigenvalues[:, None] - (k * T) ** 2
-    smooth = np.exp(-36.0 * (np.abs(k) / (MODES + 1)) ** 12) / stiffness  # the first against aliasing
-    levels = np.ascontiguousarray(c.T)
+    parts = np.stack([c.real, c.imag])
+    matrices, eigenvalues, smooth = _kernels()
     changes: list[float] = []
-    for _ in range(steps):
-        ce = _product(grid.d1, levels)
-        slopes = np.stack([1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, _product(grid.d2, levels)])
-        Wt, Wtt, We, Wte, Wee = to_columns(slopes, -1)[:, 1:-1]
-        Wt += 1j
-        alpha, gamma = _square(We), _square(Wt)
-        beta = Wt.real * We.real + Wt.imag * We.imag
-        residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
-        r = np.fft.fft(residual, norm="forward")
-        kept = np.concatenate([r[:, : MODES + 1], r[:, -MODES:]], axis=1)
-        update = _product(grid.vectors, _product(grid.inverse, kept) * smooth)
-        levels[1:-1] -= update
-        changes.append(float(np.abs(to_columns(update, -1)).max()))
-    return np.ascontiguousarray(levels.T), changes
+    while len(changes) < steps and (not changes or np.isfinite(changes[-1])):
+        changes.append(step(parts, T, matrices, eigenvalues, smooth))
+    return parts[0] + 1j * parts[1], changes
 
 
-def _product(matrix: Floats, c: Complexes) -> Complexes:
-    """Return matrix @ c for a real matrix and a contiguous c."""
-    return np.asarray((matrix @ c.view(np.float64)).view(np.complex128))
-
-
-def _square(W: Complexes) -> Floats:
-    return np.asarray(W.real**2 + W.imag**2)
+@lru_cache(maxsize=1)
+def _kernels() -> tuple[Floats, Floats, Floats]:
+    """Return what `step` takes: matrices, eigenvalues, and a filter against aliasing."""
+    grid = across()
+    inner = np.zeros((2, LEVELS, LEVELS))
+    inner[:, 1:-1, 1:-1] = grid.inverse, grid.vectors
+    matrices = np.concatenate([[grid.d1, grid.d2], inner]).swapaxes(1, 2).copy()
+    smooth = np.exp(-36.0 * (np.abs(wavenumbers()) / (MODES + 1)) ** 12)
+    return matrices, np.pad(grid.eigenvalues, 1, constant_values=-1.0), smooth

@@ -72,3 +72,8 @@ def test_picard_converges_to_the_sheared_conformal_solution(shear: float, size: 
         )
     assert changes[-1] < 1e-7
     np.testing.assert_array_equal(found[:, [0, -1]], start[:, [0, -1]])
+
+
+def test_a_step_that_is_not_finite_is_an_infinite_change_and_the_last() -> None:
+    c = harmonic(np.full(2 * MODES + 1, 1e200 + 0j), np.full(2 * MODES + 1, 3e200 + 0j), across().eta)
+    assert picard(c, 5)[1] == [np.inf]

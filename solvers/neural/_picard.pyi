@@ -1,0 +1,3 @@
+from geometry.arrays import Floats
+
+def step(c: Floats, height: float, matrices: Floats, eigenvalues: Floats, smooth: Floats) -> float: ...
