@@ -277,7 +277,7 @@ FAMILIES_TOLD = """
 ## The paper's six families, 101x101, test members
 
 Median relative L2 over all nodes to Winslow's converged solution, and how many of the six grids fold
-(Winslow's own wrenches do). Ours is `quad-winslow` for the first four and the airfoil operator for the others,
+(Winslow's own wrenches do). Ours is `quad-winslow` for the first four and the airfoil operator for others,
 which have seen none of these shapes; the plate with a hole has an outer boundary with corners, and `infer`
 solves it by multigrid. The paper's models were trained on 30 members of each family; their results are those
 of [the paper, done again](paper/README.md), measured against the solver's own grid.
