@@ -21,7 +21,7 @@ from meshonet_cli.session import Session
 NODES = 101
 """Nodes along xi and eta when nobody says, as in the paper."""
 
-RANDOM = {"procedural": "procedural", "four-sided": "four_sided"}
+RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bodies"}
 """Modules in `geometry.families` of shapes that have no parameter, by the family's name."""
 
 

@@ -35,6 +35,7 @@ class Run:
     settings : of the model, ``name=value`` each.
     split : way or file that says which grids are trained on; None for what the dataset says.
     held_out : shapes kept out to watch the loss, None for the model's own.
+    initial : quad model, by name or path, whose weights are the first.
     """
 
     output: str
@@ -46,6 +47,7 @@ class Run:
     threads: int = 1
     resume: bool = False
     log_csv: str | None = None
+    initial: str | None = None
 
 
 def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None = None) -> int:
@@ -86,6 +88,8 @@ def _trained(
     recipe = {"command": "meshonet train", "datasets": [Path(s).name for s in sources]}
     rest: dict[str, Any] = {"recipe": recipe, "resume": run.resume}
     output = Path(run.output)
+    if run.initial is not None and name != QUAD:
+        raise InputError(f"--initial is of no use to {name}", "leave it out, or use --model quad")
     if name == STRIP:
         return _train_strip(sources, run, session, fellows, fmt, rest)
     if name == QUAD:
@@ -133,9 +137,12 @@ def _train_quads(
 ) -> dict[str, Any]:
     from solvers.neural.fit.quads import HELD_OUT, PLAN, quads, train_quads
     from solvers.neural.quads.encoding import HEADS
+    from solvers.neural.quads.model import load_quads
+    from solvers.neural.weights import model_path
 
     _refuse_settings(run, "quad")
     plan = _planned(PLAN, run.plan, long=False)
+    initial = None if run.initial is None else load_quads(model_path(run.initial))
     solved = dict(_by_method(source, fmt) for source in sources)
     if sorted(solved) != sorted(HEADS):
         told = f"grids by {' and '.join(sorted(solved))} for the quad operator"
@@ -146,7 +153,8 @@ def _train_quads(
     session.note(f"{len(given)} domains solved by both methods")
     held_out = HELD_OUT if run.held_out is None else run.held_out
     log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
-    figures = train_quads(given, Path(run.output), plan, fellows, held_out=held_out, report=log, **rest)
+    rest |= {"held_out": held_out, "initial": initial, "report": log}
+    figures = train_quads(given, Path(run.output), plan, fellows, **rest)
     for head in HEADS:
         told = (
             f"{figures[head]['relative_l2']['median']:.1e}, without the network {figures[head]['base']:.1e}"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
+from geometry.arrays import Topology
 from geometry.boundary import Boundary
 from geometry.errors import MeshonetError
 from geometry.sampling import Sampling
@@ -36,13 +38,17 @@ class Together:
     Parameters
     ----------
     alone : solves one boundary.
-    many : solves boundaries of four-sided domains in one go.
+    many : solves several boundaries in one go.
+    topology : of those that `many` solves.
     """
 
     def __init__(
-        self, alone: Callable[[Boundary], Solution], many: Callable[[Sequence[Boundary]], list[Solution]]
+        self,
+        alone: Callable[[Boundary], Solution],
+        many: Callable[[Sequence[Boundary]], list[Solution]],
+        topology: Topology = "quad",
     ) -> None:
-        self._alone, self._many = alone, many
+        self._alone, self._many, self._topology = alone, many, topology
         self._made: dict[int, Solution] = {}
 
     def __call__(self, boundary: Boundary) -> Solution:
@@ -53,10 +59,11 @@ class Together:
         """Yield the members of `found`, solved `AHEAD` at a time; one that fails does so in its turn."""
         while group := list(islice(found, AHEAD)):
             sampled = [_sampled(item.what, sampling) for item in group]
-            quads = [one for one in sampled if isinstance(one, Boundary) and one.topology == "quad"]
-            if len(quads) > 1:
-                solutions = self._many(quads)
-                self._made = {id(one): solution for one, solution in zip(quads, solutions, strict=True)}
+            alike = [one for one in sampled if isinstance(one, Boundary) and one.topology == self._topology]
+            if len(alike) > 1:
+                with suppress(MeshonetError):  # one of them fails: that is told in its turn
+                    solutions = self._many(alike)
+                    self._made = {id(one): solution for one, solution in zip(alike, solutions, strict=True)}
             for item, one in zip(group, sampled, strict=True):
                 yield replace(item, what=Sampled(item.what.name, one))
 

@@ -83,7 +83,7 @@ def infer(
     from meshonet_cli.session import Session
     from meshonet_cli.together import Together
     from solvers.neural.inference import infer as operate
-    from solvers.neural.inference import infer_many, makes_many
+    from solvers.neural.inference import infer_many, many_of
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     unused = {
@@ -93,9 +93,11 @@ def infer(
     }
     edges = wall.read_edges((), constant_layers, growth, res, layers)
     steps = o.polish_steps(polish)
+    topology_of_many = many_of(model)
     solver = Together(
         partial(operate, model=model, polish=steps, answer=answer),
         partial(infer_many, model=model, polish=steps),
+        topology_of_many or "quad",
     )
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
@@ -107,7 +109,7 @@ def infer(
         allow_invalid,
         parse_gates(fail_on),
         repair=answer == "valid",
-        together=solver if makes_many(model) else None,
+        together=solver if topology_of_many else None,
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

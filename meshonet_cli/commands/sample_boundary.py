@@ -26,8 +26,8 @@ FamilyName = Annotated[
     typer.Option(
         "--family", metavar="NAME", show_default=False,
         help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of "
-        "the paper), procedural (random airfoils) or four-sided (random quads). 101x101 nodes unless "
-        "--res says otherwise.",
+        "the paper), procedural (random airfoils), four-sided (random quads) or bodies (random bodies in "
+        "far fields). 101x101 nodes unless --res says otherwise.",
     ),
 ]
 Count = Annotated[int, typer.Option("--count", metavar="N", min=1, help="Members of the family.")]

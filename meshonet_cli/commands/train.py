@@ -18,8 +18,8 @@ Dataset = Annotated[
     typer.Argument(
         metavar="DATASET", show_default=False,
         help="Solved grids of one family (solve-pde, .h5); for the strip operator O boundaries, e.g. from "
-        "sample-boundary --family procedural; for the quad operator 33x33 grids of the same domains by "
-        "winslow and by variational, a dataset each.",
+        "sample-boundary --family procedural; for the quad operator 33x33 grids of the same domains (65x33 "
+        "around bodies) by winslow and by variational, a dataset each.",
     ),
 ]
 Model = Annotated[
@@ -91,6 +91,13 @@ HeldOut = Annotated[
         "600, others none]",
     ),
 ]
+Initial = Annotated[
+    str | None,
+    typer.Option(
+        "--initial", metavar="NAME|PATH", show_default=False,
+        help="Quad model whose weights are the first ones. [default: random]",
+    ),
+]
 Patience = Annotated[
     int | None,
     typer.Option(
@@ -146,6 +153,7 @@ def train(
     schedule: Schedule = None,
     points: Points = None,
     held_out: HeldOut = None,
+    initial: Initial = None,
     patience: Patience = None,
     seed: Seed = 0,
     threads: Threads = 1,
@@ -169,5 +177,5 @@ def train(
         "patience": patience, "device": device, "amp": amp, "compiled": compiled,
         "checkpoint_every": checkpoint_every,
     }  # fmt: skip
-    run = Run(output, model, plan, settings or (), split, held_out, threads, resume, log_csv)
+    run = Run(output, model, plan, settings or (), split, held_out, threads, resume, log_csv, initial)
     return learn(dataset, run, Session(quiet=quiet, as_json=as_json, debug=debug), fmt=from_format)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats, as_planar
+from geometry.arrays import Floats, Topology, as_planar
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
@@ -63,9 +63,13 @@ def infer(
     return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)
 
 
-def makes_many(model: str | None) -> bool:
-    """Return whether `infer_many` has a way to make grids of many boundaries in one go."""
-    return model not in (None, "base") and kind_of(model_path(model)) == QUADS
+def many_of(model: str | None) -> Topology | None:
+    """Return the topology of what `infer_many` makes grids of in one go; None if it does not."""
+    if model in (None, "base") or kind_of(model_path(model)) != QUADS:
+        return None
+    from solvers.neural.quads.model import load_quads
+
+    return load_quads(model_path(model)).topology
 
 
 def infer_many(
@@ -80,7 +84,7 @@ def infer_many(
     """
     from solvers.neural.quads.inference import infer_quads
 
-    if model is None or not makes_many(model):
+    if model is None or many_of(model) is None:
         raise InputError(f"model {model} makes one grid at a time", "name a quad model")
     return infer_quads(boundaries, model, polish)
 

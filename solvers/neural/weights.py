@@ -54,7 +54,7 @@ class Model:
         return answer
 
 
-SECOND = {"quad-winslow": "quad-general"}
+SECOND = {"quad-winslow": "quad-general", "hole-winslow": "hole-o"}
 """Models that are another answer of a network, by the name of its file."""
 
 

@@ -251,3 +251,20 @@ def test_the_quad_operator_learns_from_grids_by_both_methods(meshonet: Meshonet)
     assert refused.code == 2
     assert "grids by winslow for the quad operator; give one dataset" in refused.err
     assert not Path("r.safetensors").exists()
+
+
+def test_the_quad_operator_learns_around_bodies_from_a_model_that_is_there(meshonet: Meshonet) -> None:
+    words = ("--family", "bodies", "--count", "10", "--res", "65x33", "--quiet")
+    assert meshonet("sample-boundary", *words, "-o", "b.h5").code == 0
+    for method, source in (("winslow", "b.h5"), ("variational", "winslow.h5")):
+        words = ("solve-pde", source, "--method", method, "--max-cycles", "20", "--allow-invalid", "-q")
+        meshonet(*words, "-o", f"{method}.h5")
+    words = ("--model", "quad", "--epochs", "1", "--held-out", "2", "--batch", "4", "-o", "o.safetensors")
+    done = meshonet("train", "winslow.h5", "variational.h5", *words, "--initial", "quad-general", "--json")
+    assert done.code == 0, done.err
+    assert done.only["shapes"] == 10
+    grids = meshonet("infer", "b.h5", "--model", "o.safetensors", "-o", "g.h5", "--json").objects
+    assert [(grid["topology"], grid["model"]) for grid in grids] == 10 * [("o", "o")]
+    refused = meshonet("train", "b.h5", "--model", "strip", "--initial", "airfoil-o", "-o", "r.safetensors")
+    assert refused.code == 2
+    assert "--initial is of no use to strip; leave it out, or use --model quad" in refused.err

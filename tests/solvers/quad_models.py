@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geometry.arrays import Topology
 from solvers.neural.quads.encoding import HEADS
 from solvers.neural.quads.export import write_model
 from solvers.neural.quads.network import shapes
@@ -13,7 +14,7 @@ from solvers.neural.quads.network import shapes
 WIDTHS, BLOCKS = (1, 2, 2), (0, 1, 1)
 
 
-def random_model(path: Path, size: float = 0.05) -> Path:
+def random_model(path: Path, size: float = 0.05, topology: Topology = "quad") -> Path:
     """Write a model whose answers are smooth and of about this size, and return its path."""
     rng = np.random.default_rng(0)
     weights = {
@@ -21,5 +22,5 @@ def random_model(path: Path, size: float = 0.05) -> Path:
         for name, shape in shapes(WIDTHS, BLOCKS, len(HEADS)).items()
     }
     weights["project"] *= size
-    write_model(path, weights, name="random", recipe={}, figures={})
+    write_model(path, weights, name="random", topology=topology, recipe={}, figures={})
     return path

@@ -1,4 +1,7 @@
-"""Training of the quad operator on Winslow's and variational grids of the same domains."""
+"""Training of the quad operator on Winslow's and variational grids of the same domains.
+
+From O grids the same network learns what goes on around bodies: they are unrolled first.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
-from geometry.arrays import Complexes, Floats
+from geometry.arrays import Complexes, Floats, Topology
 from geometry.errors import InputError
 from solvers.neural.fit.checkpoint import beside
 from solvers.neural.fit.energy import energies
@@ -27,7 +30,10 @@ from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.export import held_out_figures, write_model
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
+from solvers.neural.quads.model import QuadModel
+from solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
 from solvers.neural.samples import Samples
+from solvers.variational import functional as measured
 
 PLAN = Plan(
     epochs=32, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
@@ -55,17 +61,21 @@ class Sizes:
 
 @dataclass(frozen=True)
 class Quads:
-    """m domains of unit size: transfinite `base`, `winslow` and `variational` grids (m, n, n), complex64."""
+    """m domains of unit size: transfinite `base`, `winslow` and `variational` grids (m, n, n), complex64.
+
+    Those `around` bodies are unrolled, (m, 65, n), and their base has even steps from wall to wall.
+    """
 
     base: Tensor
     winslow: Tensor
     variational: Tensor
+    around: bool = False
 
     def __len__(self) -> int:
         return len(self.base)
 
     def __getitem__(self, rows: Any) -> Quads:
-        return Quads(self.base[rows], self.winslow[rows], self.variational[rows])
+        return Quads(self.base[rows], self.winslow[rows], self.variational[rows], self.around)
 
 
 class QuadTask(Task):
@@ -86,11 +96,17 @@ class QuadTask(Task):
     ) -> None:
         super().__init__()
         self.training_set, self.held_out, self.steps = training, held_out, steps
-        self.net = QuadUNet(sizes.widths, sizes.blocks)
+        self.around = training.around
+        self.net = QuadUNet(sizes.widths, sizes.blocks, self.around)
         self.mean = copy.deepcopy(self.net).requires_grad_(requires_grad=False)
         self.count = len(training)
         self.to(device)
         self.device = device
+
+    def begin(self, weights: Mapping[str, Floats]) -> None:
+        """Start from `weights`."""
+        for net in (self.net, self.mean):
+            net.load_state_dict({name: torch.from_numpy(one) for name, one in weights.items()})
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the parts of the loss over the domains `rows`."""
@@ -99,18 +115,26 @@ class QuadTask(Task):
         base, winslow, variational = (
             z.to(self.device) for z in (given.base, given.winslow, given.variational)
         )
-        answer = SCALE * self.net(features(base, torch))
-        found = base[:, None] + answer
+        found = self._found(self.net, base)
         share = step / self.steps
         weight = float(np.clip((share - ENERGY[0]) / (ENERGY[1] - ENERGY[0]), 0.0, 1.0))
         parts = [_missed(found[:, 0], winslow), _missed(found[:, 1], variational)]
         if weight > 0:
             cell = 1.0 / (base.shape[-1] - 1) ** 2
-            excess = energies(found[:, 1], 0.05 * cell * (1.0 - 0.9 * share)) / energies(variational, 0.0) - 1
+            weights = measured.AROUND if self.around else measured.Weights()
+            energy = energies(found[:, 1], 0.05 * cell * (1.0 - 0.9 * share), weights)
+            excess = energy / energies(variational, 0.0, weights) - 1
             parts.append(ENERGY_WEIGHT * weight * torch.log1p(functional.relu(excess)).mean())
         else:
             parts.append(torch.zeros_like(parts[0]))
         return torch.stack(parts)
+
+    def _found(self, net: QuadUNet, base: Tensor) -> Tensor:
+        """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
+        answer = SCALE * net(features(base, torch, self.around))
+        if self.around:
+            answer = torch.cat([answer, answer[:, :, :1]], 2)
+        return base[:, None] + answer
 
     def _average(self, step: int) -> None:
         """Take the weights that the last step left into their running mean."""
@@ -132,10 +156,10 @@ class QuadTask(Task):
         """Return the held-out grids (m, heads, n, n) of the mean weights."""
         with torch.no_grad():
             parts = [
-                SCALE * self.mean(features(base.to(self.device), torch)).cpu()
+                self._found(self.mean, base.to(self.device)).cpu()
                 for base in torch.split(self.held_out.base, 100)
             ]
-        return self.held_out.base[:, None] + torch.cat(parts)
+        return torch.cat(parts)
 
 
 def _missed(found: Tensor, goal: Tensor) -> Tensor:
@@ -158,32 +182,56 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
     Raises
     ------
     InputError
-        grids that are not quads of `LATENT` nodes along xi and eta, or no domain in common.
+        grids that are not quads of `LATENT` nodes along xi and eta, nor O grids of `AROUND` along xi; no
+        domain in common.
     """
+    around = variational.topology == "o"
+    ni = AROUND if around else LATENT
     for samples in (variational, winslow):
-        if (samples.topology, samples.ni, samples.nj) != ("quad", LATENT, LATENT):
+        if (samples.topology, samples.ni, samples.nj) != ("o" if around else "quad", ni, LATENT):
             raise InputError(
                 f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
-                f"give quads of {LATENT} x {LATENT} (--res {LATENT}, or convert --coarsen)",
+                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT} (--res, or convert "
+                "--coarsen)",
             )
-    where = {_rim(nodes): k for k, nodes in enumerate(winslow.nodes)}
-    pairs = [(k, where[rim]) for k, rim in enumerate(map(_rim, variational.nodes)) if rim in where]
+    sides = slice(2 if around else 4)  # the cut of an O grid is no boundary
+    where = {_rim(nodes, sides): k for k, nodes in enumerate(winslow.nodes)}
+    rims = [_rim(nodes, sides) for nodes in variational.nodes]
+    pairs = [(k, where[rim]) for k, rim in enumerate(rims) if rim in where]
     if not pairs:
         raise InputError("no domain is in both datasets", "solve the same boundaries with both methods")
     first, second = (list(rows) for rows in zip(*pairs, strict=True))
     goal, other = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
+    if around:
+        return _unrolled(goal, other)
     base = transfinite(goal)
     middle, factor = frame(base, np)
 
     def unit(z: Complexes) -> Tensor:
-        return torch.from_numpy(((z - middle[:, None, None]) * factor[:, None, None]).astype(np.complex64))
+        return _single((z - middle[:, None, None]) * factor[:, None, None])
 
     return Quads(unit(base), unit(other), unit(goal))
 
 
-def _rim(nodes: Floats) -> bytes:
+def _unrolled(goal: Complexes, other: Complexes) -> Quads:
+    """Return the domains around bodies that both grids go round once in the same sense."""
+    centres = middles(goal[:, :-1, 0])
+    (goal, once), (other, also) = unrolled(goal, centres), unrolled(other, centres)
+    alike = np.abs(goal[:, :, -1] - other[:, :, -1]).max(axis=1) < 1e-6
+    kept = once & also & alike
+    goal, other = goal[kept], other[kept]
+    factor = factors(goal)[:, None, None]
+    base, winslow, variational = (_single(z * factor) for z in (even(goal, goal.shape[2]), other, goal))
+    return Quads(base, winslow, variational, around=True)
+
+
+def _single(z: Complexes) -> Tensor:
+    return torch.from_numpy(z.astype(np.complex64))
+
+
+def _rim(nodes: Floats, sides: slice) -> bytes:
     """Return what tells a domain from others."""
-    return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]))
+    return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])[sides])
 
 
 def transfinite(z: Complexes) -> Complexes:
@@ -201,6 +249,7 @@ def train_quads(
     *,
     held_out: int = HELD_OUT,
     sizes: Sizes | None = None,
+    initial: QuadModel | None = None,
     recipe: Mapping[str, Any],
     resume: bool = False,
     report: Callable[[Progress], None] | None = None,
@@ -210,6 +259,7 @@ def train_quads(
     Parameters
     ----------
     held_out : domains, the last ones, that are never trained on.
+    initial : the model whose weights are the first, and whose sizes count.
 
     Raises
     ------
@@ -219,24 +269,40 @@ def train_quads(
         as `solvers.neural.fit.loop.fit`.
     """
     sizes, kept = sizes or Sizes(), plan.kept(len(given), held_out, "domains")
+    if initial is not None:
+        sizes = Sizes(initial.widths, initial.blocks)
     torch.manual_seed(plan.seed)
     steps = plan.epochs * -(-kept // plan.batch)
     task = QuadTask(given[:kept], given[kept:], sizes, steps, team.device)
+    if initial is not None:
+        task.begin(initial.weights)
     told = ("epochs", "batch", "rate", "warm_up", "weight_decay", "clip", "seed")
     facts = {key: getattr(plan, key) for key in told}
     facts |= {key: list(value) for key, value in asdict(sizes).items()}
     facts |= {"held_out": held_out, "domains": len(given)}
+    facts |= {"initial": initial.name} if initial is not None else {}
     checkpoint = beside(output)
     fit(
         task, plan, team, checkpoint=checkpoint, facts={"model": "quad", **facts}, resume=resume,
         report=report,
     )  # fmt: skip
-    figures = held_out_figures(task.answers().numpy(), *(z.numpy() for z in _goals(task.held_out)))
+    grids = (task.answers(), *_goals(task.held_out))
+    figures = held_out_figures(*(_in_plane(z) if given.around else z.numpy() for z in grids))
     if team.leads:
         state = {key: value.cpu().numpy() for key, value in task.mean.state_dict().items()}
-        write_model(output, state, name=output.stem, recipe={**recipe, **facts}, figures=figures)
+        topology: Topology = "o" if given.around else "quad"
+        write_model(
+            output, state, name=output.stem, topology=topology, recipe={**recipe, **facts}, figures=figures
+        )
         checkpoint.unlink(missing_ok=True)
     return figures
+
+
+def _in_plane(z: Tensor) -> Complexes:
+    """Return unrolled grids (..., m + 1, n) as they are around bodies."""
+    strips = z.numpy().astype(np.complex128)
+    turn = (strips[..., -1:, :1] - strips[..., :1, :1]).real
+    return rolled((strips * (TURN / turn)).reshape(-1, *strips.shape[-2:])).reshape(strips.shape)
 
 
 def _goals(given: Quads) -> tuple[Tensor, Tensor, Tensor]:

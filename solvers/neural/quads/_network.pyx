@@ -3,6 +3,7 @@
 cdef extern from "network_kernel.h":
     ctypedef struct Convolution:
         Py_ssize_t batch
+        Py_ssize_t m
         Py_ssize_t n
         Py_ssize_t inputs
         Py_ssize_t outputs
@@ -10,10 +11,10 @@ cdef extern from "network_kernel.h":
         int stride
     void network_convolve_float(const float *x, const Convolution *c, const float *w, const float *bias, const float *add, float *out) nogil
     void network_convolve_double(const double *x, const Convolution *c, const double *w, const double *bias, const double *add, double *out) nogil
-    void network_activate_float(const float *x, Py_ssize_t batch, Py_ssize_t n, Py_ssize_t channels, float *out) nogil
-    void network_activate_double(const double *x, Py_ssize_t batch, Py_ssize_t n, Py_ssize_t channels, double *out) nogil
-    void network_refine_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t channels, const float *add, float *out) nogil
-    void network_refine_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t channels, const double *add, double *out) nogil
+    void network_activate_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, float *out) nogil
+    void network_activate_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, double *out) nogil
+    void network_refine_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, const float *add, float *out) nogil
+    void network_refine_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, const double *add, double *out) nogil
     void network_look_float(const double *planes, Py_ssize_t batch, Py_ssize_t n, const double *middle, const double *factor, double *scratch, float *out) nogil
     void network_look_double(const double *planes, Py_ssize_t batch, Py_ssize_t n, const double *middle, const double *factor, double *scratch, double *out) nogil
     int LOOK_FEATURES
@@ -26,23 +27,23 @@ ctypedef fused real:
 
 def convolve(const real[:, :, :, ::1] x, const real[:, ::1] w, const real[::1] bias, int size, int stride,
              const real[:, :, :, ::1] add, real[:, :, :, ::1] out):
-    """Fill `out` (batch, m, m, outputs) with the convolution of `x` (batch, n, n, inputs), which holds its own padding.
+    """Fill `out` (batch, p, q, outputs) with the convolution of `x` (batch, m, n, inputs), which holds its own padding.
 
     `w` is (size² inputs, outputs rounded up to 64 bytes), taps along xi slowest; `bias` has as many. `add`, of
     the shape of `out`, is added when it is not None.
     """
     cdef Convolution c
-    cdef Py_ssize_t per = 64 // sizeof(real), m
-    c.batch, c.n, c.inputs, c.outputs = x.shape[0], x.shape[1], x.shape[3], out.shape[3]
+    cdef Py_ssize_t per = 64 // sizeof(real), p, q
+    c.batch, c.m, c.n, c.inputs, c.outputs = x.shape[0], x.shape[1], x.shape[2], x.shape[3], out.shape[3]
     c.size, c.stride = size, stride
-    if size < 1 or stride < 1 or x.shape[2] != c.n or c.n < size or c.outputs < 1 or c.inputs < 1:
-        raise ValueError("images that are not square, or smaller than the kernel")
-    m = (c.n - size) // stride + 1
-    if out.shape[0] != c.batch or out.shape[1] != m or out.shape[2] != m:
+    if size < 1 or stride < 1 or c.m < size or c.n < size or c.outputs < 1 or c.inputs < 1:
+        raise ValueError("images that are smaller than the kernel")
+    p, q = (c.m - size) // stride + 1, (c.n - size) // stride + 1
+    if out.shape[0] != c.batch or out.shape[1] != p or out.shape[2] != q:
         raise ValueError("an output of another size")
     if w.shape[0] != size * size * c.inputs or w.shape[1] != (c.outputs + per - 1) // per * per or bias.shape[0] != w.shape[1]:
         raise ValueError("weights of other channels")
-    if add is not None and not (add.shape[0] == c.batch and add.shape[1] == m and add.shape[2] == m and add.shape[3] == c.outputs):
+    if add is not None and not (add.shape[0] == c.batch and add.shape[1] == p and add.shape[2] == q and add.shape[3] == c.outputs):
         raise ValueError("a summand of another shape")
     if c.batch == 0:
         return
@@ -54,34 +55,41 @@ def convolve(const real[:, :, :, ::1] x, const real[:, ::1] w, const real[::1] b
             network_convolve_double(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &out[0, 0, 0, 0])
 
 
-def activate(const real[:, :, :, ::1] x, real[:, :, :, ::1] out):
-    """Fill `out` (batch, n + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, n, n, channels), zeros around."""
-    cdef Py_ssize_t batch = x.shape[0], n = x.shape[1], channels = x.shape[3]
-    if x.shape[2] != n or out.shape[0] != batch or out.shape[1] != n + 2 or out.shape[2] != n + 2 or out.shape[3] != channels:
+def activate(const real[:, :, :, ::1] x, real[:, :, :, ::1] out, bint around=False):
+    """Fill `out` (batch, m + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, m, n, channels), zeros around.
+
+    With `around` the first and the last of its m + 2 rows are the last and the first of the m.
+    """
+    cdef Py_ssize_t batch = x.shape[0], m = x.shape[1], n = x.shape[2], channels = x.shape[3]
+    if out.shape[0] != batch or out.shape[1] != m + 2 or out.shape[2] != n + 2 or out.shape[3] != channels:
         raise ValueError("arrays of other shapes")
-    if batch * n * channels == 0:
+    if batch * m * n * channels == 0:
         return
     with nogil:
         if real is float:
-            network_activate_float(&x[0, 0, 0, 0], batch, n, channels, &out[0, 0, 0, 0])
+            network_activate_float(&x[0, 0, 0, 0], batch, m, n, channels, around, &out[0, 0, 0, 0])
         else:
-            network_activate_double(&x[0, 0, 0, 0], batch, n, channels, &out[0, 0, 0, 0])
+            network_activate_double(&x[0, 0, 0, 0], batch, m, n, channels, around, &out[0, 0, 0, 0])
 
 
-def refine(const real[:, :, :, ::1] x, const real[:, :, :, ::1] add, real[:, :, :, ::1] out):
-    """Fill `out` (batch, 2 m - 1, ., channels) with `add` + `x` (batch, m, m, channels) linear between its nodes."""
-    cdef Py_ssize_t batch = x.shape[0], m = x.shape[1], channels = x.shape[3], n = 2 * m - 1
-    if x.shape[2] != m or out.shape[0] != batch or out.shape[1] != n or out.shape[2] != n or out.shape[3] != channels:
+def refine(const real[:, :, :, ::1] x, const real[:, :, :, ::1] add, real[:, :, :, ::1] out, bint around=False):
+    """Fill `out` (batch, 2 m - 1, 2 n - 1, channels) with `add` + `x` (batch, m, n, channels) linear between its nodes.
+
+    With `around` it has 2 m rows, the last of them between the last and the first of `x`.
+    """
+    cdef Py_ssize_t batch = x.shape[0], m = x.shape[1], n = x.shape[2], channels = x.shape[3]
+    cdef Py_ssize_t rows = 2 * m if around else 2 * m - 1, columns = 2 * n - 1
+    if out.shape[0] != batch or out.shape[1] != rows or out.shape[2] != columns or out.shape[3] != channels:
         raise ValueError("arrays of other shapes")
-    if add.shape[0] != batch or add.shape[1] != n or add.shape[2] != n or add.shape[3] != channels:
+    if add.shape[0] != batch or add.shape[1] != rows or add.shape[2] != columns or add.shape[3] != channels:
         raise ValueError("a summand of another shape")
-    if batch * m * channels == 0:
+    if batch * m * n * channels == 0:
         return
     with nogil:
         if real is float:
-            network_refine_float(&x[0, 0, 0, 0], batch, m, channels, &add[0, 0, 0, 0], &out[0, 0, 0, 0])
+            network_refine_float(&x[0, 0, 0, 0], batch, m, n, channels, around, &add[0, 0, 0, 0], &out[0, 0, 0, 0])
         else:
-            network_refine_double(&x[0, 0, 0, 0], batch, m, channels, &add[0, 0, 0, 0], &out[0, 0, 0, 0])
+            network_refine_double(&x[0, 0, 0, 0], batch, m, n, channels, around, &add[0, 0, 0, 0], &out[0, 0, 0, 0])
 
 
 def look(const double[:, :, :, ::1] planes, const double[:, ::1] middle, const double[:, ::1] factor,

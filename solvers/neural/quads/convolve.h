@@ -94,15 +94,16 @@ static KERNEL __attribute__((noinline)) void NAME(row)(const T *in, ptrdiff_t pi
 
 static KERNEL void NAME(convolve)(const T *in, const Convolution *c, const T *w, const T *bias, const T *add, T *out)
 {
-    const ptrdiff_t m = (c->n - c->size) / c->stride + 1, line = c->n * c->inputs, co = c->outputs;
+    const ptrdiff_t rows = (c->m - c->size) / c->stride + 1, m = (c->n - c->size) / c->stride + 1;
+    const ptrdiff_t line = c->n * c->inputs, co = c->outputs;
     const ptrdiff_t per = 64 / (ptrdiff_t)sizeof(T), wide = (co + per - 1) / per * per;
     const int all = (int)((co + LANES - 1) / LANES), most = VECTOR == 64 ? 4 : 2, blocks = (all + most - 1) / most;
     for (int block = 0, v = 0; block < blocks; block++) {
         const int vectors = (all - v + blocks - block - 1) / (blocks - block);
         const ptrdiff_t at = (ptrdiff_t)v * LANES, left = co - at;
         const int n = left < vectors * LANES ? (int)left : vectors * LANES;
-        for (ptrdiff_t row = 0; row < c->batch * m; row++) {
-            const T *from = in + (row / m * c->n + row % m * c->stride) * line;
+        for (ptrdiff_t row = 0; row < c->batch * rows; row++) {
+            const T *from = in + (row / rows * c->m + row % rows * c->stride) * line;
             const ptrdiff_t to = row * m * co + at;
             NAME(row)(from, c->inputs * c->stride, line, c->size, c->size * c->inputs, w + at, wide, bias + at,
                       add ? add + to : add, out + to, co, n, vectors, m);

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Topology
 from solvers.neural.quads.encoding import HEADS, KIND, VERSION
 from solvers.neural.weights import write_tensors
 
@@ -64,6 +64,7 @@ def write_model(
     state: Mapping[str, Floats],
     *,
     name: str,
+    topology: Topology = "quad",
     recipe: Mapping[str, Any],
     figures: Mapping[str, Any],
 ) -> None:
@@ -72,7 +73,7 @@ def write_model(
         "kind": KIND,
         "encoding": VERSION,
         "name": name,
-        "topology": "quad",
+        "topology": topology,
         "recipe": dict(recipe),
         "figures": dict(figures),
     }

@@ -14,28 +14,50 @@ FLOOR = 1e-2
 TINY = 1e-6
 
 
-def features(z: Any, xp: Any) -> Any:
+def features(z: Any, xp: Any, around: bool = False) -> Any:
     """Return (batch, n, n, FEATURES) of normalised grids `z` (batch, n, n), complex.
 
     Parameters
     ----------
     z : array of numpy or of torch.
     xp : the module, numpy or torch, that `z` is of.
+    around : `z` are O grids (batch, m + 1, n) unrolled (`unrolled`), whose last column is the first a turn
+        on: differences along xi go round, and places are those less even steps. Returns (batch, m, n, ...).
 
     The order is that of `symmetry.SEEN`.
     """
     n = z.shape[-1]
-    u, v = _slope(z, xp), _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2)
-    a, b = _bend(z, xp), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
+    if around:
+        u, a, z, where = _round(z, xp)
+    else:
+        u, a, where = _slope(z, xp), _bend(z, xp), z
+    v, b = _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
     product, lengths = u.conj() * v, (abs(u), abs(v))
     angle = product / (lengths[0] * lengths[1] + TINY)
     place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype) + 0.0 * z.real
+    along = 0.0 * place if around else place.swapaxes(1, 2)
     channels = (
         u.real, v.real, u.imag, v.imag, a.real, b.real, a.imag, b.imag,
-        xp.log(lengths[0] + FLOOR), xp.log(lengths[1] + FLOOR), z.real, z.imag,
-        angle.real, angle.imag, xp.arcsinh(product.imag), place.swapaxes(1, 2), place,
+        xp.log(lengths[0] + FLOOR), xp.log(lengths[1] + FLOOR), where.real, where.imag,
+        angle.real, angle.imag, xp.arcsinh(product.imag), along, place,
     )  # fmt: skip
     return xp.stack(channels, -1)
+
+
+def _round(z: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    """Return slopes, bends, places, places less even steps (batch, m, n) of strips (batch, m + 1, n).
+
+    Differences are per as many cells as there are across, as a quad's are.
+    """
+    cells, m = z.shape[2] - 1, z.shape[1] - 1
+    turn = z[:, -1:, :1] - z[:, :1, :1]
+    ring = xp.concatenate([z[:, -2:-1] - turn, z], 1)
+    inner = z[:, :-1]
+    slope = 0.5 * cells * (ring[:, 2:] - ring[:, :-2])
+    bend = 2 * cells * (ring[:, 2:] + ring[:, :-2] - 2.0 * inner)
+    steps = xp.arange(m, dtype=z.real.dtype)[:, None] / m
+    where = inner - turn * steps
+    return slope, bend, inner, where - where.mean((1, 2))[:, None, None]
 
 
 def _slope(z: Any, xp: Any) -> Any:

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Topology
 from geometry.boundary import Boundary
 from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
+from solvers.coarse import thinned
 from solvers.neural.operator import Polish
+from solvers.neural.quads import around
 from solvers.neural.quads.edges import Edges
-from solvers.neural.quads.model import ANSWERS, QuadModel, load_quads
+from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, load_quads
 from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from solvers.neural.weights import model_path
 from solvers.solution import Solution
+
+Counts: TypeAlias = tuple[int, int]
+"""Nodes along xi and eta."""
 
 WINSLOW = 0
 """Number of the answer that is Winslow's grid."""
@@ -50,8 +56,10 @@ def infer_quads(
 
     Parameters
     ----------
-    boundaries : of four-sided domains; those with equal node counts go through the network together.
-    model : ``quad-general``, ``quad-winslow``, or the path of a file, whose variational answer is taken.
+    boundaries : of four-sided domains, or around bodies for a model that makes O grids; those with equal
+        node counts go through the network together.
+    model : ``quad-general``, ``quad-winslow``, ``hole-o``, ``hole-winslow``, or the path of a file, whose
+        variational answer is taken.
     polish : steps after the network: of descent for the variational answer, multigrid cycles for Winslow's;
         a number, ``off`` or ``auto``.
     dtype : arithmetic of the network: ``float64``, or ``float32``, with which grids differ by 1e-6 of
@@ -68,14 +76,15 @@ def infer_quads(
     InputError
         no such model, or one that cannot be read; a boundary of another topology.
     """
-    answer = model if model in ANSWERS else ANSWERS[-1]
+    held = load_quads(model_path(model))
     for boundary in boundaries:
-        if boundary.topology != "quad":
-            told = f"model {model} makes quad grids, and this boundary is {boundary.topology}"
+        if boundary.topology != held.topology:
+            told = f"model {model} makes {held.topology} grids, and this boundary is {boundary.topology}"
             raise InputError(told, "use another model", source=boundary.name)
-    held, head = load_quads(model_path(model)), ANSWERS.index(answer)
+    answers = ANSWERS if held.topology == "quad" else ANSWERS_AROUND
+    head = answers.index(model) if model in answers else len(answers) - 1
     held.network(dtype)  # made once a process: no part of a grid's time
-    name = answer if model in ANSWERS else held.name
+    name = model if model in answers else held.name
     steps = AUTO[head] if polish == "auto" else 0 if polish == "off" else polish
     found: dict[int, Solution] = {}
     for group in in_batches(boundaries):
@@ -85,7 +94,7 @@ def infer_quads(
         spent = (time.perf_counter() - begun) / len(group)
         for k, boundary, nodes, cycles in zip(group, members, planes, taken, strict=True):
             facts = {"method": "operator", "model": name, "polish": cycles}
-            grid = Grid(np.moveaxis(nodes, 0, -1), "quad", boundary.parts, boundary.name, facts)
+            grid = Grid(np.moveaxis(nodes, 0, -1), held.topology, boundary.parts, boundary.name, facts)
             found[k] = Solution(grid, "operator", model=name, cycles=cycles, seconds={"grid": spent})
     return [found[k] for k in range(len(boundaries))]
 
@@ -94,17 +103,39 @@ def _polished(
     boundaries: Sequence[Boundary], model: QuadModel, head: int, steps: int, dtype: str
 ) -> tuple[Floats, list[int]]:
     """Return the planes (batch, 2, ni, nj) of boundaries with equal counts, and the steps taken for each."""
-    edges = Edges.of(boundaries)
-    coarse = coarse_grids(edges, model, head, dtype)
+    grids, evaluated = _way(boundaries, model)
+    given = boundaries[0].ni, boundaries[0].nj
+    coarse = grids(head, dtype)
     if not steps:
-        return evaluate(coarse, edges), [0] * len(boundaries)
+        return evaluated(coarse, given), [0] * len(boundaries)
     last = steps if head == WINSLOW else min(steps, LAST)
-    taken = [_descent(one, steps - last) for one in coarse]
-    counts = tuple(_polished_on(n, head) for n in edges.counts)
-    planes = evaluate(coarse, edges.thinned(*counts))
+    taken = [_descent(one, steps - last, model.topology) for one in coarse]
+    ni, nj = (_polished_on(n, head) for n in given)
+    planes = evaluated(coarse, (ni, nj))
     for k, one in enumerate(planes):
-        taken[k] += _cycles(one, last) if head == WINSLOW else _descent(one, last)
-    return (planes if counts == edges.counts else evaluate(planes, edges)), taken
+        taken[k] += (_cycles if head == WINSLOW else _descent)(one, last, model.topology)
+    return (planes if (ni, nj) == given else evaluated(planes, given)), taken
+
+
+def _way(
+    boundaries: Sequence[Boundary], model: QuadModel
+) -> tuple[Callable[[int, str], Floats], Callable[[Floats, Counts], Floats]]:
+    """Return what makes the network's grids, by head and precision, and what evaluates them at counts."""
+    if model.topology == "quad":
+        edges = Edges.of(boundaries)
+        return (
+            lambda head, dtype: coarse_grids(edges, model, head, dtype),
+            lambda planes, counts: evaluate(planes, edges.thinned(*counts)),
+        )
+    return (
+        lambda head, dtype: around.coarse_grids(boundaries, model, head, dtype),
+        lambda planes, counts: around.evaluate(planes, [_with(one, counts) for one in boundaries]),
+    )
+
+
+def _with(boundary: Boundary, counts: Counts) -> Boundary:
+    """Return a boundary with the node counts."""
+    return boundary if counts == (boundary.ni, boundary.nj) else thinned(boundary, *counts)
 
 
 def _polished_on(n: int, head: int) -> int:
@@ -113,25 +144,27 @@ def _polished_on(n: int, head: int) -> int:
     return n if n <= DESCENDED else OTHERWISE
 
 
-def _descent(planes: Floats, steps: int) -> int:
-    """Descend from the planes (2, n, n) in place; return the steps taken."""
+def _descent(planes: Floats, steps: int, topology: Topology) -> int:
+    """Descend from the planes (2, m, n) in place; return the steps taken."""
     if not steps:
         return 0
-    from solvers.variational.functional import Weights
+    from solvers.variational.functional import AROUND, Weights
     from solvers.variational.solve import descend
 
-    return descend(np.moveaxis(planes, 0, -1), Weights(), STILL, steps)[0]
+    weights, nodes = Weights() if topology == "quad" else AROUND, np.moveaxis(planes, 0, -1)
+    return descend(nodes, weights, STILL, steps, periodic=topology == "o")[0]
 
 
-def _cycles(planes: Floats, steps: int) -> int:
-    """Solve Winslow's equations from the planes (2, n, n) by so many cycles, in place; return how many."""
+def _cycles(planes: Floats, steps: int, topology: Topology) -> int:
+    """Solve Winslow's equations from the planes (2, m, n) by so many cycles, in place; return how many."""
     from solvers.elliptic.solve import solve
 
     nodes = np.moveaxis(planes, 0, -1)
-    boundary = Boundary(nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])
     try:
-        solution = solve(boundary, tol=1e-12, max_cycles=steps, initial=Grid(nodes.copy(order="K")))
-    except SolverError:
-        return 0
+        boundary = Boundary(nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1], topology)
+        initial = Grid(nodes.copy(order="K"), topology)
+        solution = solve(boundary, tol=1e-12, max_cycles=steps, initial=initial)
+    except (SolverError, InputError):
+        return 0  # diverged, or nodes that no boundary can have
     nodes[:] = solution.grid.nodes
     return solution.cycles or 0

@@ -8,6 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from geometry.arrays import Topology
 from geometry.errors import InputError
 from solvers.neural.quads.encoding import HEADS, KIND, VERSION
 from solvers.neural.quads.network import Network, Reals, shapes
@@ -16,18 +17,22 @@ from solvers.neural.weights import read_tensors
 ANSWERS = ("quad-winslow", "quad-general")
 """Names of the two as models, in the order of `encoding.HEADS`."""
 
+ANSWERS_AROUND = ("hole-winslow", "hole-o")
+"""The same of a network that makes O grids."""
+
 MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8  # five levels are 33, 17, 9, 5 and 3 nodes
 
 
 @dataclass(frozen=True)
 class QuadModel:
-    """A network for four-sided domains.
+    """A network for four-sided domains, or for what is between a body and its far field.
 
     Parameters
     ----------
     name : of the file.
     widths, blocks : of the network.
     weights : its arrays, as `network.shapes` has them.
+    topology : of its grids, ``quad`` or ``o``.
     header : what the file says of itself: recipe and held-out figures.
     """
 
@@ -35,13 +40,14 @@ class QuadModel:
     widths: tuple[int, ...]
     blocks: tuple[int, ...]
     weights: Mapping[str, Reals]
+    topology: Topology = "quad"
     header: Mapping[str, Any] = field(default_factory=dict)
     _made: dict[str, Network] = field(default_factory=dict, repr=False, compare=False)
 
     def network(self, dtype: str = "float64") -> Network:
         """Return the network in ``float64`` or ``float32`` arithmetic."""
         if dtype not in self._made:
-            self._made[dtype] = Network(self.weights, self.blocks, dtype)
+            self._made[dtype] = Network(self.weights, self.blocks, dtype, around=self.topology == "o")
         return self._made[dtype]
 
 
@@ -66,7 +72,8 @@ def load_quads(path: Path) -> QuadModel:
         raise InputError(told, "use a file made by meshonet train", source=source) from None
     name = header.get("name")
     called = name if isinstance(name, str) and name.isprintable() else path.stem
-    return QuadModel(called, widths, blocks, tensors, header)
+    topology: Topology = "o" if header.get("topology") == "o" else "quad"
+    return QuadModel(called, widths, blocks, tensors, topology, header)
 
 
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:

@@ -67,10 +67,10 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
 
 
 @lru_cache(maxsize=4)
-def rim_factor(n: int) -> Floats:
-    """Return m (n, n): 0 on the rim, d/(d+2) for each axis with d the nodes away from it."""
-    away = np.minimum(np.arange(n), np.arange(n)[::-1]).astype(np.float64)
-    return np.multiply.outer(away / (away + 2.0), away / (away + 2.0))
+def rim_factor(m: int, n: int, around: bool) -> Floats:
+    """Return (m, n): 0 on the rim, d/(d+2) along each axis, d nodes from it; `around`, across only."""
+    along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
+    return np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))
 
 
 class Network:
@@ -81,10 +81,17 @@ class Network:
     weights : of the names and shapes of `shapes`, in any precision.
     blocks : as there.
     dtype : float32 or float64, of the arithmetic.
+    around : of O grids, unrolled: they go round along xi.
     """
 
-    def __init__(self, weights: Mapping[str, Reals], blocks: Sequence[int], dtype: Any = np.float64) -> None:
-        self.dtype, self.blocks = np.dtype(dtype), tuple(blocks)
+    def __init__(
+        self,
+        weights: Mapping[str, Reals],
+        blocks: Sequence[int],
+        dtype: Any = np.float64,
+        around: bool = False,
+    ) -> None:
+        self.dtype, self.blocks, self.around = np.dtype(dtype), tuple(blocks), around
         exact = {name: np.asarray(value, np.float64) for name, value in weights.items()}
         self._layers = {
             "lift": _packed(kernels.lift(exact["lift"], SEEN, np), exact["lift_bias"], self.dtype),
@@ -99,17 +106,17 @@ class Network:
         self.heads = len(exact["project"])
 
     def __call__(self, seen: Reals) -> Complexes:
-        """Return the fields (batch, heads, n, n) for `features` (batch, n, n, FEATURES).
+        """Return the fields (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
 
         It is fastest for `CHUNK` domains at a time.
         """
-        batch, n = seen.shape[:2]
-        answer = self._forward(np.ascontiguousarray(seen, self.dtype)).reshape(batch, n, n, self.heads, 2)
-        parts = np.moveaxis(answer, 3, 1) * rim_factor(n)[..., None]
+        batch, m, n = seen.shape[:3]
+        answer = self._forward(np.ascontiguousarray(seen, self.dtype)).reshape(batch, m, n, self.heads, 2)
+        parts = np.moveaxis(answer, 3, 1) * rim_factor(m, n, self.around)[..., None]
         return np.asarray(parts[..., 0] + 1j * parts[..., 1])
 
     def _forward(self, h: Reals) -> Reals:
-        work = _Work(self._layers, self._rooms.__dict__)
+        work = _Work(self._layers, self._rooms.__dict__, self.around)
         h = work.layer("lift", h)
         skips: list[Reals] = []
         coarsest = len(self.blocks) - 1
@@ -121,7 +128,7 @@ class Network:
         for level in range(coarsest - 1, -1, -1):
             low = work.layer(f"up.{level}", h)
             h = work.room(f"finer.{level}", skips[level].shape)
-            refine(low, skips[level], h)
+            refine(low, skips[level], h, self.around)
             h = work.blocks(f"after.{level}", self.blocks[level], h)
         h = work.layer("last", work.silu(h))
         return work.layer("project", np.ascontiguousarray(work.silu(h)[:, 1:-1, 1:-1]))
@@ -130,8 +137,10 @@ class Network:
 class _Work:
     """Layers by name, into arrays that later chunks use again."""
 
-    def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], room: dict[Any, Reals]) -> None:
-        self._layers, self._room = layers, room
+    def __init__(
+        self, layers: Mapping[str, tuple[Reals, Reals, int]], room: dict[Any, Reals], around: bool
+    ) -> None:
+        self._layers, self._room, self._around = layers, room, around
         self.dtype = layers["lift"][0].dtype
 
     def room(self, name: str, shape: tuple[int, ...]) -> Reals:
@@ -143,15 +152,15 @@ class _Work:
     def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None) -> Reals:
         weight, bias, outputs = self._layers[name]
         size = 1 if len(weight) == x.shape[3] else 3
-        m = (x.shape[1] - size) // stride + 1
-        out = self.room(name, (len(x), m, m, outputs))
+        m, n = ((count - size) // stride + 1 for count in x.shape[1:3])
+        out = self.room(name, (len(x), m, n, outputs))
         convolve(x, weight, bias, size, stride, add, out)
         return out
 
     def silu(self, x: Reals) -> Reals:
-        batch, n, _, channels = x.shape
-        out = self.room("active", (batch, n + 2, n + 2, channels))
-        activate(x, out)
+        batch, m, n, channels = x.shape
+        out = self.room("active", (batch, m + 2, n + 2, channels))
+        activate(x, out, self._around)
         return out
 
     def blocks(self, part: str, count: int, x: Reals) -> Reals:

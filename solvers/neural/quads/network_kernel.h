@@ -3,24 +3,26 @@
 #define MESHONET_NETWORK_KERNEL_H
 #include <stddef.h>
 
-/* A batch of n x n images with `inputs` channels, any padding included, to `outputs` by size x size taps. */
+/* A batch of m x n images with `inputs` channels, any padding included, to `outputs` by size x size taps. */
 typedef struct {
-    ptrdiff_t batch, n, inputs, outputs;
+    ptrdiff_t batch, m, n, inputs, outputs;
     int size, stride;
 } Convolution;
 
-/* in (batch, n, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or as out
-   (batch, m, m, outputs), m = (n - size)/stride + 1. */
+/* in (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or as out
+   (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs). */
 void network_convolve_float(const float *in, const Convolution *c, const float *w, const float *bias, const float *add,
                             float *out);
 void network_convolve_double(const double *in, const Convolution *c, const double *w, const double *bias,
                              const double *add, double *out);
-void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t n, ptrdiff_t channels, float *out);
-void network_activate_double(const double *in, ptrdiff_t batch, ptrdiff_t n, ptrdiff_t channels, double *out);
-void network_refine_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t channels, const float *add,
-                          float *out);
-void network_refine_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t channels, const double *add,
-                           double *out);
+void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
+                            float *out);
+void network_activate_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels,
+                             int around, double *out);
+void network_refine_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
+                          const float *add, float *out);
+void network_refine_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
+                           const double *add, double *out);
 
 #define LOOK_FEATURES 17 /* of features.py, as are the two numbers below */
 #define LOOK_FLOOR 1e-2

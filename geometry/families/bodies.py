@@ -1,0 +1,214 @@
+"""Bodies in far fields that nobody drew, to train and test operators on O grids that are no airfoils'.
+
+Ellipses, polygons, rounded ones, stars, rounded rectangles and bullets, anywhere inside circles, ellipses,
+rectangles, polygons and rounded rectangles 1.6 to 25 times their size, turned by any angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from geometry.boundary import Boundary
+from geometry.simple import find_crossing
+from geometry.stretch import on_corners
+from geometry.topology import straight
+
+FINE = 960
+"""Points of a curve before nodes are placed on it."""
+
+CLEARANCE = 0.12
+"""Least distance between body and far field, in mean radii of the body."""
+
+BEND = np.radians(25.0)
+"""A turn at a point of a curve that makes it a corner."""
+
+
+class Ring(NamedTuple):
+    """A closed curve counter-clockwise around 0, its first point not repeated, and its corners' indices."""
+
+    points: Complexes
+    corners: tuple[int, ...] = ()
+
+
+def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
+    """Return a random O boundary: a simple body around its centroid, its far field at least a gap away."""
+    while True:
+        body, far = _body(rng), _far(rng)
+        placed = _placed_within(body, far, rng)
+        if placed is None:
+            continue
+        far = Ring(far.points - placed, far.corners)
+        if not np.all(np.diff(np.unwrap(np.angle(far.points))) > 0.0):
+            continue  # the far field is seen whole from the body
+        laws = _law(rng), _law(rng) if rng.random() < 0.3 else _even
+        start, twist = rng.random() * 2 * np.pi, rng.normal(0.0, 0.12) if rng.random() < 0.4 else 0.0
+        turn = np.exp(2j * np.pi * rng.random())
+        break
+    first = _facing(body.points, start)
+    south = _nodes(body, first, laws[0], ni) * turn
+    north = _nodes(far, _facing(far.points, float(np.angle(body.points[first])) + twist), laws[1], ni) * turn
+    walls = _pairs(south), _pairs(north)
+    cut = straight(walls[0][0], walls[1][0], nj)
+    return Boundary(walls[0], walls[1], cut, cut, topology="o")
+
+
+def _placed_within(body: Ring, far: Ring, rng: np.random.Generator) -> complex | None:
+    """Return a place for the body inside `far`, or None when it does not fit there."""
+    if find_crossing(_pairs(body.points)) is not None or not _around(body.points, 0.0):
+        return None
+    where = complex(0.75 * rng.random() * far.points[rng.integers(len(far.points))])
+    if rng.random() < 0.2:
+        where = 0.0
+    moved = body.points + where
+    gap = np.abs(moved[::4, None] - far.points[None, ::2]).min()
+    inside = all(_around(far.points, point) for point in moved[:: FINE // 24])
+    return where if inside and gap > CLEARANCE else None
+
+
+def _around(ring: Complexes, point: complex) -> bool:
+    off = ring - point
+    return bool(abs(np.angle(np.roll(off, -1) / off).sum()) > np.pi)
+
+
+def _even(q: Floats) -> Floats:
+    return q
+
+
+def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
+    """Return a rising map of [0, 1] to itself that says where nodes lie: even, or denser here and there."""
+    if rng.random() < 0.5:
+        return _even
+    k = np.arange(1, 4)
+    heights = rng.uniform(0.0, 0.6) * rng.dirichlet(np.ones(3)) / (2 * np.pi * k)
+    phases = rng.uniform(0.0, 2 * np.pi, 3)
+    return lambda q: q + (np.sin(2 * np.pi * np.outer(q, k) + phases) - np.sin(phases)) @ heights
+
+
+def _facing(ring: Complexes, angle: float) -> int:
+    """Return the index of the outermost point of a ring at about `angle` (radians) as seen from 0."""
+    off = np.abs(np.angle(ring * np.exp(-1j * angle)))
+    near = np.flatnonzero(off < off.min() + 2 * np.pi / len(ring))
+    return int(near[np.argmax(np.abs(ring[near]))])
+
+
+def _nodes(ring: Ring, first: int, law: Callable[[Floats], Floats], n: int) -> Complexes:
+    """Return n nodes clockwise from the point `first`, which ends them too, with the corners among them."""
+    m = len(ring.points)
+    points = np.roll(ring.points, -first)[::-1]
+    points = np.concatenate([points[-1:], points])  # clockwise, closed
+    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    corners = np.sort([length[(first - k) % m] for k in ring.corners if k != first])
+    at = on_corners(law(np.linspace(0.0, 1.0, n)) * length[-1], np.asarray(corners))
+    nodes = np.interp(at, length, points.real) + 1j * np.interp(at, length, points.imag)
+    nodes[-1] = nodes[0]
+    return nodes
+
+
+def _body(rng: np.random.Generator) -> Ring:
+    """Return a body whose centroid is 0 and whose mean radius is 1."""
+    kinds = _ellipse, _polygon, _rounded, _star, _superellipse, _bullet
+    ring = kinds[rng.choice(len(kinds), p=(0.22, 0.24, 0.14, 0.16, 0.14, 0.1))](rng)
+    z = ring.points
+    ahead = np.roll(z, -1)
+    cross = (np.conj(z) * ahead).imag
+    z = z - (cross * (z + ahead)).sum() / (3.0 * cross.sum())
+    return Ring(z / np.abs(z).mean(), ring.corners)
+
+
+def _far(rng: np.random.Generator) -> Ring:
+    kinds = _ellipse, _rectangle, _polygon, _superellipse
+    ring = kinds[rng.choice(len(kinds), p=(0.45, 0.35, 0.08, 0.12))](rng)
+    size = np.exp(rng.uniform(np.log(1.6), np.log(25.0)))
+    return Ring(size * ring.points / np.abs(ring.points).mean(), ring.corners)
+
+
+def _stretched(z: Complexes, most: float, rng: np.random.Generator) -> Complexes:
+    """Return a curve lengthened along an axis, up to `most` times, a third of the time not at all."""
+    ratio = np.exp(rng.uniform(0.0, 0.5 * np.log(most))) if rng.random() < 2 / 3 else 1.0
+    return (z.real * ratio + 1j * z.imag / ratio) * np.exp(2j * np.pi * rng.random())
+
+
+def _angles() -> Floats:
+    return 2 * np.pi * np.arange(FINE) / FINE
+
+
+def _ellipse(rng: np.random.Generator) -> Ring:
+    return Ring(_stretched(np.exp(1j * _angles()), 4.0, rng))
+
+
+def _superellipse(rng: np.random.Generator) -> Ring:
+    t, power = _angles(), 2.0 / np.exp(rng.uniform(np.log(2.5), np.log(8.0)))
+    x, y = np.cos(t), np.sin(t)
+    z = np.sign(x) * np.abs(x) ** power + 1j * np.sign(y) * np.abs(y) ** power
+    return Ring(_stretched(_even_steps(z), 3.0, rng))
+
+
+def _star(rng: np.random.Generator) -> Ring:
+    t, k = _angles(), np.arange(2, 8)
+    heights = rng.normal(size=6) / k ** rng.uniform(1.0, 2.0) * rng.uniform(0.1, 0.9)
+    radius = np.exp(np.cos(np.outer(t, k) + rng.uniform(0, 2 * np.pi, 6)) @ heights * 0.7)
+    return Ring(_stretched(_even_steps(radius * np.exp(1j * t)), 1.5, rng))
+
+
+def _bullet(rng: np.random.Generator) -> Ring:
+    """Return an arc of a circle closed by straight pieces: a D, or a bullet with a flat base."""
+    reach = rng.uniform(0.35, 0.6) * np.pi
+    arc = np.exp(1j * np.linspace(-reach, reach, 60))
+    length = rng.uniform(0.0, 1.6) if rng.random() < 0.6 else 0.0
+    tail = [arc[-1] - length, arc[0] - length] if length > 0.05 else []
+    return _through(_stretched(np.append(arc, tail), 1.5, rng))
+
+
+def _rectangle(rng: np.random.Generator) -> Ring:
+    ratio = np.exp(0.5 * rng.uniform(0.0, np.log(4.0))) if rng.random() < 0.6 else 1.0
+    corners = np.array([1 + 1j, -1 + 1j, -1 - 1j, 1 - 1j])
+    return _through(corners.real * ratio + 1j * corners.imag / ratio)
+
+
+def _polygon(rng: np.random.Generator) -> Ring:
+    draw = rng.random()
+    if draw < 0.35:
+        return _rectangle(rng)
+    count = int(rng.integers(3, 9))
+    t = 2 * np.pi * np.arange(count) / count
+    if draw < 0.5:
+        return _through(_stretched(np.exp(1j * t), 2.5, rng))
+    t = t + rng.uniform(-0.3, 0.3, count) * 2 * np.pi / count
+    return _through(_stretched(rng.uniform(0.6, 1.2, count) * np.exp(1j * t), 2.0, rng))
+
+
+def _rounded(rng: np.random.Generator) -> Ring:
+    """Return a polygon whose corners are cut again and again (Chaikin, CGIP 3 (1974) 346)."""
+    ring = _polygon(rng)
+    z, share = ring.points[list(ring.corners)], rng.uniform(0.06, 0.25)
+    for k in range(6):
+        cut = share if k == 0 else 0.25
+        z = np.stack(
+            [(1 - cut) * z + cut * np.roll(z, -1), cut * z + (1 - cut) * np.roll(z, -1)], axis=1
+        ).ravel()
+    return Ring(_even_steps(z))
+
+
+def _through(corners: Complexes) -> Ring:
+    """Return a ring through `corners` (k,), its own corners those that turn by more than `BEND`."""
+    edges = np.roll(corners, -1) - corners
+    share = np.maximum(np.round(FINE * np.abs(edges) / np.abs(edges).sum()).astype(int), 1)
+    z = np.concatenate([a + e * np.arange(n) / n for a, e, n in zip(corners, edges, share, strict=True)])
+    turn = np.abs(np.angle(edges / np.roll(edges, 1)))
+    first = np.concatenate([[0], np.cumsum(share)[:-1]])
+    return Ring(z, tuple(int(k) for k in first[turn > BEND]))
+
+
+def _even_steps(z: Complexes) -> Complexes:
+    closed = np.append(z, z[0])
+    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])
+    at = np.linspace(0.0, length[-1], FINE, endpoint=False)
+    return np.interp(at, length, closed.real) + 1j * np.interp(at, length, closed.imag)
+
+
+def _pairs(z: Complexes) -> Floats:
+    return np.stack([z.real, z.imag], axis=1)

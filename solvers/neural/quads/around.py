@@ -1,0 +1,75 @@
+"""Bodies in far fields to O grids by the quad network, which goes round the unrolled strip.
+
+::
+
+    walls -> 65 nodes of them -> strip -> even steps from wall to wall -> size out -> features -> network
+          -> 65 x 33 grid, its walls those nodes -> splines -> grid at the walls' own counts
+
+Turning, moving and scaling only move the strip, a mirrored body has the mirrored one, and beginning an eighth
+of the way further round shifts it: the network's answer does the same, to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from solvers import coarse
+from solvers.neural.quads.edges import between
+from solvers.neural.quads.encoding import LATENT, SCALE
+from solvers.neural.quads.features import features
+from solvers.neural.quads.model import QuadModel
+from solvers.neural.quads.network import CHUNK
+from solvers.neural.quads.unrolled import AROUND, even, factors, middles, rolled, unrolled
+
+
+def coarse_grids(
+    boundaries: Sequence[Boundary], model: QuadModel, head: int, dtype: str = "float64"
+) -> Floats:
+    """Return the planes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
+
+    Parameters
+    ----------
+    head : index into `encoding.HEADS`.
+    dtype : of the network's arithmetic, ``float64`` or ``float32``; all else is float64.
+
+    Raises
+    ------
+    InputError
+        a wall that does not go round the middle of the body once.
+    """
+    south, north = (
+        np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")
+    )
+    centres = middles(_complex(south)[:, :-1])
+    walls = _complex(np.stack([between(south, AROUND), between(north, AROUND)], axis=3))
+    strips, once = unrolled(walls, centres)
+    if not once.all():
+        name = boundaries[int(np.argmin(once))].name
+        told = "its walls do not go once round the middle of the body"
+        raise InputError(told, "use meshonet solve-pde for this shape", source=name)
+    base, factor = even(strips, LATENT), factors(strips)[:, None, None]
+    network = model.network(dtype)
+    for k in range(0, len(base), CHUNK):
+        chunk, unit = base[k : k + CHUNK], factor[k : k + CHUNK]
+        moved = network(features(chunk * unit, np, around=True))[:, head]
+        chunk[:, :-1] += SCALE * moved / unit
+        chunk[:, -1] = chunk[:, 0]  # a whole turn on
+    grids = rolled(base, centres)
+    grids[:, :, [0, -1]] = walls
+    return np.ascontiguousarray(np.stack([grids.real, grids.imag], axis=1))
+
+
+def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
+    """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
+    pairs = zip(grids, boundaries, strict=True)
+    nodes = [coarse.evaluate(np.moveaxis(one, 0, -1), boundary) for one, boundary in pairs]
+    return np.stack([np.moveaxis(one, -1, 0) for one in nodes])
+
+
+def _complex(planes: Floats) -> Complexes:
+    return np.asarray(planes[:, 0] + 1j * planes[:, 1])

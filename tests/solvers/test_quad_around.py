@@ -1,0 +1,184 @@
+"""The quad network around bodies: layers that go round, strips, symmetries, walls."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from quad_models import random_model
+
+from geometry.arrays import Complexes, Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.families.bodies import boundary
+from geometry.topology import straight
+from solvers.neural.quads._network import activate, refine
+from solvers.neural.quads.features import features
+from solvers.neural.quads.inference import infer_quads
+from solvers.neural.quads.network import Network, shapes
+from solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
+
+WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
+
+
+def strips(m: int = 16, n: int = 9, count: int = 2) -> Complexes:
+    """Return random closed strips (count, m + 1, n)."""
+    rng = np.random.default_rng(0)
+    z = np.linspace(0.0, 3.0, m + 1)[:, None] + 1j * np.linspace(0.0, 1.0, n)
+    noise = rng.normal(size=(2, count, m + 1, n))
+    z = z + 0.02 * (noise[0] + 1j * noise[1])
+    z[:, -1] = z[:, 0] + 3.0
+    return np.asarray(z)
+
+
+def weights() -> dict[str, Any]:
+    rng = np.random.default_rng(0)
+    return {
+        name: rng.normal(size=shape) * (2.0 / np.prod(shape[1:])) ** 0.5
+        for name, shape in shapes(WIDTHS, BLOCKS, 2).items()
+    }
+
+
+def bodies(count: int = 3, ni: int = 129, nj: int = 17) -> list[Boundary]:
+    return [boundary(np.random.default_rng([1, k]), ni, nj) for k in range(count)]
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> str:
+    return str(random_model(tmp_path / "round.safetensors", topology="o"))
+
+
+def nodes(edges: Boundary, model: str, polish: int = 0) -> Floats:
+    return infer_quads([edges], model, polish)[0].grid.nodes
+
+
+def test_activation_goes_round_along_the_first_axis() -> None:
+    x = np.random.default_rng(0).normal(size=(2, 6, 5, 8))
+    plain, found = np.empty((2, 8, 7, 8)), np.empty((2, 8, 7, 8))
+    activate(x, plain)
+    activate(x, found, True)
+    np.testing.assert_array_equal(found[:, 1:-1], plain[:, 1:-1])
+    np.testing.assert_array_equal(found[:, 0], plain[:, -2])
+    np.testing.assert_array_equal(found[:, -1], plain[:, 1])
+
+
+def test_finer_copies_go_round_along_the_first_axis() -> None:
+    rng = np.random.default_rng(0)
+    x, add = rng.normal(size=(2, 6, 5, 8)), rng.normal(size=(2, 12, 9, 8))
+    found, closed = np.empty_like(add), np.empty((2, 13, 9, 8))
+    refine(x, add, found, True)
+    refine(np.concatenate([x, x[:, :1]], 1), np.concatenate([add, add[:, :1]], 1), closed)
+    np.testing.assert_array_equal(found, closed[:, :-1])
+
+
+def test_numpy_equals_torch() -> None:
+    torch = pytest.importorskip("torch")
+    from solvers.neural.models.quad_unet import QuadUNet
+
+    held, z = weights(), strips()
+    net = QuadUNet(WIDTHS, BLOCKS, around=True).double()
+    net.load_state_dict({name: torch.from_numpy(value) for name, value in held.items()})
+    seen = features(z, np, around=True)
+    told = features(torch.from_numpy(z), torch, around=True)
+    np.testing.assert_allclose(told.numpy(), seen, rtol=0, atol=1e-13)
+    with torch.no_grad():
+        expected = net(told).numpy()
+    found = Network(held, BLOCKS, around=True)(seen)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_the_answer_shifts_with_the_strip_and_vanishes_on_the_walls_alone() -> None:
+    z, network = strips(), Network(weights(), BLOCKS, around=True)
+    answer = network(features(z, np, around=True))
+    by = 4  # as many columns as one of the coarsest level stands for
+    moved = np.concatenate([z[:, by:-1], z[:, : by + 1] + 3.0], axis=1)
+    shifted = network(features(moved, np, around=True))
+    np.testing.assert_allclose(shifted, np.roll(answer, -by, axis=2), atol=1e-12 * np.abs(answer).max())
+    assert not answer[..., [0, -1]].any()
+    assert (answer[..., 1:-1] != 0).all()
+
+
+def test_a_strip_is_a_conformal_image_that_rolls_up_again() -> None:
+    angle, radius = -np.linspace(0.3, 0.3 + TURN, 33), np.exp(np.linspace(0.0, 1.5, 9))
+    z = (2.0 + 1j + np.exp(1j * angle[:, None]) * radius)[None]
+    centre = middles(z[:, :-1, 0])
+    np.testing.assert_allclose(centre, 2.0 + 1j, atol=1e-14)
+    strip, once = unrolled(z, centre)
+    assert once.all()
+    np.testing.assert_allclose(strip, even(strip, 9), atol=1e-13)  # circles are straight and even there
+    np.testing.assert_allclose(rolled(strip, centre), z, atol=1e-13)
+
+
+def test_the_walls_are_bitwise_those_given_and_the_cut_is_closed(model: str) -> None:
+    for edges in bodies():
+        for polish in (0, 2):
+            found = nodes(edges, model, polish)
+            np.testing.assert_array_equal(found[:, 0], edges.south)
+            np.testing.assert_array_equal(found[:, -1], edges.north)
+            np.testing.assert_array_equal(found[0], found[-1])
+
+
+def moved(edges: Boundary, move: Any) -> Boundary:
+    south, north = move(edges.south), move(edges.north)
+    cut = straight(south[0], north[0], edges.nj)
+    return replace(edges, south=south, north=north, west=cut, east=cut, chord=0.0)
+
+
+def test_a_body_turned_scaled_and_moved_has_the_same_grid_moved(model: str) -> None:
+    turn = np.array([[np.cos(1.0), np.sin(1.0)], [-np.sin(1.0), np.cos(1.0)]])
+
+    def move(points: Floats) -> Floats:
+        return 3.7 * points @ turn + np.array([5.0, -2.0])
+
+    for edges in bodies():
+        there = nodes(moved(edges, move), model)
+        expected = move(nodes(edges, model))
+        np.testing.assert_allclose(there, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_a_mirrored_body_has_the_mirrored_grid(model: str) -> None:
+    for edges in bodies():
+        there = nodes(moved(edges, lambda points: (points * [1.0, -1.0])[::-1].copy()), model)
+        plain = nodes(edges, model)
+        np.testing.assert_allclose(there, plain[::-1] * [1.0, -1.0], atol=1e-12 * np.abs(plain).max())
+
+
+def test_a_body_begun_a_quarter_further_has_the_same_grid(model: str) -> None:
+    """Three levels of this model: an eighth for the four of a shipped one."""
+    for edges in bodies():
+        by = 32
+
+        def further(points: Floats, by: int = by) -> Floats:
+            return np.concatenate([points[by:-1], points[: by + 1]])
+
+        there, plain = nodes(moved(edges, further), model), nodes(edges, model)
+        np.testing.assert_allclose(there, further(plain), atol=1e-12 * np.abs(plain).max())
+
+
+def test_together_is_as_each_alone(model: str) -> None:
+    many = infer_quads(bodies(5), model, 0)
+    for edges, found in zip(bodies(5), many, strict=True):
+        np.testing.assert_array_equal(found.grid.nodes, nodes(edges, model))
+
+
+def test_a_quad_boundary_is_refused(model: str) -> None:
+    t = np.linspace(0.0, 1.0, 9)
+    low, left = np.stack([t, 0 * t], 1), np.stack([0 * t, t], 1)
+    square = Boundary(low, low + np.array([0.0, 1.0]), left, left + np.array([1.0, 0.0]))
+    with pytest.raises(InputError, match="makes o grids, and this boundary is quad; use another model"):
+        infer_quads([square], model)
+
+
+def test_a_body_whose_middle_is_outside_it_is_refused(model: str) -> None:
+    bend = np.linspace(-2.2, 2.2, 33)
+    outer, inner = (r * np.stack([np.sin(bend), np.cos(bend)], axis=1) for r in (1.0, 0.9))
+    body = np.concatenate([outer, inner[::-1], outer[:1]])
+    far = 9.0 * np.stack([np.sin(t := np.linspace(-2.2, -2.2 + 2 * np.pi, len(body))), np.cos(t)], axis=1)
+    far[-1] = far[0]
+    cut = straight(body[0], far[0], 9)
+    edges = Boundary(body, far, cut, cut, topology="o", name="a clip")
+    with pytest.raises(InputError, match="once round the middle of the body; use meshonet solve-pde"):
+        infer_quads([edges], model)
