@@ -50,6 +50,9 @@ ENERGY = (0.3, 0.6)
 
 ENERGY_WEIGHT = 0.3
 
+STARTS = 8
+"""Columns that strips begin at in turn: those that the coarsest of four levels tells apart."""
+
 
 @dataclass(frozen=True)
 class Sizes:
@@ -112,9 +115,10 @@ class QuadTask(Task):
         """Return the parts of the loss over the domains `rows`."""
         self._average(step)
         given = self.training_set[rows.cpu()]
-        base, winslow, variational = (
-            z.to(self.device) for z in (given.base, given.winslow, given.variational)
-        )
+        grids = [z.to(self.device) for z in (given.base, given.winslow, given.variational)]
+        if self.around:
+            grids = [_further(z, step % STARTS) for z in grids]
+        base, winslow, variational = grids
         found = self._found(self.net, base)
         share = step / self.steps
         weight = float(np.clip((share - ENERGY[0]) / (ENERGY[1] - ENERGY[0]), 0.0, 1.0))
@@ -160,6 +164,12 @@ class QuadTask(Task):
                 for base in torch.split(self.held_out.base, 100)
             ]
         return torch.cat(parts)
+
+
+def _further(z: Tensor, by: int) -> Tensor:
+    """Return strips (m, n + 1, k) that begin `by` columns further round."""
+    turn = z[:, -1:, :1] - z[:, :1, :1]
+    return torch.cat([z[:, by:-1], z[:, : by + 1] + turn], 1)
 
 
 def _missed(found: Tensor, goal: Tensor) -> Tensor:

@@ -19,12 +19,12 @@ from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from solvers import coarse
-from solvers.neural.quads.edges import between
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import features
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
 from solvers.neural.quads.unrolled import AROUND, even, factors, middles, rolled, unrolled
+from solvers.spline import between
 
 
 def coarse_grids(
