@@ -9,9 +9,9 @@
     parameters   (n, p), its attribute names (p,)
     sensors      (n, m, 2), sub-sampled boundary nodes, when asked for
 
-Everything is chunked by sample and resizable along n; samples are appended one by one. `parts` and
-`provenance` are JSON; the first grid's provenance is repeated as attributes of the file, for reading
-by eye. https://docs.h5py.org
+Everything is chunked by sample, or by a few where these are small, and resizable along n; samples are
+appended one by one and written in blocks. `parts` and `provenance` are JSON; the first grid's provenance is
+repeated as attributes of the file, for reading by eye. https://docs.h5py.org
 """
 
 from __future__ import annotations
@@ -41,11 +41,16 @@ if TYPE_CHECKING:
     import h5py
 
 VERSION = 1
+BLOCK = 1 << 22
+"""Bytes of samples that are held back to be written together."""
+TEXTS = ("names", "split", "parts", "provenance")
+CHUNK = 1 << 14
+"""Bytes up to which rows of several samples share a chunk."""
 Kind = Literal["meshonet-boundary", "meshonet-grid"]
 
 
 class Writer:
-    """A dataset being written; samples are in the file as soon as they are appended.
+    """A dataset being written; all samples that were appended are in the file when it is left, however it is.
 
     Parameters
     ----------
@@ -64,6 +69,9 @@ class Writer:
         self._file = self._made.__enter__()
         self._file.attrs.update(format=kind, version=VERSION)
         self._data: dict[str, h5py.Dataset] = {}
+        self._shapes: dict[str, tuple[int, ...]] = {}
+        self._held: dict[str, list[tuple[int, Floats | str]]] = {}
+        self._bytes = 0
         self._count = 0
         self._first: tuple[int, int, str] | None = None
         if parameter_names:
@@ -75,7 +83,10 @@ class Writer:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._made.__exit__(kind, error, trace)
+        try:
+            self._flush()
+        finally:
+            self._made.__exit__(kind, error, trace)
 
     def append(self, sample: Boundary | Grid, *, parameters: Floats | None = None, split: str = "") -> None:
         """Add one sample.
@@ -99,19 +110,26 @@ class Writer:
         arrays: dict[str, Floats] = {side: getattr(edges, side) for side in SIDES}
         if isinstance(sample, Grid):
             arrays["nodes"] = sample.nodes
-            self._provenance(sample.provenance)
+            if self._count == 0:
+                self._facts(sample.provenance)
         if parameters is None and sample.origin.parameters:
             parameters = self._parameters(sample.origin)
         if parameters is not None:
             arrays["parameters"] = parameters
         if isinstance(sample, Boundary) and sample.sensors is not None:
             arrays["sensors"] = sample.sensors
+        self._check(arrays)
+        texts = {"names": sample.name, "split": split or sample.origin.split}
+        texts["parts"] = json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.parts])
+        if isinstance(sample, Grid) and sample.provenance:
+            texts["provenance"] = json.dumps(sample.provenance, default=plain)
         for name, values in arrays.items():
-            self._row(name, values)[self._count] = values
-        self._text("names", sample.name)
-        self._text("split", split or sample.origin.split)
-        self._text("parts", json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.parts]))
+            self._hold(name, values)
+        for name, text in texts.items():
+            self._hold(name, text)
         self._count += 1
+        if self._bytes >= BLOCK:
+            self._flush()
 
     def _parameters(self, origin: Origin) -> Floats:
         """Return the numbers of a sample; the first one's names are those of the dataset."""
@@ -120,48 +138,57 @@ class Writer:
         return np.array([value for _, value in origin.parameters])
 
     def _name_parameters(self, names: Sequence[str]) -> None:
-        shape = (0, len(names))
-        data = self._file.create_dataset("parameters", shape, "f8", maxshape=(None, len(names)), chunks=True)
-        data.attrs["names"] = list(names)
-        self._data["parameters"] = data
+        self._shapes["parameters"] = (len(names),)
+        self._row("parameters").attrs["names"] = list(names)
 
-    def _row(self, name: str, values: Floats) -> h5py.Dataset:
-        if name not in self._data:
-            shape = values.shape
-            self._data[name] = self._file.create_dataset(
-                name, (0, *shape), "f8", maxshape=(None, *shape), chunks=(1, *shape)
-            )
-        data = self._data[name]
-        if values.shape != data.shape[1:]:
-            raise InputError(
-                f"{name} of sample {self._count} has shape {values.shape}", f"the first has {data.shape[1:]}"
-            )
-        data.resize(self._count + 1, axis=0)
-        return data
+    def _check(self, arrays: Mapping[str, Floats]) -> None:
+        for name, values in arrays.items():
+            shape = self._shapes.setdefault(name, values.shape)
+            if values.shape != shape:
+                told = f"{name} of sample {self._count} has shape {values.shape}"
+                raise InputError(told, f"the first has {shape}")
 
-    def _text(self, name: str, text: str) -> None:
-        """Set the entry of this sample; a dataset of nothing but empty texts is never made."""
+    def _hold(self, name: str, value: Floats | str) -> None:
+        """Keep the entry of this sample for the next block; a text of nothing has none."""
+        if isinstance(value, str):
+            if not value and name not in self._data and name not in self._held:
+                return
+            self._bytes += len(value)
+        else:
+            value = np.array(value, dtype=np.float64)
+            self._bytes += value.nbytes
+        self._held.setdefault(name, []).append((self._count, value))
+
+    def _flush(self) -> None:
+        held, self._held, self._bytes = self._held, {}, 0
+        for name, entries in held.items():
+            data = self._row(name)
+            data.resize(entries[-1][0] + 1, axis=0)
+            rows = [row for row, _ in entries]
+            where: Any = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] + 1 == len(rows) else rows
+            data[where] = np.array([value for _, value in entries], dtype=object if name in TEXTS else None)
+
+    def _row(self, name: str) -> h5py.Dataset:
+        """Return the dataset of a name, made when it is first needed."""
         import h5py
 
         if name not in self._data:
-            if not text:
-                return
+            text, shape = name in TEXTS, self._shapes.get(name, ())
+            some = 64 if text else max(1, CHUNK // max(8 * int(np.prod(shape)), 1))
+            kind: Any = h5py.string_dtype() if text else "f8"
+            most = (None, *shape)
             self._data[name] = self._file.create_dataset(
-                name, (0,), h5py.string_dtype(), maxshape=(None,), chunks=(64,)
+                name, (0, *shape), kind, maxshape=most, chunks=(some, *shape)
             )
-        self._data[name].resize(self._count + 1, axis=0)
-        self._data[name][self._count] = text
+        return self._data[name]
 
-    def _provenance(self, facts: Mapping[str, Any]) -> None:
-        if not facts:
-            return
-        self._text("provenance", json.dumps(facts, default=plain))
-        if self._count == 0:
-            for key, value in facts.items():
-                name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
-                self._file.attrs[name] = (
-                    value if isinstance(value, str | int | float) else json.dumps(value, default=plain)
-                )
+    def _facts(self, facts: Mapping[str, Any]) -> None:
+        """Repeat the first sample's provenance as attributes of the file."""
+        for key, value in facts.items():
+            name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
+            self._file.attrs[name] = (
+                value if isinstance(value, str | int | float) else json.dumps(value, default=plain)
+            )
 
 
 def write_boundaries(path: Path, boundaries: Iterable[Boundary]) -> None:

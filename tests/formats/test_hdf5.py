@@ -36,7 +36,8 @@ def test_the_layout_is_the_documented_one(tmp_path: Path) -> None:
             assert file[name].shape == shape
             assert file[name].dtype == np.float64
             assert file[name].maxshape == (None, *shape[1:])
-            assert file[name].chunks == (1, *shape[1:])
+            assert file[name].chunks[1:] == shape[1:]
+            assert file[name].chunks[0] * 8 * np.prod(shape[1:]) <= 2**14, "small ones share a chunk"
         assert np.array_equal(file["nodes"][2], grids[2].nodes)
         assert np.array_equal(file["south"][1], grids[1].nodes[:, 0])
         assert file["names"].asstr()[:].tolist() == ["r0", "r1", "r2"]
@@ -84,6 +85,18 @@ def test_samples_are_in_the_file_as_they_are_appended(tmp_path: Path) -> None:
         for grid in grids():
             writer.append(grid)
     assert counts == [1, 2, 3, 4]
+
+
+def test_blocks_hold_each_sample_once_and_in_order(tmp_path: Path) -> None:
+    big = np.stack(np.meshgrid(np.arange(300.0), np.arange(200.0), indexing="ij"), axis=-1)
+    grids = [Grid(big + k, name=f"g{k}" if k != 2 else "", provenance={"k": k}) for k in range(7)]
+    with written(tmp_path / "g.h5", grids) as file:
+        assert file["nodes"].chunks[0] == 1, "large ones have a chunk each"
+    back = list(read_grids(open_source(str(tmp_path / "g.h5"))))
+    assert [grid.name for grid in back] == [grid.name for grid in grids]
+    for one, other in zip(back, grids, strict=True):
+        np.testing.assert_array_equal(one.nodes, other.nodes)
+        assert one.provenance == other.provenance
 
 
 def test_an_interrupted_dataset_has_what_was_appended(tmp_path: Path) -> None:
