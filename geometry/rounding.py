@@ -14,6 +14,8 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.curves import Curve
+from geometry.sampling import monotone_cubic
+from geometry.size_field import GROWTH, limited_size
 
 _ACROSS = 0.9
 _ALONG = 2.0
@@ -85,16 +87,17 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     around = total[2 * reach :] - total[: -2 * reach]  # two cells to each side of every place
     turn = (around[1:] + around[:-1]) / (4 * reach)
     weight = 1.0 + _TURN * turn * (2.0 * n / np.pi)
-    count = np.concatenate([[0.0], np.cumsum(weight)]) * (cells / (n * (1.0 + _TURN)))
+    size = limited_size(s[1:], (1.0 + _TURN) * end / cells / weight, GROWTH)
+    count = np.concatenate([[0.0], np.cumsum(end / n / size)])
     halves = count[n] - count[n::-1], count[n:] - count[n]
     more = min(max(cells / float(min(halves[0][-1], halves[1][-1])), 1.0), _MORE)
-    found = []
-    for half in halves:
-        made = max(3, round(more * float(half[-1])))
-        distances = np.interp(np.arange(made + 1.0), half * (made / half[-1]), s[n:])
-        distances[0], distances[-1] = 0.0, end
-        found.append(np.asarray(distances))
-    return found[1], found[0]
+    upper, lower = (max(3, round(more * float(half[-1]))) for half in halves)
+    # halves of 12.6 and 15.4 make 13 and 15 cells without a step in size between them
+    places = np.arange(-upper, lower + 1.0)
+    knots, counts = np.array([-upper, 0.0, lower]), np.array([-halves[0][-1], 0.0, halves[1][-1]])
+    distances = np.interp(monotone_cubic(knots, counts, places), count - count[n], s)
+    distances[0], distances[upper], distances[-1] = -end, 0.0, end
+    return distances[upper:], -distances[upper::-1]
 
 
 def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:

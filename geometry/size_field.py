@@ -93,7 +93,7 @@ def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)
-    known = _quartic(_limited_size(s, TURN / bend, GROWTH))
+    known = _quartic(limited_size(s, TURN / bend, GROWTH))
     density = _density(s, known, np.ones_like(s), cells)
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
     distance = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
@@ -170,7 +170,7 @@ def _known(
     near = away < _EDGE * (upper - lower)
     size[near] = np.maximum(size[near], steps[0])
     size[[0, -1]] = size[[0, -1]].min()  # the two surfaces meet here
-    size = _limited_size(s, size, growth)
+    size = limited_size(s, size, growth)
     reach = _RAMP * steps[0]
     late = reach * -np.expm1(-away / reach) if ramp else 0.0
     trailing = steps[0] + growth * (away - late)
@@ -184,7 +184,7 @@ def _quartic(h: Floats) -> Floats:
     return np.asarray(1.0 / (square * square))
 
 
-def _limited_size(s: Floats, size: Floats, growth: float) -> Floats:
+def limited_size(s: Floats, size: Floats, growth: float) -> Floats:
     """Return h(s) = min over s' of size(s') + growth |s - s'|, by one pass each way."""
     size = np.minimum.accumulate(size - growth * s) + growth * s
     return np.asarray(np.minimum.accumulate((size + growth * s)[::-1])[::-1] - growth * s)

@@ -28,7 +28,7 @@ from geometry.parts import Part, c_parts, wake_nodes
 from geometry.sampling import TanhLaw
 from geometry.topology import straight
 
-C_EDGE = 1.4
+C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
 grows by more than 15 % each at 250 nodes."""
 _GROWTH = 1.135

@@ -7,6 +7,7 @@ def march(
     steps: Floats,
     dissipation: float,
     even: float,
+    tolerated: float,
     bend: float,
     implicit: float,
     volume: float,

@@ -4,6 +4,7 @@ cdef extern from "hyperbolic_kernel.h":
     ctypedef struct MarchSettings:
         double dissipation
         double even
+        double tolerated
         double bend
         double implicit
         double volume
@@ -24,8 +25,8 @@ def scratch_size(Py_ssize_t n):
     return hyperbolic_scratch(n)
 
 
-def march(double[:, ::1] x, double[:, ::1] y, const double[::1] steps, double dissipation, double even, double bend, double implicit,
-          double volume, Py_ssize_t sweeps, Py_ssize_t rise, double[::1] scratch, ends=None, widening=None):
+def march(double[:, ::1] x, double[:, ::1] y, const double[::1] steps, double dissipation, double even, double tolerated,
+          double bend, double implicit, double volume, Py_ssize_t sweeps, Py_ssize_t rise, double[::1] scratch, ends=None, widening=None):
     """Fill levels 1 on of `x` and `y` (levels + 1, n) from level 0, n >= 3 nodes with the grid to their left.
 
     `steps` (levels) are the distances between levels; the others are those of ``hyperbolic_kernel.h``. Level 0
@@ -33,7 +34,7 @@ def march(double[:, ::1] x, double[:, ::1] y, const double[::1] steps, double di
     the steps next to it.
     """
     cdef Py_ssize_t n = x.shape[1], levels = x.shape[0] - 1
-    cdef MarchSettings settings = MarchSettings(dissipation, even, bend, implicit, volume, sweeps, rise)
+    cdef MarchSettings settings = MarchSettings(dissipation, even, tolerated, bend, implicit, volume, sweeps, rise)
     cdef MarchEnds directions
     cdef MarchEnds *given = NULL
     cdef const double[::1] wide = steps

@@ -32,6 +32,8 @@ class Front:
 
     inner: float
     """Radius of the circle of the body's area."""
+    slender: float
+    """1 - l/L, with l the perimeter of the circle of the body's area and L its own: 0 for a circle."""
     outer: float
     """Radius of the far field."""
     ends: Floats | None
@@ -43,8 +45,11 @@ class Front:
         self._south = boundary.south
         self._closed = boundary.topology == "o"
         self.ends = self.widening = None
+        self.slender = 0.0
         if self._closed:
             self.inner, self.outer = _radius(boundary.south[:-1]), _radius(boundary.north[:-1])
+            perimeter = float(np.hypot(*np.diff(boundary.south, axis=0).T).sum())
+            self.slender = 1.0 - 2.0 * math.pi * self.inner / perimeter
             return
         sides = boundary.west[-1] - boundary.west[0], boundary.east[-1] - boundary.east[0]
         self.ends = np.array([side / np.hypot(*side) for side in sides])

@@ -9,7 +9,8 @@
    Math. Comput. 51 (1992) 181. d_xi is the central difference; C is a symmetric 2x2 matrix without trace.
    D2 r = (c+ e+ - c- e-), with c = w/|e|, is the second difference along arc length: curvature, which lets uneven
    spacing be. Between that and c = 1, which evens spacing out at the price of angles, `even` says how much of
-   either. To eps comes a smoothing as wide as levels are high, bend s h/w² with h the height so far, without
+   either; more where neighbouring edges differ by more than `tolerated`, and than they do on the wall, as happens
+   where lines that leave a hollow spread. To eps comes a smoothing as wide as levels are high, bend s h/w² with h the height so far, without
    which fine grids focus lines at concave corners: the others fade as cells become narrower. The periodic block-tridiagonal system is solved by elimination without the last node, whose
    equation then closes it. Levels that do not close have ends that move along straight lines d:
    dr = d (d . dr of the neighbour). */
@@ -21,6 +22,11 @@
 /* The part of the levels over which higher first cells beside a wake even out: later, the front would rise along the
    wake, and the lines that leave it lean towards the trailing edge and crowd there. */
 static const double OPENED = 0.5;
+/* The part of the levels over which the smoothing of areas sets in: next to the wall it would only change the heights
+   of the first cells where the spacing along the wall has a kink. */
+static const double CALM = 0.25;
+/* What `even` grows by for each unit that neighbouring edges differ too much. */
+static const double EVENING = 15.0;
 
 typedef struct {
     double a, b, c, d; /* a b / c d */
@@ -47,6 +53,7 @@ typedef struct {
     double *ex, *ey, *length;    /* halo: edges from node i to i + 1, and their lengths */
     double *volume, *smoothed;   /* halo */
     double *before;              /* sum of both edges at the node, on the level below */
+    double *free;                /* relative difference of both edges that is left alone */
     double *p, *s, *rx, *ry;
     double *lower, *upper;       /* eps c- and eps c+ */
     double *bx, *by;             /* eliminated right side */
@@ -55,19 +62,19 @@ typedef struct {
 
 size_t hyperbolic_scratch(ptrdiff_t n)
 {
-    return (size_t)(5 * (n + 2) + 9 * n + 2 * 4 * n);
+    return (size_t)(5 * (n + 2) + 10 * n + 2 * 4 * n);
 }
 
 static March parts(double *scratch, ptrdiff_t n)
 {
     March m;
     double **halo[] = {&m.ex, &m.ey, &m.length, &m.volume, &m.smoothed};
-    double **plain[] = {&m.before, &m.p, &m.s, &m.rx, &m.ry, &m.lower, &m.upper, &m.bx, &m.by};
+    double **plain[] = {&m.before, &m.free, &m.p, &m.s, &m.rx, &m.ry, &m.lower, &m.upper, &m.bx, &m.by};
     m.next = (Matrix *)scratch, m.last = m.next + n;
     scratch += 8 * n;
     for (int k = 0; k < 5; k++, scratch += n + 2)
         *halo[k] = scratch + 1;
-    for (int k = 0; k < 9; k++, scratch += n)
+    for (int k = 0; k < 10; k++, scratch += n)
         *plain[k] = scratch;
     return m;
 }
@@ -77,11 +84,27 @@ MESHONET_INLINE void wrap(double *values, ptrdiff_t n, int closed)
     values[-1] = values[closed ? n - 1 : 0], values[n] = values[closed ? 0 : n - 1];
 }
 
-/* Unit edges, their lengths, and the smoothed areas of the cells between this level and the next, whose step is
-   `widening` to the power of `part` longer. */
+/* `count` smoothing steps of the areas along a level, the last one in part where that is not whole. */
+MESHONET_INLINE void smooth_areas(const March *m, ptrdiff_t n, double count, double volume, int closed)
+{
+    double *from = m->volume, *to = m->smoothed;
+    for (; count > 0.0; count -= 1.0) {
+        const double weight = volume * fmin(count, 1.0), keep = 1.0 - weight, give = 0.5 * weight;
+        wrap(from, n, closed);
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t i = 0; i < n; i++)
+            to[i] = keep * from[i] + give * (from[i - 1] + from[i + 1]);
+        double *swap = from;
+        from = to, to = swap;
+    }
+    if (from != m->volume)
+        memcpy(m->volume, from, (size_t)n * sizeof *from);
+}
+
+/* Unit edges, their lengths, and the areas of the cells between this level and the next, whose step is `widening` to
+   the power of `part` longer. */
 MESHONET_INLINE void measure_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                   double step, const double *widening, double part, int closed,
-                                   const MarchSettings *settings)
+                                   double step, const double *widening, double part, int closed)
 {
     double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length;
     for (ptrdiff_t i = 0; i < n - 1; i++)
@@ -95,24 +118,12 @@ MESHONET_INLINE void measure_level(const March *m, const double *restrict x, con
         ex[i] /= length[i], ey[i] /= length[i];
     }
     wrap(ex, n, closed), wrap(ey, n, closed), wrap(length, n, closed);
-    double *from = m->volume, *to = m->smoothed;
     for (ptrdiff_t i = 0; i < n; i++)
-        from[i] = 0.5 * step * (length[i] + length[i - 1]);
+        m->volume[i] = 0.5 * step * (length[i] + length[i - 1]);
     if (part > 0.0)
         for (ptrdiff_t i = 0; i < n; i++)
             if (widening[i] != 1.0)
-                from[i] *= pow(widening[i], part);
-    const double keep = 1.0 - settings->volume, give = 0.5 * settings->volume;
-    for (ptrdiff_t k = 0; k < settings->sweeps; k++) {
-        wrap(from, n, closed);
-        MESHONET_INDEPENDENT
-        for (ptrdiff_t i = 0; i < n; i++)
-            to[i] = keep * from[i] + give * (from[i - 1] + from[i + 1]);
-        double *swap = from;
-        from = to, to = swap;
-    }
-    if (from != m->volume)
-        memcpy(m->volume, from, (size_t)n * sizeof *from);
+                m->volume[i] *= pow(widening[i], part);
 }
 
 /* Coefficients p, s of (1 + theta) C/2 = [p s / s -p], dissipation and the right side of every node.
@@ -121,9 +132,9 @@ MESHONET_INLINE void measure_level(const March *m, const double *restrict x, con
 MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double growth, double bend,
                               const MarchSettings *settings)
 {
-    const double even = settings->even, arc = 1.0 - even;
     for (ptrdiff_t i = 0; i < n; i++) {
         const double ux = m->ex[i], uy = m->ey[i], both = m->length[i] + m->length[i - 1], w = 0.5 * both;
+        const double apart = fabs(m->length[i] - m->length[i - 1]) / fmin(m->length[i], m->length[i - 1]);
         double tx = ux + m->ex[i - 1], ty = uy + m->ey[i - 1];
         const double over = 1.0 / sqrt(tx * tx + ty * ty);
         tx *= over, ty *= over;
@@ -135,6 +146,9 @@ MESHONET_INLINE void assemble(const March *m, ptrdiff_t n, int first, double gro
         if (concave > 0)
             eps *= fmin(1.0 / (1.0 - concave * concave + 1e-6), 20.0);
         m->before[i] = both;
+        if (first)
+            m->free[i] = fmax(apart, settings->tolerated);
+        const double even = fmin(settings->even + EVENING * fmax(apart - m->free[i], 0.0), 1.0), arc = 1.0 - even;
         const double weight = 0.5 * settings->implicit * aspect; /* half: d_xi is over two cells */
         m->p[i] = -weight * 2.0 * tx * ty;
         m->s[i] = weight * (tx * tx - ty * ty);
@@ -239,7 +253,9 @@ void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
         const double part = ends ? 1.0 - (double)level / (OPENED * (double)levels) : 0.0;
-        measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL, settings);
+        measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL);
+        const double calm = fmin((double)level / (CALM * (double)levels), 1.0);
+        smooth_areas(&m, n, calm * (double)settings->sweeps, settings->volume, ends == NULL);
         height += steps[level];
         assemble(&m, n, level == 0, growth, settings->bend * steps[level] * height, settings);
         if (ends)

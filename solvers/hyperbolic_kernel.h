@@ -5,10 +5,11 @@
 typedef struct {
     double dissipation; /* coefficient of the second difference along a level */
     double even;        /* how far that difference is one of the nodes' index (1), not of arc length (0) */
+    double tolerated;   /* relative difference of neighbouring edges beyond which their spacing is evened out */
     double bend;        /* coefficient of the smoothing by curvature that grows with the height */
     double implicit;    /* 1 + theta: weight of the flux along the new level */
     double volume;      /* weight of one smoothing step of the volumes */
-    ptrdiff_t sweeps;   /* such steps a level */
+    ptrdiff_t sweeps;   /* such steps a level, fewer next to the wall */
     ptrdiff_t rise;     /* levels over which the dissipation grows */
 } MarchSettings;
 

@@ -93,4 +93,4 @@ def test_a_slanted_base_has_more_cells_where_it_turns_more() -> None:
     assert way[-30:].sum() > way[:30].sum() + 50.0
     assert way.max() < 20.0
     size = np.hypot(*np.diff(np.vstack([wall[-40:-1], wall[:40]]), axis=0).T)
-    assert np.abs(np.log(size[1:] / size[:-1])).max() < np.log(1.3)
+    assert np.abs(np.log(size[1:] / size[:-1])).max() < np.log(1.15)

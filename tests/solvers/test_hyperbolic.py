@@ -77,7 +77,7 @@ def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int, even: f
     steps = growing_steps(1e-4, 3.0, 40)
     levels = np.empty((2, 41, n))
     levels[:, 0] = circle(n)[:-1].T
-    knobs = DISSIPATION, even, BEND, 1 + THETA, 0.16, 10, 30
+    knobs = DISSIPATION, even, np.inf, BEND, 1 + THETA, 0.16, 10, 30
     march(levels[0], levels[1], steps, *knobs, np.empty(scratch_size(n)))
     expected = np.multiply.outer(radii_of_levels(n, 0.5, steps), circle(n, 1.0)[:-1])
     np.testing.assert_allclose(np.moveaxis(levels, 0, -1), expected, rtol=0, atol=1e-11)
@@ -247,7 +247,7 @@ def test_the_ends_of_a_c_grid_stay_on_the_outlet_and_its_far_field_is_as_large_a
         polygon_area(np.concatenate([boundary.south[[0]], boundary.south[[-1]], north[::-1]]))
         for north in (boundary.north, nodes[:, -1])
     ]
-    assert areas[1] == pytest.approx(areas[0], rel=0.03)
+    assert areas[1] == pytest.approx(areas[0], rel=0.02)
 
 
 def test_a_symmetric_section_has_a_symmetric_c_grid() -> None:
@@ -262,10 +262,10 @@ def test_c_grids_are_nearly_orthogonal_where_o_grids_of_sharp_edges_are_not() ->
     assert deviation(hyperbolic(ring, wall_spacing=1e-5).grid.nodes).max() > 60.0
 
 
-@pytest.mark.parametrize("name", ["0012", "2412", "0012-sharp", "4415"])
+@pytest.mark.parametrize("name", ["0012", "2412", "0012-sharp", "4415", "8412"])
 def test_cells_of_a_c_grid_grow_slowly_along_every_row_and_line(name: str) -> None:
     nodes = hyperbolic(c_boundary(name, 250, 100, te="wedge"), wall_spacing=1e-5).grid.nodes
-    for axis, most in ((0, 1.152), (1, 1.145)):
+    for axis, most in ((0, 1.146), (1, 1.145)):
         step = np.diff(nodes, axis=axis)
         ratio = np.diff(np.log(np.hypot(step[..., 0], step[..., 1])), axis=axis)
         assert np.exp(np.abs(ratio).max()) < most
@@ -341,3 +341,16 @@ def test_folded_cells_of_a_march_are_repaired_by_the_guard(topology: Topology) -
     assert path == ("repair",)
     assert count_folded(grid.nodes) == 0
     np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
+
+
+@pytest.mark.parametrize(("ni", "nj", "height"), [(250, 100, 1e-5), (800, 200, 1e-5), (250, 120, 1e-6)])
+@pytest.mark.parametrize("topology", ["o", "c"])
+def test_airfoils_are_marched_once(
+    topology: Topology, ni: int, nj: int, height: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The distance to march is known so well that no second march has to correct it."""
+    marches = []
+    monkeypatch.setattr(module, "march", lambda *args: (marches.append(1), march(*args)))
+    wall = naca("2412").boundary(Sampling(ni, nj, topology, "curvature", te="wedge"))
+    hyperbolic(wall, wall_spacing=height)
+    assert len(marches) == 1
