@@ -11,7 +11,10 @@
 #include <math.h>
 #include <string.h>
 
-#define APART 5  /* nodes so far from each other share no term of the functional */
+/* A node shares terms of the functional with the 13 that are two steps or fewer away. Such diamonds tile the plane, one
+   of each colour in any, so nodes of one colour share none (Golomb, Welch, SIAM J. Appl. Math. 18 (1970) 302-317). */
+#define COLOURS 13
+#define COLOUR(i, j) ((2 * (i) + 3 * (j)) % COLOURS)
 #define STEP 1e-6 /* of the cells, for differences */
 
 /* L of H = L Lᵀ, in place, rows of `width` + 1 up to the diagonal; return 0 when H is not positive. */

@@ -119,6 +119,6 @@ def aspect_of(nodes: Floats, periodic: bool = False) -> float:
         u, v = np.diff(nodes, axis=0)[:, :-1], np.diff(nodes, axis=1)[:-1]
         area = np.abs(_cross(u, v))
         return float(np.sqrt(((v**2).sum(axis=-1) / area).mean() / ((u**2).sum(axis=-1) / area).mean()))
-    along = np.concatenate([np.diff(nodes[:, j], axis=0) for j in (0, -1)])
-    across = np.concatenate([np.diff(nodes[i], axis=0) for i in (0, -1)])
-    return float(np.sqrt((across**2).sum(axis=-1).mean() / (along**2).sum(axis=-1).mean()))
+    walls, sides = nodes[:, :: nodes.shape[1] - 1], nodes[:: nodes.shape[0] - 1]
+    along, across = walls[1:] - walls[:-1], sides[:, 1:] - sides[:, :-1]
+    return float(np.sqrt((across**2).mean() / (along**2).mean()))

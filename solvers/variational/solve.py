@@ -21,10 +21,10 @@ from solvers.coarse import evaluate, sweep_kinks, thinned
 from solvers.repair import repair
 from solvers.solution import Solution
 from solvers.spline import spline_matrix
-from solvers.tfi import tfi
 from solvers.variational._variational import Minimiser, Stiffness, energy, workspace
 from solvers.variational.functional import AROUND, Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
+from solvers.variational.start import winslow_start
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
@@ -32,7 +32,7 @@ COARSEST = 17
 COARSEST_AROUND = 65
 """The same around a body."""
 
-NEXT = 201
+NEXT = 129
 """Nodes along a direction of the finest copy at the most.
 
 One nearly as fine as the grid itself would cost more than it saves, and sweeps around kinks reach less far.
@@ -41,17 +41,27 @@ One nearly as fine as the grid itself would cost more than it saves, and sweeps 
 STILL = 1e-4
 """Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
 
+FEW = 4
+"""Iterations on a finest level of more nodes unless a tolerance is given, or a wake is to be met.
+
+They mend what the evaluation of the copy's minimum has bent. From there on the value falls, for tens of
+iterations around notches, but the angles hardly change.
+"""
+
+ROUGH = 3.0
+"""How much further nodes of levels between may move when a descent stops: the next level is farther away."""
+
 MOST = 1000
 """Iterations on a coarser level at the most."""
-
-SMALL = 33
-"""Nodes along a direction up to which a descent does without the coarsest level's Hessian: it is as quick."""
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
 
 WEAKER = 3
 """How often the edge length term may be made weaker, to a fourth each time."""
+
+EASY = 1.7
+"""Value of the functional, 1 on squares, up to which a minimum is the only one."""
 
 REACH = 0.25
 """Cells that a node moves at the most in a first iteration."""
@@ -93,7 +103,9 @@ def solve(
     weights = weights or (Weights() if boundary.topology == "quad" else AROUND)
     still = tol if tol is not None else STILL
     if initial is None:
-        nodes, weights, iterations, valid = _nested(boundary, weights, still, max_cycles)
+        full = tol is not None or boundary.topology == "c"
+        limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
+        nodes, weights, iterations, valid = _nested(boundary, weights, still, limits)
     else:
         nodes = _inside(boundary, initial)
         iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
@@ -105,32 +117,35 @@ def solve(
 
 
 def _nested(
-    boundary: Boundary, weights: Weights, still: float, most: int
+    boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int]
 ) -> tuple[Floats, Weights, int, bool]:
-    """Return nodes, the weights that made them, iterations on the finest level, whether it is valid."""
+    """Return nodes, the weights that made them, iterations on the finest level, whether it is valid.
+
+    The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes.
+    """
     periodic = boundary.topology == "o"
     coarsest = (COARSEST if boundary.topology == "quad" else COARSEST_AROUND), COARSEST
     levels = [thinned(boundary, boundary.ni, boundary.nj) if boundary.topology == "c" else boundary]
     while any(n > least for n, least in zip((levels[-1].ni, levels[-1].nj), coarsest, strict=True)):
         now = levels[-1].ni, levels[-1].nj
-        counts = (n // 2 + 1 if n > least else n for n, least in zip(now, coarsest, strict=True))
-        levels.append(thinned(levels[-1], *counts))
+        halves = (n // 2 + 1 if n > least else n for n, least in zip(now, coarsest, strict=True))
+        levels.append(thinned(levels[-1], *halves))
     levels = levels[:1] + [level for level in levels[1:] if max(level.ni, level.nj) <= NEXT]
     last = len(levels) - 1
-    nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most if last == 0 else MOST)
+    nodes, weights, iterations, valid = _coarsest(
+        levels[-1], weights, still, limits[0] if last == 0 else MOST
+    )
     stiffness = _stiffness(nodes, weights) if valid and last > 0 and not periodic else None
+    counts = nodes.shape[0], nodes.shape[1]
     for k in range(last - 1, -1, -1):
         nodes = _evaluated(nodes, levels[k])
-        started = nodes.copy(order="K") if max(nodes.shape) > NEXT else None
-        limit = most if k == 0 else MOST
-        iterations, valid = descend(nodes, weights, still, limit, periodic=periodic, stiffness=stiffness)
-        if (
-            started is not None
-            and _angles(started, boundary.topology)[0] < _angles(nodes, boundary.topology)[0]
-        ):
-            nodes = (
-                started  # kinks of the boundary reach further inside a grid that is not yet at its minimum
-            )
+        below, large = counts, max(nodes.shape) > NEXT
+        counts = nodes.shape[0], nodes.shape[1]
+        limit = limits[large] if k == 0 else MOST
+        moves = still if k == 0 else ROUGH * still
+        iterations, valid = descend(nodes, weights, moves, limit, periodic=periodic, stiffness=stiffness)
+        if large and valid:
+            sweep_kinks(nodes, levels[k], below, only_better=True)
     return nodes, weights, iterations, valid
 
 
@@ -153,13 +168,10 @@ def _coarsest(
     On strongly curved domains the edge length term alone can make angles worse than Winslow's: it is then
     made weaker until they are not.
     """
-    from solvers.elliptic.solve import solve as winslow
-
-    start = winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
+    start = winslow_start(boundary)
     limits = [value + 1e-9 for value in _angles(start, boundary.topology)]
-    nodes = start.copy(order="K")
     periodic = boundary.topology == "o"
-    iterations, valid = descend(nodes, weights, still, most, periodic=periodic)
+    nodes, iterations, valid = _descended(start, weights, still, most, periodic)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
         if not valid or all(
@@ -171,6 +183,33 @@ def _coarsest(
         more, valid = descend(nodes, weights, still, most, periodic=periodic)
         iterations += more
     return best
+
+
+def _descended(
+    start: Floats, weights: Weights, still: float, most: int, periodic: bool
+) -> tuple[Floats, int, bool]:
+    """Return the minimum reached from `start` on the coarsest level, iterations, whether it is valid.
+
+    A folded start is unfolded as a whole, which is quick. Strongly bent domains have several minima, and
+    local repair leads to better ones there: of both the lower counts.
+    """
+    nodes = start.copy(order="K")
+    if periodic or count_folded(start) == 0:
+        return nodes, *descend(nodes, weights, still, most, periodic=periodic)
+    terms = aspect_of(start), weights.shape, weights.smoothness
+    ni, nj = start.shape[:2]
+    z, descent = np.moveaxis(nodes, -1, 0), minimiser(ni, nj, False, terms[0], weights)
+    value, low, iterations = np.inf, 0.0, 0
+    if _unfold(z, descent, terms):
+        value, low, iterations = descent.run(z, *terms, 0.0, None, _moves(still, start), REACH, most)
+    if value <= EASY:
+        return nodes, iterations, low > 0
+    repaired = start.copy(order="K")
+    more, valid = descend(repaired, weights, still, most)
+    z, room = np.moveaxis(repaired, -1, 0), np.empty(workspace(ni, nj))
+    if valid and energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
+        return repaired, more, True
+    return nodes, iterations, low > 0
 
 
 def _angles(nodes: Floats, topology: Topology) -> tuple[float, float]:
@@ -212,13 +251,18 @@ def descend(
     aspect = aspect_of(nodes, periodic)
     relief = relief_of(nodes[:, 0]) if periodic else None
     descent = minimiser(ni, nj, periodic, aspect, weights)
-    if stiffness is not None and max(ni, nj) > SMALL:
+    if stiffness is not None:
         hessian, (m, n) = stiffness
         descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
     terms = aspect, weights.shape, weights.smoothness
     if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
         return 0, False
-    return descent.run(z, *terms, 0.0, relief, still * np.sqrt((ni - 1) * (nj - 1)), REACH, most)[2], True
+    return descent.run(z, *terms, 0.0, relief, _moves(still, nodes), REACH, most)[2], True
+
+
+def _moves(still: float, nodes: Floats) -> float:
+    """Return `still` in cells of planar `nodes` (ni, nj, 2)."""
+    return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
 def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:

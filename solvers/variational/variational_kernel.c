@@ -65,6 +65,24 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
     return isfinite(energy) ? energy : INFINITY;
 }
 
+/* The column of H for coordinate c of unknown (i, j), from its row down: what the move has changed of the gradient at
+   the nodes that share terms with it. */
+MESHONET_INLINE void set_column(const Space *space, ptrdiff_t i, ptrdiff_t j, int c, const double *g,
+                                const double *moved, double step)
+{
+    const ptrdiff_t mj = space->mj, width = space->width, nj = mj + 2, nodes = (space->mi + 2) * nj;
+    const ptrdiff_t column = 2 * (i * mj + j) + c;
+    for (ptrdiff_t p = i; p < space->mi && p <= i + 2; p++) {
+        const ptrdiff_t reach = 2 - (p - i);
+        for (ptrdiff_t q = j > reach ? j - reach : 0; q < mj && q <= j + reach; q++)
+            for (int r = 0; r < 2; r++) {
+                const ptrdiff_t row = 2 * (p * mj + q) + r, at = r * nodes + (p + 1) * nj + q + 1;
+                if (row >= column && row - column <= width)
+                    space->band[row * (width + 1) + width + column - row] = (moved[at] - g[at]) / step;
+            }
+    }
+}
+
 MESHONET_CLONES
 int space_factor(const Space *space, double *z, const Weights *weights, double *room)
 {
@@ -74,26 +92,20 @@ int space_factor(const Space *space, double *z, const Weights *weights, double *
     const double step = STEP * hypot((far[0] - z[0]) / (double)(mi + 1), (far[nodes] - z[nodes]) / (double)(mj + 1));
     memset(space->band, 0, (size_t)(2 * mi * mj * (width + 1)) * sizeof(double));
     variational_energy(z, z + nodes, mi + 2, nj, weights, g, g + nodes, &low, work);
-    for (int colour = 0; colour < 2 * APART * APART; colour++) {
-        const int c = colour % 2, first_i = colour / 2 / APART, first_j = colour / 2 % APART;
+    for (int colour = 0; colour < 2 * COLOURS; colour++) {
+        const int c = colour % 2;
         for (int back = 0; back < 2; back++) {
-            for (ptrdiff_t i = first_i; i < mi; i += APART)
-                for (ptrdiff_t j = first_j; j < mj; j += APART)
-                    z[c * nodes + (i + 1) * nj + j + 1] += back ? -step : step;
+            for (ptrdiff_t i = 0; i < mi; i++)
+                for (ptrdiff_t j = 0; j < mj; j++)
+                    if (COLOUR(i, j) == colour / 2)
+                        z[c * nodes + (i + 1) * nj + j + 1] += back ? -step : step;
             if (!back)
                 variational_energy(z, z + nodes, mi + 2, nj, weights, moved, moved + nodes, &low, work);
         }
-        for (ptrdiff_t i = first_i; i < mi; i += APART)
-            for (ptrdiff_t j = first_j; j < mj; j += APART) {
-                const ptrdiff_t column = 2 * (i * mj + j) + c;
-                for (ptrdiff_t p = i; p < mi && p <= i + 2; p++)
-                    for (ptrdiff_t q = j > 2 ? j - 2 : 0; q < mj && q <= j + 2; q++)
-                        for (int r = 0; r < 2; r++) {
-                            const ptrdiff_t row = 2 * (p * mj + q) + r, at = r * nodes + (p + 1) * nj + q + 1;
-                            if (row >= column && row - column <= width)
-                                space->band[row * (width + 1) + width + column - row] = (moved[at] - g[at]) / step;
-                        }
-            }
+        for (ptrdiff_t i = 0; i < mi; i++)
+            for (ptrdiff_t j = 0; j < mj; j++)
+                if (COLOUR(i, j) == colour / 2)
+                    set_column(space, i, j, c, g, moved, step);
     }
     return factorise(space->band, 2 * mi * mj, width);
 }

@@ -1,0 +1,31 @@
+"""Where descents start: Winslow's solution on the coarsest level."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from solvers.elliptic._multigrid import Level, scratch_size
+from solvers.elliptic.coarsening import Direction
+from solvers.tfi import tfi
+
+RELAXED = 400
+"""Cells up to which line relaxation alone is the quickest way to Winslow's solution."""
+
+SWEEPS = 30
+"""Sweeps there: they leave some thousandths of the change from the transfinite interpolation."""
+
+
+def winslow_start(boundary: Boundary) -> Floats:
+    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2)."""
+    if boundary.topology == "quad" and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
+        nodes = tfi(boundary).nodes
+        xi, eta = (Direction(np.arange(float(n)), False).differences() for n in nodes.shape[:2])
+        scratch = np.empty(scratch_size(boundary.ni - 1, boundary.nj - 1))
+        Level(nodes[..., 0], nodes[..., 1], xi, eta, False, scratch, False).smooth(False, SWEEPS)
+        if np.isfinite(nodes).all():
+            return nodes
+    from solvers.elliptic.solve import solve as winslow
+
+    return winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
