@@ -13,7 +13,7 @@ help:
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
-	@echo 'make train   the shipped models again, from random shapes (resumable; about two hours on one core)'
+	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
 	@echo 'make docs    the generated pages and pictures of docs/'
@@ -86,7 +86,7 @@ train-airfoils: $(VENV)/.developing
 SEEDED := sample-boundary --family four-sided --count 18600 --seed 1
 train-quads: train/winslow.h5 train/variational.h5
 	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o train/quad-general.safetensors \
-	  --epochs 32 --seed 0 --resume
+	  --epochs 64 --seed 0 --resume
 	cp train/quad-general.safetensors $(MODELS)
 
 train/winslow.h5: | $(VENV)/.developing

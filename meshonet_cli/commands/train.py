@@ -51,7 +51,7 @@ Epochs = Annotated[
     int | None,
     typer.Option(
         "--epochs", min=1, show_default=False,
-        help="Passes over the shapes. [default: strip 24, quad 32, others 15000]",
+        help="Passes over the shapes. [default: strip 24, quad 64, others 15000]",
     ),
 ]
 Batch = Annotated[

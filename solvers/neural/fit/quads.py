@@ -36,7 +36,7 @@ from solvers.neural.samples import Samples
 from solvers.variational import functional as measured
 
 PLAN = Plan(
-    epochs=32, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
+    epochs=64, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
 )
 """The shipped model's."""
 
@@ -48,7 +48,7 @@ AVERAGED = 0.999
 ENERGY = (0.3, 0.6)
 """Between these shares of the steps the variational functional comes into the loss."""
 
-ENERGY_WEIGHT = 0.3
+ENERGY_WEIGHT = 1.0
 
 STARTS = 8
 """Columns that strips begin at in turn: those that the coarsest of four levels tells apart."""
