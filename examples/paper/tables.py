@@ -29,6 +29,7 @@ WAYS = (
 )
 DELIVERED = ("meshonet.valid", "meshonet-hard.valid")
 RACERS = ("meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "mionet")
+BASELINES = ("deeponet", "pod-deeponet", "fno1d", "fno2d")
 PHYSICS = (
     ("mgnet", "Winslow's equations and the boundary (`mgnet`)"),
     ("mgnet-finite", "the same, derivatives by central differences (`finite=0.01`)"),
@@ -47,7 +48,7 @@ def main() -> None:
     options = parser.parse_args()
     pages: Path = options.pages
     results = pages / "results"
-    parts = [words.HEAD, options.note, words.CLAIMS, claims(results)]
+    parts = [words.HEAD, options.note, words.CLAIMS, claims(results), lowest(results)]
     parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
     parts += [words.PHYSICS, physics(results)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
@@ -128,12 +129,38 @@ def figures(told: dict[str, Any]) -> list[str]:
     ]
 
 
+def lowest(results: Path) -> str:
+    """Return whether MeshONet's loss is the least of a race, in one sentence a case."""
+    sentences = []
+    for case in raced(results):
+        logs = {name: sorted(results.glob(f"{case}.{name}.race*.csv")) for name in RACERS}
+        last = {name: [read_log(path)[-1]["mean_square"] for path in found] for name, found in logs.items()}
+        last = {name: found for name, found in last.items() if found and name != "meshonet-hard"}
+        if "meshonet" not in last:
+            continue
+        means = {name: mean(found) for name, found in last.items()}
+        order = sorted(means, key=means.__getitem__)
+        below = [name for name in order if name in BASELINES and means[name] < means["meshonet"]]
+        known = sum(name in means for name in BASELINES)
+        verdict = (
+            f"is above that of {len(below)} of {known} baselines" if below else "is the lowest, as claimed"
+        )
+        figures = ", ".join(f"{name} {means[name]:.1e} ± {pstdev(last[name]):.0e}" for name in order)
+        sentences.append(
+            f"**Loss on one budget** ({case}): MeshONet's {verdict}. Mean square error: {figures}."
+        )
+    return words.LOWEST + "\n\n".join(sentences) if sentences else ""
+
+
+def raced(results: Path) -> list[str]:
+    """Return the cases of which there are races."""
+    return sorted({path.name.rsplit(".", 2)[0].rsplit(".", 1)[0] for path in results.glob("*.race*.json")})
+
+
 def race(results: Path, pages: Path) -> str:
     """Return the table of losses on one budget, and draw them over the shapes seen."""
     rows, curves, losses = [], {}, {}
-    for case in sorted(
-        {path.name.rsplit(".", 2)[0].rsplit(".", 1)[0] for path in results.glob("*.race*.json")}
-    ):
+    for case in raced(results):
         for model in RACERS:
             runs = [read_log(path) for path in sorted(results.glob(f"{case}.{model}.race*.csv"))]
             told = [summary(path) for path in sorted(results.glob(f"{case}.{model}.race*.json"))]
@@ -147,7 +174,8 @@ def race(results: Path, pages: Path) -> str:
             seconds = mean(run[-1]["seconds"] for run in runs)
             spread = f"{mean(errors):.1e} ± {pstdev(errors):.0e}"
             seen = f"{runs[0][-1]['seen']:,.0f}"
-            rows.append([case, model, seen, str(len(runs)), f"{mean(last):.1e}", spread, f"{seconds:.0f}"])
+            final = f"{mean(last):.1e} ± {pstdev(last):.0e}"
+            rows.append([case, model, seen, str(len(runs)), final, spread, f"{seconds:.0f}"])
     if not rows:
         return ""
     draw(curves, pages / "loss.png")

@@ -46,6 +46,12 @@ def _affine(xp: Any, h: Any, weight: Any, bias: Any) -> Any:
     return xp.nn.functional.linear(h, weight.T, bias)
 
 
+def products(trunk: Any, branches: Any) -> Any:
+    """Return the answers (batch, p, 2) of a trunk (p, k) to branches (batch, 2, k), places first."""
+    batch, two, k = branches.shape
+    return (trunk @ branches.reshape(batch * two, k).T).reshape(-1, batch, two).swapaxes(0, 1)
+
+
 def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
     """Return first values: weights uniform as Glorot's, spectral weights 1/inputs, biases zero.
 

@@ -29,6 +29,16 @@ def sensors(boundary: Boundary, count: int) -> Floats:
     return found
 
 
+def at_nodes(boundary: Boundary, ni: int, nj: int) -> Boundary:
+    """Return the boundary at ni x nj nodes, equal steps of xi and eta; between its own on straight lines."""
+    if (boundary.ni, boundary.nj) == (ni, nj):
+        return boundary
+    xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)
+    south, north = (_at(side, xi) for side in (boundary.south, boundary.north))
+    west, east = (_at(side, eta) for side in (boundary.west, boundary.east))
+    return Boundary(south, north, west, east, boundary.topology, name=boundary.name)
+
+
 def square(ni: int, nj: int) -> Floats:
     """Return (ni * nj, 2) places (xi, eta) of a grid's nodes, eta running fastest."""
     xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)

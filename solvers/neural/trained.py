@@ -16,7 +16,7 @@ from geometry.errors import InputError
 from solvers.neural.chebyshev import interpolation, points
 from solvers.neural.layers import Arrays, Weights
 from solvers.neural.models.model import Frame, Operator
-from solvers.neural.places import square
+from solvers.neural.places import at_nodes, square
 from solvers.neural.registry import OPERATORS, operator, settings_of
 from solvers.neural.weights import read_tensors, write_tensors
 from solvers.spline import spline_matrix
@@ -60,7 +60,9 @@ class Trained:
             told = f"model {self.name} makes {self.frame.topology} grids"
             raise InputError(f"{told}, and this boundary is {boundary.topology}", "use another model")
         ni, nj = boundary.ni, boundary.nj
-        inputs = {name: value.astype(np.float32) for name, value in self.model.encode([boundary]).items()}
+        # a native model answers on the nodes of the training grids, so these are the ones it sees
+        known = at_nodes(boundary, self.frame.ni, self.frame.nj) if self.model.native else boundary
+        inputs = {name: value.astype(np.float32) for name, value in self.model.encode([known]).items()}
         self.model.check(self.weights, inputs)
         if self.model.native:
             return self._splined(inputs, ni, nj)
@@ -74,7 +76,9 @@ class Trained:
         return np.concatenate(parts).reshape(ni, nj, 2)
 
     def _at(self, inputs: Weights, where: Floats) -> Floats:
-        found = self.model.answer(np, self.weights, inputs, where.astype(np.float32), None)
+        found = self.model.answer(
+            np, self.weights, inputs, self.model.seen(np, where.astype(np.float32)), None
+        )
         return np.asarray(found[0], dtype=np.float64)
 
     def _interpolated(self, inputs: Weights, ni: int, nj: int) -> Floats | None:
@@ -94,7 +98,8 @@ class Trained:
 
     def _splined(self, inputs: Weights, ni: int, nj: int) -> Floats:
         frame = self.frame
-        where, index = square(frame.ni, frame.nj).astype(np.float32), np.arange(frame.ni * frame.nj)
+        where = self.model.seen(np, square(frame.ni, frame.nj).astype(np.float32))
+        index = np.arange(frame.ni * frame.nj)
         found = self.model.answer(np, self.weights, inputs, where, index)[0]
         nodes = np.asarray(found, dtype=np.float64).reshape(frame.ni, frame.nj, 2)
         if (ni, nj) == (frame.ni, frame.nj):
@@ -171,6 +176,6 @@ def _try(trained: Trained) -> None:
     inputs = {"sensors": np.zeros((1, model.sensors, 2), np.float32)}
     where, index = square(2, 2).astype(np.float32), np.array([0, 1, 2, frame.ni * frame.nj - 1])
     if type(model).encode is Operator.encode:  # it reads sensors only
-        model.answer(np, trained.weights, inputs, where, index)
+        model.answer(np, trained.weights, inputs, model.seen(np, where), index)
     if any(key.startswith("fixed/") and array.ndim == 0 for key, array in trained.weights.items()):
         raise ValueError(f"a fixed array of {frame.topology} without axes")

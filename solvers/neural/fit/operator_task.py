@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 import torch
 from torch import Tensor, nn
+from torch.nn.functional import mse_loss
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
@@ -52,16 +53,19 @@ class OperatorTask(Task):
             self.register_parameter(name, nn.Parameter(_tensor(value)))
         self.fixed = _tensors(model.fixed(training, targets), device)
         self.inputs = _tensors(model.encode(training.boundaries()), device)
-        # places first: those of a step are then whole rows
-        self.targets = _tensor(targets.reshape(len(training), -1, 2).swapaxes(0, 1)).to(device)
+        # places first: those of a step are then whole rows of a matrix, which torch gathers fastest
+        by_place = targets.reshape(len(training), -1, 2).swapaxes(0, 1)
+        self.targets = _tensor(by_place.reshape(len(by_place), -1)).to(device)
         size = float((targets**2).mean()) if model.base != "none" else 1.0
         self.weights = model.interior / size, model.boundary / size
-        self.places = _tensor(square(training.ni, training.nj)).to(device)
+        self.places = model.seen(torch, _tensor(square(training.ni, training.nj)).to(device))
         on = rim(training.ni, training.nj, training.topology)
         self.inside, self.outside = np.flatnonzero(~on), np.flatnonzero(on)
         self.held_out: tuple[dict[str, Tensor], Tensor] | None = None
         if held_out is not None and len(held_out):
-            goal = _tensor(differences(model, held_out).reshape(len(held_out), -1, 2)).to(device)
+            goal = _tensor(differences(model, held_out).reshape(len(held_out), -1, 2).swapaxes(0, 1)).to(
+                device
+            )
             self.held_out = _tensors(model.encode(held_out.boundaries()), device), goal
         self.to(device)
 
@@ -69,10 +73,13 @@ class OperatorTask(Task):
         """Return the interior and the boundary part of the loss over the shapes `rows`."""
         index, inner = self._drawn(step)
         place = torch.from_numpy(index).to(self.places.device)
-        inputs = {name: value[rows] for name, value in self.inputs.items()}
+        goal = self.targets.index_select(0, place).view(len(place), self.count, 2)
+        inputs = self.inputs
+        if len(rows) < self.count:  # of all shapes the order does not matter
+            inputs = {name: value[rows] for name, value in inputs.items()}
+            goal = goal.index_select(1, rows)
         found = self._answer(inputs, self.places[place], place)
-        goal = self.targets.index_select(0, place)[:, rows].transpose(0, 1)
-        return self._weighted(((found.float() - goal) ** 2).sum(-1), inner)
+        return self._weighted(found.float().transpose(0, 1), goal, inner)
 
     def validate(self) -> dict[str, float]:
         """Return the loss over the held-out shapes and the median of their relative L2 error."""
@@ -82,9 +89,9 @@ class OperatorTask(Task):
         index = np.concatenate([self.inside, self.outside])
         place = torch.from_numpy(index).to(self.places.device)
         with torch.no_grad():
-            error = ((self._answer(inputs, self.places[place], place) - goal[:, place]) ** 2).sum(-1)
-            loss = self._weighted(error, len(self.inside)).sum()
-        return {"loss": float(loss), "mean_square": float(error.mean())}
+            found, wanted = self._answer(inputs, self.places[place], place).transpose(0, 1), goal[place]
+            loss = self._weighted(found, wanted, len(self.inside)).sum()
+            return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(found, wanted))}
 
     def arrays(self) -> Arrays:
         """Return what is trained and what is fixed, by name."""
@@ -104,9 +111,11 @@ class OperatorTask(Task):
         drawn = [group[rng.integers(0, len(group), n)] for group, n in groups]
         return np.concatenate(drawn), self.points[0]
 
-    def _weighted(self, error: Tensor, inner: int) -> Tensor:
-        inside, outside = self.weights
-        return torch.stack([inside * error[:, :inner].mean(), outside * error[:, inner:].mean()])
+    def _weighted(self, found: Tensor, goal: Tensor, inner: int) -> Tensor:
+        """Return both parts of the loss of answers (p, batch, 2), of which the first `inner` are inside."""
+        inside, outside = (2.0 * weight for weight in self.weights)  # two coordinates a place
+        first, second = mse_loss(found[:inner], goal[:inner]), mse_loss(found[inner:], goal[inner:])
+        return torch.stack([inside * first, outside * second])
 
 
 def differences(model: Operator, samples: Samples) -> Floats:

@@ -43,9 +43,9 @@ class DeepONet(Operator):
             "output/bias": (2,),
         }
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2)."""
         s = inputs["sensors"]
         c = dense(xp, w, "branch", s.reshape(len(s), -1))
-        trunk, k = dense(xp, w, "trunk", points, last=True), self.features
+        trunk, k = dense(xp, w, "trunk", places, last=True), self.features
         return xp.stack([c[:, :k] @ trunk[:, :k].T, c[:, k:] @ trunk[:, k:].T], -1) + w["output/bias"]

@@ -68,7 +68,7 @@ class FNO1D(Operator):
             rows.append(np.hstack([one.south, one.north, np.tile(sides, (one.ni, 1)), xi]))
         return {"edges": np.array(rows)}
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) at nodes of the training grids."""
         h = dense(xp, w, "lift", inputs["edges"])
         n = h.shape[1]

@@ -65,7 +65,7 @@ class FNO2D(Operator):
         across = np.array([np.hstack([one.west, one.east]) for one in boundaries])
         return {"along": along, "across": across}
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) at nodes of the training grids."""
         along, across = inputs["along"], inputs["across"]
         batch, ni, nj = len(along), along.shape[1], across.shape[1]

@@ -15,7 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from solvers.neural.layers import Shapes, Weights, dense, dense_shapes
+from solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
 from solvers.neural.models.model import Frame, Operator
 from solvers.neural.places import lift
 
@@ -51,9 +51,13 @@ class MeshONet(Operator):
             "output/bias": (2,),
         }
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def seen(self, xp: Any, points: Any) -> Any:
+        """Return places as the Lift-Layer makes them."""
+        return lift(xp, points, self.powers)
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2)."""
-        trunk = dense(xp, w, "trunk", lift(xp, points, self.powers), last=True)
+        trunk = dense(xp, w, "trunk", places, last=True)
         s = inputs["sensors"]
-        both = [dense(xp, w, f"branch_{name}", s[..., k]) @ trunk.T for k, name in enumerate("xy")]
-        return xp.stack(both, -1) + w["output/bias"]
+        both = xp.stack([dense(xp, w, f"branch_{name}", s[..., k]) for k, name in enumerate("xy")], 1)
+        return products(trunk, both) + w["output/bias"]

@@ -14,6 +14,10 @@ With `modes` the trunk is not trained: B trunk is replaced by modes of the train
 the differences are not smooth, or the cells are small; a trained trunk, smooth and as wrong there as
 elsewhere, folds them. An error in the coefficient of a mode is small where the mode is. Lu et al., Computer
 Methods in Applied Mechanics and Engineering 393 (2022) 114778.
+
+Beyond the training shapes the branch has nothing to go by, and what it adds to H may fold cells. With
+`within` it sees sensors no further out than any training shape's: H follows the boundary, the difference
+stays that of the last shapes known.
 """
 
 from __future__ import annotations
@@ -24,7 +28,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from geometry.arrays import Floats
-from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
+from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
 from solvers.neural.models.model import Frame, Operator
 from solvers.neural.places import sensors
 from solvers.neural.samples import Samples
@@ -41,6 +45,7 @@ class MeshONetHard(Operator):
     width, depth : of the trunk's hidden layers.
     waves : frequencies of xi and eta that the trunk sees.
     modes : of the training grids' differences in place of a trained trunk; 0 for the trunk.
+    within : sensors are seen no further out than those of the training shapes.
     periodic : in xi (an O grid).
     """
 
@@ -53,6 +58,7 @@ class MeshONetHard(Operator):
     depth: int = 3
     waves: int = 6
     modes: int = 0
+    within: bool = False
     periodic: bool = False
 
     @property
@@ -78,18 +84,28 @@ class MeshONetHard(Operator):
             "fixed/spread": np.maximum(spread, 0.02 * spread.max() + 1e-9),
             "fixed/size": np.array([size or 1.0]),
         }
+        if self.within:
+            fixed |= {"fixed/least": seen.min(axis=0), "fixed/most": seen.max(axis=0)}
         return {**fixed, "fixed/modes": _modes(targets, self.modes)} if self.modes else fixed
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def seen(self, xp: Any, points: Any) -> Any:
+        """Return waves, and in the last column what is zero on the boundary; modes need neither."""
+        if self.modes:
+            return points
+        return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) less the base."""
-        seen = (inputs["sensors"] - w["fixed/mean"]) / w["fixed/spread"]
+        seen = inputs["sensors"]
+        if self.within:
+            seen = xp.clip(seen, w["fixed/least"], w["fixed/most"])
+        seen = (seen - w["fixed/mean"]) / w["fixed/spread"]
         c = dense(xp, w, "branch", seen.reshape(len(seen), -1))
         if self.modes:
             trunk = w["fixed/modes"][index]
         else:
-            trunk = dense(xp, w, "trunk", self._lifted(xp, points)) * self._bubble(points)
-        k = trunk.shape[1]
-        return xp.stack([c[:, :k] @ trunk.T, c[:, k:] @ trunk.T], -1) * w["fixed/size"]
+            trunk = dense(xp, w, "trunk", places[:, :-1]) * places[:, -1:]
+        return products(trunk, c.reshape(len(c), 2, trunk.shape[1])) * w["fixed/size"]
 
     def _lifted(self, xp: Any, points: Any) -> Any:
         turn = 2.0 if self.periodic else 1.0

@@ -71,11 +71,11 @@ class MGNet(Operator):
         seen = np.array([sensors(b, self.sensors) for b in edges])
         return {"fixed/sensors": seen, "fixed/centre": centre, "fixed/size": size[:, None]}
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2)."""
         which = self.which(w, inputs["sensors"])
         net = {key: value[which] for key, value in w.items()}
-        scaled = dense(xp, net, "net", self.features(xp, points)[None])
+        scaled = dense(xp, net, "net", self.features(xp, places)[None])
         return scaled * net["fixed/size"][:, None] + net["fixed/centre"][:, None]
 
     def which(self, w: Weights, seen: Any) -> Any:

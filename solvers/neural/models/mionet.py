@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solvers.neural.layers import Shapes, Weights, dense, dense_shapes
+from solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
 from solvers.neural.models.model import Frame, Operator
 
 
@@ -44,9 +44,9 @@ class MIONet(Operator):
             "output/bias": (2,),
         }
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2)."""
-        s, k = inputs["sensors"], self.features
+        s = inputs["sensors"]
         c = dense(xp, w, "branch_x", s[..., 0]) * dense(xp, w, "branch_y", s[..., 1])
-        trunk = dense(xp, w, "trunk", points, last=True)
-        return xp.stack([c[:, :k] @ trunk.T, c[:, k:] @ trunk.T], -1) + w["output/bias"]
+        trunk = dense(xp, w, "trunk", places, last=True)
+        return products(trunk, c.reshape(len(c), 2, self.features)) + w["output/bias"]

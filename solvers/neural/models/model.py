@@ -70,7 +70,14 @@ class Operator:
     def check(self, w: Weights, inputs: Weights) -> None:
         """Raise InputError for boundaries that the model cannot answer; there are none."""
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def seen(self, xp: Any, points: Any) -> Any:
+        """Return what the network sees of places (p, 2): themselves, or what they are lifted to (p, any).
+
+        Nothing that is trained takes part, so that training computes it for all nodes once.
+        """
+        return points
+
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) less the base.
 
         Parameters
@@ -78,7 +85,7 @@ class Operator:
         xp : numpy or torch.
         w : trained and fixed arrays by name.
         inputs : of `encode`.
-        points : (p, 2) places (xi, eta).
+        places : what `seen` returned of p places (xi, eta).
         index : (p,) their numbers among the nodes of the training grids; only native models use it.
         """
         raise NotImplementedError

@@ -57,7 +57,7 @@ class PODDeepONet(Operator):
         shape = (self.features, -1, 2)
         return {"fixed/mean": mean.reshape(-1, 2), "fixed/modes": modes.reshape(shape).swapaxes(0, 1)}
 
-    def answer(self, xp: Any, w: Weights, inputs: Weights, points: Any, index: Any) -> Any:
+    def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) at nodes of the training grids."""
         s = inputs["sensors"]
         c = dense(xp, w, "branch", s.reshape(len(s), -1))

@@ -36,7 +36,7 @@ def random(kind: str, samples: Samples, **settings: object) -> Trained:
 
 KINDS: list[tuple[str, dict[str, int]]] = [
     *((kind, {}) for kind in OPERATORS),
-    ("meshonet-hard", {"modes": 4}),
+    ("meshonet-hard", {"modes": 4, "within": True}),
 ]
 
 
@@ -47,14 +47,14 @@ def test_numpy_and_torch_agree(kind: str, settings: dict[str, int], topology: st
     trained = random(kind, samples, **settings)
     inputs = trained.model.encode(samples.boundaries())
     where, index = square(samples.ni, samples.nj), np.arange(samples.ni * samples.nj)
-    answer = trained.model.answer
-    found = answer(
-        np, trained.weights, {k: v.astype(np.float32) for k, v in inputs.items()}, where.astype("f4"), index
-    )
+    answer, seen = trained.model.answer, trained.model.seen
+    single = {k: v.astype(np.float32) for k, v in inputs.items()}
+    found = answer(np, trained.weights, single, seen(np, where.astype("f4")), index)
     tensors = (
         {k: torch.tensor(v, dtype=torch.float32) for k, v in a.items()} for a in (trained.weights, inputs)
     )
-    goal = answer(torch, *tensors, torch.tensor(where, dtype=torch.float32), torch.tensor(index))
+    places = seen(torch, torch.tensor(where, dtype=torch.float32))
+    goal = answer(torch, *tensors, places, torch.tensor(index))
     assert found.shape == (len(samples), samples.ni * samples.nj, 2)
     np.testing.assert_allclose(found, goal.numpy(), atol=2e-5 * float(goal.abs().max()))
 
@@ -118,10 +118,34 @@ def test_modes_that_do_not_fit_are_found_when_the_file_is_read(tmp_path: Path, s
         load_trained(path)
 
 
+@pytest.mark.parametrize("kind", ["fno1d", "fno2d", "pod-deeponet"])
+@pytest.mark.parametrize("topology", FAMILIES)
+def test_native_models_answer_finer_boundaries_on_the_nodes_they_know(kind: str, topology: str) -> None:
+    fine = FAMILIES[topology]
+    nodes = fine.nodes[:, ::2, ::2]
+    coarse = Samples(nodes, fine.topology, fine.names, fine.splits, fine.parameters)
+    settings = {} if kind == "pod-deeponet" else {"modes": 2, "padding": 2}
+    trained = random(kind, coarse, **settings)
+    for one, other in zip(coarse.boundaries(), fine.boundaries(), strict=True):
+        found, finer = trained.difference(one), trained.difference(other)
+        np.testing.assert_allclose(finer[::2, ::2], found, atol=2e-5 * np.abs(found).max())
+
+
+def test_beyond_the_training_shapes_the_difference_is_that_of_the_last_one() -> None:
+    samples = FAMILIES["quad"]
+    order = np.argsort(samples.parameters)
+    known = samples.pick(order[:-1])  # all but the highest arch
+    held, free = (random("meshonet-hard", known, within=within) for within in (True, False))
+    last, beyond = known.boundaries()[-1], samples.boundaries()[order[-1]]
+    np.testing.assert_allclose(held.difference(beyond), held.difference(last), atol=1e-6)
+    assert np.abs(free.difference(beyond) - free.difference(last)).max() > 1e-3
+    assert held.difference(last) == pytest.approx(free.difference(last), abs=1e-6)
+
+
 def test_a_batch_answers_like_its_members() -> None:
     samples = FAMILIES["quad"]
     trained = random("meshonet", samples)
-    inputs, where = trained.model.encode(samples.boundaries()), square(5, 7)
+    inputs, where = trained.model.encode(samples.boundaries()), trained.model.seen(np, square(5, 7))
     together = trained.model.answer(np, trained.weights, inputs, where, None)
     for k in range(len(samples)):
         alone = trained.model.answer(
