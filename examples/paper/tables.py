@@ -113,8 +113,8 @@ def claims(results: Path) -> str:
     if not rows:
         return ""
     below = [sum(row[k] == "below" for row in rows) for k in (2, 3)]
-    told = f"It is below TFI's in {below[0]} of {len(rows)} cases, and below the PDE solver's in {below[1]}."
-    return f"{told}\n\n{table(head, rows)}"
+    counted = f"It is below TFI's in {below[0]} of {len(rows)} cases, and below the PDE solver's in {below[1]}."
+    return f"{counted}\n\n{table(head, rows)}"
 
 
 def figures(told: dict[str, Any]) -> list[str]:
@@ -182,8 +182,8 @@ def race(results: Path, pages: Path) -> str:
     head = ["case", "model", "shapes seen", "seeds", "mean square error, end of training"]
     head += ["relative L2 of test grids", "seconds"]
     order = sorted(losses, key=losses.__getitem__)
-    told = f"From the least loss to the largest: {', '.join(order)}."
-    return f"{told}\n\n![loss](loss.png)\n\n{table(head, rows)}"
+    ranked = f"From the least loss to the largest: {', '.join(order)}."
+    return f"{ranked}\n\n![loss](loss.png)\n\n{table(head, rows)}"
 
 
 def physics(results: Path) -> str:
