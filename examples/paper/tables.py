@@ -113,8 +113,8 @@ def claims(results: Path) -> str:
     if not rows:
         return ""
     below = [sum(row[k] == "below" for row in rows) for k in (2, 3)]
-    counted = f"It is below TFI's in {below[0]} of {len(rows)} cases, and below the PDE solver's in {below[1]}."
-    return f"{counted}\n\n{table(head, rows)}"
+    count = f"It is below TFI's in {below[0]} of {len(rows)} cases, and below the PDE solver's in {below[1]}."
+    return f"{count}\n\n{table(head, rows)}"
 
 
 def figures(told: dict[str, Any]) -> list[str]:
