@@ -144,7 +144,7 @@ def _nested(
         limit = limits[large] if k == 0 else MOST
         moves = still if k == 0 else ROUGH * still
         iterations, valid = descend(nodes, weights, moves, limit, periodic=periodic, stiffness=stiffness)
-        if large and valid:
+        if valid and (large or (k == 0 and _worst_at_kink(nodes, boundary.topology))):
             sweep_kinks(nodes, levels[k], below, only_better=True)
     return nodes, weights, iterations, valid
 
@@ -210,6 +210,13 @@ def _descended(
     if valid and energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
         return repaired, more, True
     return nodes, iterations, low > 0
+
+
+def _worst_at_kink(nodes: Floats, topology: Topology) -> bool:
+    """Return whether the cell with the largest angle is at the rim but not in a corner of it."""
+    at = measure(Grid(nodes, topology))["max_angle"].worst
+    ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
+    return ends[0] != ends[1]
 
 
 def _angles(nodes: Floats, topology: Topology) -> tuple[float, float]:

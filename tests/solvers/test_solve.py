@@ -168,7 +168,7 @@ def test_divergence_from_every_start_is_an_error(monkeypatch: pytest.MonkeyPatch
         return 1.0
 
     monkeypatch.setattr(module.Multigrid, "cycle", spoiled)
-    with pytest.raises(SolverError, match=r"diverged from every start .* use more nodes or tfi"):
+    with pytest.raises(SolverError, match=r"diverged from every start .* use more nodes, variational or tfi"):
         solve(arch(100, 100))
 
 
