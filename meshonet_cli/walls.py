@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
@@ -10,6 +10,7 @@ import typer
 
 if TYPE_CHECKING:
     from geometry.boundary import Boundary
+    from geometry.errors import InputError
     from meshonet_cli.layers import Layers
     from solvers.solution import Solution
     from solvers.walls.heights import Heights
@@ -207,7 +208,10 @@ class WithWalls:
             slide = channel and boundary.sampled
         if slide:
             solution = self._slid(boundary)
-            return self._upright(solution, boundary, heights) if channel else solution
+            chosen = self.unused.get("--model") is not None
+            return self._upright(solution, boundary, heights) if channel and not chosen else solution
+        if channel:
+            self._refuse(("--model", "--polish", "--answer"), "a channel with given wall nodes")
         fewer = getattr(self._whole_function(), "__module__", "") in ("solvers.coarse", "solvers.refine")
         if (channel or self.name == "steger-sorenson") and not fewer:
             return self._turned(boundary, heights)
@@ -286,13 +290,25 @@ class WithWalls:
         )
 
     def _marched(self, boundary: Boundary, layers: Layers) -> Solution:
-        from geometry.errors import InputError
         from meshonet_cli.layers import march
 
-        for option, value in {**self.unused, "--slide": self.edges.slide or None}.items():
-            if value is not None:
-                raise InputError(f"{option} is of no use to a grid marched from the wall", f"drop {option}")
+        what = "a grid marched from the wall"
+        self._refuse(self.unused, what)
+        if self.edges.slide:
+            raise _useless("--slide", what)
         return march(boundary, layers, self.edges.constant)
+
+    def _refuse(self, options: Iterable[str], what: str) -> None:
+        """Raise InputError when one of `options` was given, which are of no use to `what`."""
+        for option in options:
+            if self.unused.get(option) is not None:
+                raise _useless(option, what)
+
+
+def _useless(option: str, what: str) -> InputError:
+    from geometry.errors import InputError
+
+    return InputError(f"{option} is of no use to {what}", f"drop {option}")
 
 
 def solve_function() -> Callable[..., Solution]:

@@ -40,6 +40,18 @@ def test_a_channel_becomes_a_valid_grid_too(meshonet: Meshonet, folding_h5: Path
         assert told["quality"]["max_angle"][figure] < winslow["quality"]["max_angle"][figure]
 
 
+@pytest.mark.parametrize("option", ["--model=base", "--polish=2", "--answer=raw"])
+def test_an_operator_is_refused_where_sources_turn_the_lines(
+    meshonet: Meshonet, folding_h5: Path, option: str
+) -> None:
+    done = meshonet("infer", folding_h5, "-o", "g.vts", "--wall-spacing", "1e-4", option)
+    name = option.split("=")[0]
+    assert done.code == 2
+    assert f"{name} is of no use to a channel with given wall nodes; drop {name}" in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()
+
+
 def test_a_designation_needs_no_file(meshonet: Meshonet) -> None:
     told = meshonet("infer", "naca:2412", "-o", "{stem}.vts", "--res", "80x40", "--json").only
     assert (told["ni"], told["nj"], told["folded"], told["output"]) == (80, 40, 0, "naca2412.vts")
