@@ -133,14 +133,14 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     if len(wall) < 8:
         raise InputError(f"the wall has {len(wall)} nodes", "the operator needs at least 8: raise --res")
     turn = np.angle((np.roll(wall, -1) - wall) / (wall - np.roll(wall, 1)))
-    tail, base = _trailing_corners(wall, turn)
+    tail, base = trailing_corners(wall, turn)
     centre, quarter = _slit(wall, tail, base)
-    zeta = _follow(wall, centre, quarter)
+    zeta = follow(wall, centre, quarter)
     pole = _centroid(zeta)
     corners: list[Corner] = []
     ends = [(0, 0.5 * (1.0 + turn[0] / np.pi))] if not base else [(i, 1.0 + turn[i] / np.pi) for i in base]
     for i, k in ends[:: -1 if swap else 1] if (base or tail) else []:
-        if not (0.55 < k < 0.995 or 1.03 < k < 1.9):
+        if not removable(k):
             continue
         corner = _corner(complex(zeta[i]), pole, float(k))
         straight = corner.remove(zeta)
@@ -160,8 +160,11 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     return lift, np.log(np.abs(offset)) + 1j * (phi - phi[0]), (0,) if tail else tuple(base)
 
 
-def _trailing_corners(wall: Complexes, turn: Floats) -> tuple[bool, list[int]]:
-    """Return whether node 0 is a sharp edge, and otherwise the corner of the base on each side of it."""
+def trailing_corners(wall: Complexes, turn: Floats) -> tuple[bool, list[int]]:
+    """Return whether node 0 is a sharp edge, and otherwise the corner of the base on each side of it.
+
+    `turn` (n,) is the angle by which the wall turns at each node.
+    """
     if turn[0] > SHARP_TURN:
         return True, []
     n, chord = len(wall), np.abs(wall - wall[0]).max()
@@ -204,11 +207,8 @@ def _slit(wall: Complexes, sharp: bool, base: list[int]) -> tuple[complex, compl
 
 def _focus(wall: Complexes, tip: int, other: complex) -> complex:
     """Return the focus behind node `tip`: the circle through it and nodes .004 chord away tells."""
-    n, chord = len(wall), abs(other - wall[tip])
-    far = np.abs(wall - wall[tip]) > 0.004 * chord
-    ahead = next((m for m in range(1, n // 2) if far[(tip + m) % n]), 1)
-    behind = next((m for m in range(1, n // 2) if far[(tip - m) % n]), 1)
-    a, b, c = wall[(tip + ahead) % n], wall[tip], wall[(tip - behind) % n]
+    chord = abs(other - wall[tip])
+    a, b, c = (wall[k] for k in beside(wall, tip, other))
     area = 0.5 * abs(((a - b) * np.conj(c - b)).imag)
     radius = abs(a - b) * abs(c - b) * abs(a - c) / (4.0 * area + 1e-12 * chord**2)
     ratio = float(np.clip(2.0 * radius / chord, 4e-4, 0.8))
@@ -218,6 +218,15 @@ def _focus(wall: Complexes, tip: int, other: complex) -> complex:
     return complex(b + _unit(inwards) * 0.5 * chord * (1.0 - np.sqrt(1.0 - ratio)))
 
 
+def beside(wall: Complexes, tip: int, other: complex) -> tuple[int, int, int]:
+    """Return the nodes ahead of `tip`, at it and behind it, .004 of the chord to `other` away from it."""
+    n, chord = len(wall), abs(other - wall[tip])
+    far = np.abs(wall - wall[tip]) > 0.004 * chord
+    ahead = next((m for m in range(1, n // 2) if far[(tip + m) % n]), 1)
+    behind = next((m for m in range(1, n // 2) if far[(tip - m) % n]), 1)
+    return (tip + ahead) % n, tip, (tip - behind) % n
+
+
 def _joukowski(z: Complexes, centre: complex, quarter: complex) -> Complexes:
     """Return the outer root zeta of z = centre + quarter (zeta + 1/zeta); the slit is its only cut."""
     Z = (z - centre) / quarter
@@ -225,7 +234,7 @@ def _joukowski(z: Complexes, centre: complex, quarter: complex) -> Complexes:
     return 0.5 * (Z + np.sqrt(Z - 2.0) * np.sqrt(Z + 2.0))
 
 
-def _follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
+def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
     """Return zeta along the wall, changing root where a cambered wall crosses the slit."""
     pieces = -(-WALKED // len(wall))
     t = np.arange(pieces) / pieces
@@ -242,6 +251,11 @@ def _follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
     near = 0.5 * (zeta[0] + zeta[-1])
     first = first if abs(first - near) <= abs(1.0 / first - near) else 1.0 / first
     return np.concatenate([[first], zeta])
+
+
+def removable(k: float) -> bool:
+    """Return whether a corner of exterior angle k pi is one that is straightened."""
+    return 0.55 < k < 0.995 or 1.03 < k < 1.9
 
 
 def _corner(p: complex, pole: complex, k: float) -> Corner:

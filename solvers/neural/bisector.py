@@ -28,15 +28,26 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
 
     `wall` is (n,) nodes counter-clockwise in the plane, `corners` indices into it.
     """
-    n, step = len(wall), 2.0 * np.pi / len(wall)
     if not corners or len(grid.eta) < 4:
         return
+    reach, shift = shifts(grid, lift, wall, corners)
+
+    def across(eta: Floats) -> Floats:
+        return fading(eta, float(grid.eta[1]))
+
+    grid.nudge(reach @ shift, across)
+
+
+def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
+    """Return how far each corner's shift is felt along the wall (n, corners), and the shifts of phi."""
+    n, step = len(wall), 2.0 * np.pi / len(wall)
     width = CELLS
     if len(corners) == 2:
         between = (corners[0] - corners[1]) % n
         width = min(CELLS, 0.5 * min(between, n - between))
     first = grid.at(corners, 1)
-    pull = _along(np.subtract.outer(corners, corners), n, width)
+    reach = _along(np.subtract.outer(np.arange(n), corners), n, width)
+    pull = reach[list(corners)]
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
@@ -46,13 +57,13 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
                 for c, w, s in zip(corners, moved, shift, strict=True)
             ]
         )
+    return reach, shift
 
-    def across(eta: Floats) -> Floats:
-        cells = eta / grid.eta[1]
-        fading: Floats = cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - grid.eta[1])
-        return fading
 
-    grid.nudge(_along(np.subtract.outer(np.arange(n), corners), n, width) @ shift, across)
+def fading(eta: Floats, first: float) -> Floats:
+    """Return the part of a shift that is left at `eta`: 1 at the first level, nothing at the walls."""
+    cells = eta / first
+    return np.asarray(cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))
 
 
 def _along(offset: NDArray[np.intp], n: int, width: float) -> Floats:

@@ -29,12 +29,14 @@ LARGEST = 64 * 1024 * 1024  # bytes; a file above this is not one of ours
 class Model:
     """A trained strip operator.
 
-    `network` answers for a strip in the unit size that `encode` gives it, `basis` (Q, LEVELS - 2), `scale` of
-    its targets, `header` what the file says of itself: recipe and held-out figures.
+    `network` answers for a strip in the unit size that `encode` gives it, by its `weights`. `basis`
+    (Q, LEVELS - 2) and `scale` are those of its targets; `header` is what the file says of itself: recipe and
+    held-out figures.
     """
 
     name: str
     network: StripNetwork
+    weights: Mapping[str, Reals]
     basis: Floats
     scale: float
     header: Mapping[str, Any]
@@ -112,7 +114,7 @@ def _load(path: str) -> Model:
         raise InputError(problem, "use a file made by meshonet train", source=path)
     name = header.get("name")
     called = name if isinstance(name, str) and name.isprintable() else Path(path).stem
-    return Model(called, StripNetwork(weights), basis, scale, header)
+    return Model(called, StripNetwork(weights), weights, basis, scale, header)
 
 
 def kind_of(path: Path) -> str:

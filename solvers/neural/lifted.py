@@ -1,0 +1,170 @@
+"""The conformal lift in torch: `geometry.lift` once more, with gradients to the nodes of the wall.
+
+What is chosen, and not computed, is taken from there: which nodes are corners and tips, on which branch of a
+root or a logarithm a node lies.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from geometry.lift import SECOND_PRONG, Lift, beside, follow, lift_body, removable, trailing_corners
+from geometry.mirror import farthest, handedness
+
+PI = float(np.pi)
+
+
+@dataclass(frozen=True)
+class TorchLift:
+    """`geometry.lift.Lift` with tensors: `corners` are p, q, P, Q and k of each."""
+
+    centre: Tensor
+    quarter: Tensor
+    corners: tuple[tuple[Tensor, Tensor, Tensor, Tensor, Tensor], ...]
+    pole: Tensor
+    phase: Tensor
+
+    def to_plane(self, w: Tensor) -> Tensor:
+        """Return z for strip points w, any shape."""
+        v = self.pole + torch.exp(w + 1j * self.phase)
+        for p, q, P, Q, k in reversed(self.corners):
+            r = torch.exp(k * torch.log((v - P) / (v - Q)))
+            v = (q * r - p) / (r - 1.0)
+        return self.centre + self.quarter * (v + 1.0 / v)
+
+
+@dataclass(frozen=True)
+class Lifted:
+    """A body's walls in the strip, F (n,) on the `wall` and on the `far` field, as `operator.Walls`.
+
+    `numpy` is the lift that geometry makes.
+    """
+
+    lift: TorchLift
+    numpy: Lift
+    wall: Tensor
+    far: Tensor
+    z: Tensor
+    corners: tuple[int, ...]
+    hand: int
+
+
+def lifted(z: Tensor, far: Tensor) -> Lifted:
+    """Return the walls (n,) of a body in the strip, both walked counter-clockwise.
+
+    Raises
+    ------
+    InputError
+        the body cannot be lifted.
+    """
+    wall, outer = _numpy(z), _numpy(far)
+    hand, _ = handedness(wall, outer)
+    known, _, corners = lift_body(wall, swap=hand < 0)
+    turn = torch.angle((torch.roll(z, -1) - z) / (z - torch.roll(z, 1)))
+    tail, base = trailing_corners(wall, _numpy(turn))
+    centre, quarter = _slit(z, tail, base)
+    zeta = _joukowski(z, centre, quarter)
+    outside = _numpy(zeta)
+    true = follow(wall, known.centre, known.quarter)
+    crossed = np.abs(true - outside) > np.abs(true - 1.0 / outside)
+    zeta = torch.where(_mask(crossed, z), 1.0 / zeta, zeta)
+    ends = [(0, 0.5 * (1.0 + turn[0] / PI))] if not base else [(i, 1.0 + turn[i] / PI) for i in base]
+    found = []
+    pole = _centroid(zeta)
+    for i, k in ends[:: -1 if hand < 0 else 1] if (base or tail) else []:
+        if removable(float(k.detach())):
+            p = zeta[i]
+            q = p + SECOND_PRONG * (pole - p)
+            corner = p, q, p, p - (p - q) / k, k
+            straight = _remove(corner, zeta)
+            if torch.isfinite(torch.view_as_real(straight)).all():
+                found.append(corner)
+                zeta = straight
+                pole = _centroid(zeta)
+    offset = zeta - pole
+    psi, phi = torch.log(torch.abs(offset)), _unwrapped(torch.angle(offset))
+    lift = TorchLift(centre, quarter, tuple(found), pole, phi[0])
+    theta = 2.0 * PI * torch.arange(len(z), dtype=psi.dtype, device=z.device) / len(z)
+    v = _joukowski(far, centre, quarter)
+    for corner in found:
+        v = _remove(corner, v)
+    above = _unwrapped(torch.angle(v - pole)) - phi[0]
+    turns = round(float((above.detach() - (phi - phi[0]).detach()).mean()) / (2.0 * PI))
+    away = torch.complex(torch.log(torch.abs(v - pole)), above - 2.0 * PI * turns - theta)
+    return Lifted(lift, known, torch.complex(psi, phi - phi[0] - theta), away, z, corners, hand)
+
+
+def _slit(z: Tensor, sharp: bool, base: list[int]) -> tuple[Tensor, Tensor]:
+    first, last = farthest(_numpy(z))
+    nose = 0.5 * (z[first] + z[last])
+    if sharp:
+        tail = z[0]
+    elif len(base) == 2:
+        middle = 0.5 * (z[base[0]] + z[base[1]])
+        tail = middle + 0.25 * torch.abs(z[base[0]] - z[base[1]]) * _unit(nose - middle)
+    else:
+        tail = _focus(z, 0, nose)
+    head = 0.5 * (_focus(z, first, z[0]) + _focus(z, last, z[0]))
+    if bool((torch.abs(tail - head) < 0.2 * torch.abs(nose - z[0])).detach()):
+        middle, spread = 0.5 * (tail + head), 0.1 * (z[0] - nose)
+        tail, head = middle + spread, middle - spread
+    return 0.5 * (tail + head), 0.25 * (tail - head)
+
+
+def _focus(z: Tensor, tip: int, other: Tensor) -> Tensor:
+    chord = torch.abs(other - z[tip])
+    a, b, c = (z[k] for k in beside(_numpy(z), tip, complex(other.detach())))
+    area = 0.5 * torch.abs(((a - b) * torch.conj(c - b)).imag)
+    sides = torch.abs(a - b) * torch.abs(c - b) * torch.abs(a - c)
+    radius = sides / (4.0 * area + 1e-12 * chord**2)
+    ratio = torch.clamp(2.0 * radius / chord, 4e-4, 0.8)
+    inwards = 1j * (a - c)
+    if bool(((torch.conj(inwards) * (other - b)).real < 0.0).detach()):
+        inwards = -inwards
+    return b + _unit(inwards) * 0.5 * chord * (1.0 - torch.sqrt(1.0 - ratio))
+
+
+def _joukowski(z: Tensor, centre: Tensor, quarter: Tensor) -> Tensor:
+    Z = (z - centre) / quarter
+    end = torch.abs(Z.detach() - 2.0) < 1e-13  # the branch point, whose root has no slope
+    Z = torch.where(end, torch.full_like(Z, 2.0), Z)
+    root = torch.sqrt(torch.where(end, torch.ones_like(Z), Z - 2.0)) * torch.sqrt(Z + 2.0)
+    return 0.5 * (Z + torch.where(end, torch.zeros_like(Z), root))
+
+
+def _remove(corner: tuple[Tensor, ...], v: Tensor) -> Tensor:
+    p, q, P, Q, k = corner
+    tip = v.detach() == p.detach()
+    safe = torch.where(tip, (2.0 * p - q).expand_as(v), v)
+    r = torch.exp(torch.log((safe - p) / (safe - q)) / k)
+    return torch.where(tip, P.expand_as(v), (Q * r - P) / (r - 1.0))
+
+
+def _centroid(zeta: Tensor) -> Tensor:
+    base = zeta - zeta[0]
+    ahead = torch.roll(base, -1)
+    cross = (torch.conj(base) * ahead).imag
+    return zeta[0] + (cross * (base + ahead)).sum() / (3.0 * cross.sum())
+
+
+def _unwrapped(angle: Tensor) -> Tensor:
+    values = angle.detach().cpu().numpy()
+    turns = torch.as_tensor(np.unwrap(values) - values, dtype=angle.dtype, device=angle.device)
+    return angle + turns
+
+
+def _unit(v: Tensor) -> Tensor:
+    return v / torch.abs(v)
+
+
+def _numpy(values: Tensor) -> Any:
+    return values.detach().cpu().numpy()
+
+
+def _mask(where: np.ndarray[Any, Any], like: Tensor) -> Tensor:
+    return torch.as_tensor(where, device=like.device)

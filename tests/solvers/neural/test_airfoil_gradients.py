@@ -1,0 +1,89 @@
+"""Airfoil grids in torch: those of numpy, and gradients that finite differences confirm."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.naca import naca
+from geometry.sampling import Sampling
+from solvers.neural.operator import infer
+
+torch = pytest.importorskip("torch")
+from solvers.neural.differentiable import AirfoilGrids  # noqa: E402 - it imports torch
+
+
+def airfoil(designation: str, ni: int, nj: int, **settings: Any) -> Boundary:
+    return naca(designation).boundary(Sampling(ni, nj, "o", **settings))
+
+
+def walls(*boundaries: Boundary) -> list[Any]:
+    return [torch.tensor(np.stack([getattr(b, side) for b in boundaries])) for side in ("south", "north")]
+
+
+@pytest.mark.parametrize(
+    ("designation", "ni", "nj", "spacing"),
+    [("2412", 161, 60, "cosine"), ("4412-sharp", 120, 41, "cosine"), ("23012", 90, 30, "conformal")],
+)
+@pytest.mark.parametrize(("model", "polish"), [("base", 2), ("airfoil-o", 0), ("airfoil-o", 1)])
+def test_torch_equals_numpy(
+    designation: str, ni: int, nj: int, spacing: Any, model: str, polish: int
+) -> None:
+    boundary = airfoil(designation, ni, nj, spacing=spacing)
+    expected = infer(boundary, model, polish or "off")
+    assert expected.method == "operator"
+    found = AirfoilGrids(model, polish)(*walls(boundary), nj)[0].numpy()
+    np.testing.assert_allclose(found, expected.grid.nodes, rtol=0, atol=1e-12 * np.abs(boundary.north).max())
+
+
+def test_a_mirrored_and_a_symmetric_body_are_those_of_numpy_in_one_batch() -> None:
+    one, other = airfoil("0012-sharp", 101, 40), airfoil("4412-sharp", 101, 40)
+    south, north = walls(one, other)
+    turned = [edge.flip(1) * torch.tensor([1.0, -1.0]) for edge in (south, north)]
+    grids = AirfoilGrids("airfoil-o", 1)
+    found = grids(*(torch.cat(pair) for pair in zip((south, north), turned, strict=True)), 40)
+    mirrored = found[2:].flip(1) * torch.tensor([1.0, -1.0])
+    np.testing.assert_allclose(mirrored, found[:2], rtol=0, atol=2e-11)
+    np.testing.assert_allclose(found[0], infer(one, "airfoil-o", 1).grid.nodes, rtol=0, atol=2e-11)
+
+
+def test_walls_are_the_given_ones() -> None:
+    south, north = walls(airfoil("2412", 81, 20))
+    found = AirfoilGrids("base", 1)(south, north, 20)
+    assert torch.equal(found[:, :, 0], south)
+    assert torch.equal(found[:, :, -1], north)
+
+
+@pytest.mark.parametrize("designation", ["2412", "4412-sharp"])
+def test_gradients_are_those_of_finite_differences(designation: str) -> None:
+    """A smooth random direction of both walls, against the change of a random sum of the nodes."""
+    south, north = walls(airfoil(designation, 101, 31, spacing="cosine"))
+    grids = AirfoilGrids("airfoil-o", 1)
+    rng = np.random.default_rng(4)
+    theta = 2.0 * np.pi * np.arange(101) / 100
+    waves = np.stack([np.cos(k * theta + k) / (k + 1) for k in range(5)])
+    moves = [torch.tensor((rng.standard_normal((2, 5)) @ waves).T[None] * size) for size in (0.02, 0.5)]
+    for move in moves:
+        move[:, -1] = move[:, 0]
+    weights = torch.tensor(rng.standard_normal((1, 101, 31, 2)))
+    given = [edge.clone().requires_grad_() for edge in (south, north)]
+    (grids(*given, 31) * weights).sum().backward()
+    slope = sum(float((edge.grad * move).sum()) for edge, move in zip(given, moves, strict=True))
+    step = 1e-5
+
+    def total(way: float) -> float:
+        moved = [edge + way * move for edge, move in zip((south, north), moves, strict=True)]
+        return float((grids(*moved, 31) * weights).sum())
+
+    assert slope == pytest.approx((total(step) - total(-step)) / (2.0 * step), rel=1e-6)
+
+
+def test_a_body_that_cannot_be_lifted_is_refused() -> None:
+    angle = -2.0 * np.pi * np.arange(8) / 7
+    ring = torch.tensor(np.stack([np.cos(angle), np.sin(angle)], 1)[None])
+    with pytest.raises(InputError, match="the wall has 7 nodes"):
+        AirfoilGrids("base")(ring, 5.0 * ring, 10)
