@@ -94,7 +94,8 @@ def solve(
         spent = {"grid": time.perf_counter() - begun}
         return Solution(grid, method, residual=residual, cycles=cycles, seconds=spent, notes=notes)
     name = "Winslow's equations" if controls is None else f"the equations of {method}"
-    raise SolverError(f"{name} diverged from every start ({'; '.join(notes)}); use more nodes, variational or tfi")
+    problem = f"{name} diverged from every start ({'; '.join(notes)})"
+    raise SolverError(f"{problem}; use more nodes, variational or tfi")
 
 
 def solve_thomas_middlecoff(
