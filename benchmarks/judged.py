@@ -134,7 +134,7 @@ def table(title: str, found: Mapping[str, Floats], told: str = "") -> str:
 
 def as_good(found: Mapping[str, Floats]) -> str:
     """Return which rivals (of the same goal) come out as good as each of our ways, and in no more time."""
-    lines = []
+    told: dict[str, list[str]] = {}
     for ours, own in found.items():
         if "network" not in ours and "quad-" not in ours:
             continue
@@ -150,6 +150,9 @@ def as_good(found: Mapping[str, Floats]) -> str:
             and np.median(figures[:, 5]) <= 1.05 * np.median(own[:, 5])
         ]
         if rivals:
-            told = f"\nWithout a network, as good as {ours} in no more time: {', '.join(rivals)}."
-            lines.append(told.replace("**", ""))
-    return "\n".join(lines) + ("\n" if lines else "")
+            told.setdefault("; ".join(rivals), []).append(ours)
+    lines = [
+        f"- as good as {'; '.join(ours)}, in no more time, is: {rivals}".replace("**", "")
+        for rivals, ours in told.items()
+    ]
+    return "\n".join(["\nWithout a network,", *lines]) + "\n" if lines else ""
