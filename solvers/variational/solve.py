@@ -105,7 +105,10 @@ def solve(
     if initial is None:
         full = tol is not None or boundary.topology == "c"
         limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
-        nodes, weights, iterations, valid = _nested(boundary, weights, still, limits)
+        found = _nested(boundary, weights, still, limits)
+        if not found[-1] and boundary.topology == "quad":  # the other minimum of the coarsest level
+            found = _nested(boundary, weights, still, limits, np.inf)
+        nodes, weights, iterations, valid = found
     else:
         nodes = _inside(boundary, initial)
         iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
@@ -117,11 +120,12 @@ def solve(
 
 
 def _nested(
-    boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int]
+    boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int], easy: float = EASY
 ) -> tuple[Floats, Weights, int, bool]:
     """Return nodes, the weights that made them, iterations on the finest level, whether it is valid.
 
-    The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes.
+    The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes. A
+    folded start that unfolds as a whole is not repaired up to the value `easy`.
     """
     periodic = boundary.topology == "o"
     coarsest = (COARSEST if boundary.topology == "quad" else COARSEST_AROUND), COARSEST
@@ -132,9 +136,8 @@ def _nested(
         levels.append(thinned(levels[-1], *halves))
     levels = levels[:1] + [level for level in levels[1:] if max(level.ni, level.nj) <= NEXT]
     last = len(levels) - 1
-    nodes, weights, iterations, valid = _coarsest(
-        levels[-1], weights, still, limits[0] if last == 0 else MOST
-    )
+    most = limits[0] if last == 0 else MOST
+    nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most, easy)
     stiffness = _stiffness(nodes, weights) if valid and last > 0 and not periodic else None
     counts = nodes.shape[0], nodes.shape[1]
     for k in range(last - 1, -1, -1):
@@ -161,7 +164,7 @@ def _evaluated(nodes: Floats, boundary: Boundary) -> Floats:
 
 
 def _coarsest(
-    boundary: Boundary, weights: Weights, still: float, most: int
+    boundary: Boundary, weights: Weights, still: float, most: int, easy: float
 ) -> tuple[Floats, Weights, int, bool]:
     """Return what `_nested` does, for the coarsest level, from Winslow's solution.
 
@@ -171,7 +174,7 @@ def _coarsest(
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in _angles(start, boundary.topology)]
     periodic = boundary.topology == "o"
-    nodes, iterations, valid = _descended(start, weights, still, most, periodic)
+    nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
         if not valid or all(
@@ -186,7 +189,7 @@ def _coarsest(
 
 
 def _descended(
-    start: Floats, weights: Weights, still: float, most: int, periodic: bool
+    start: Floats, weights: Weights, still: float, most: int, periodic: bool, easy: float
 ) -> tuple[Floats, int, bool]:
     """Return the minimum reached from `start` on the coarsest level, iterations, whether it is valid.
 
@@ -202,7 +205,7 @@ def _descended(
     value, low, iterations = np.inf, 0.0, 0
     if _unfold(z, descent, terms):
         value, low, iterations = descent.run(z, *terms, 0.0, None, _moves(still, start), REACH, most)
-    if value <= EASY:
+    if value <= easy:
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
     more, valid = descend(repaired, weights, still, most)

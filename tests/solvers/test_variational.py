@@ -88,6 +88,16 @@ def test_the_coarsest_level_starts_from_winslows_solution(make, ni: int, nj: int
     assert np.abs(winslow_start(boundary) - exact).max() < 0.02 * change
 
 
+def test_a_minimum_that_folds_on_finer_levels_gives_way_to_the_other() -> None:
+    boundary = random_quad(171, 65, 65)
+    assert boundary is not None
+    assert folded(winslow(boundary).grid.nodes) > 100
+    assert not module._nested(boundary, Weights(), module.STILL, (200, 200))[-1]
+    found = solve(boundary)
+    assert found.notes == ()
+    assert folded(found.grid.nodes) == 0
+
+
 def test_of_several_minima_of_a_hard_domain_the_better_one_counts() -> None:
     boundary = random_quad(22, 17, 17)
     assert boundary is not None
