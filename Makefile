@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.c' -o -name '*.h')
 
-.PHONY: help demo test test-clients fuzz kills lint train train-airfoils train-quads paper paper-quick bench docs clean
+.PHONY: help demo test test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -72,7 +72,7 @@ lint: $(VENV)/.developing
 
 # --- the shipped models: the recipes are in their headers and in docs/models.md
 MODELS := solvers/neural/pretrained
-train: train-airfoils train-quads
+train: train-airfoils train-quads train-holes
 
 train-airfoils: $(VENV)/.developing
 	@mkdir -p train
@@ -102,6 +102,22 @@ train/variational.h5: | $(VENV)/.developing
 	$(BIN)/meshonet solve-pde train/quads-33.h5 --method variational -q -o $@ || test $$? -eq 3
 	rm train/quads-33.h5
 
+# the quad network taught on, around bodies; Winslow's grids again with twice the nodes
+train-holes: train/holes/winslow.h5 train/holes/variational.h5
+	$(BIN)/meshonet train train/holes/variational.h5 train/holes/winslow.h5 --model quad --initial quad-general \
+	  -o train/hole-o.safetensors --epochs 40 --batch 16 --rate 0.001 --held-out 48 --seed 0 --resume
+	cp train/hole-o.safetensors $(MODELS)
+
+train/holes/winslow.h5: | $(VENV)/.developing
+	@mkdir -p train/holes
+	$(BIN)/meshonet sample-boundary --family bodies --count 474 --seed 1 --res 129x65 -q -o train/holes/bodies.h5
+	$(BIN)/meshonet solve-pde train/holes/bodies.h5 -q -o train/holes/fine.h5 || test $$? -eq 3
+	$(BIN)/meshonet convert train/holes/fine.h5 --coarsen 2 -q -o $@
+	rm train/holes/bodies.h5 train/holes/fine.h5
+
+train/holes/variational.h5: train/holes/winslow.h5
+	$(BIN)/meshonet solve-pde $< --method variational -q -o $@ || test $$? -eq 3
+
 # --- the MeshONet paper from its families to docs/paper: hours (it goes on where it stopped), or minutes
 PAPER = $(MAKE) -C examples/paper MESHONET=$(abspath $(BIN))/meshonet PYTHON=$(abspath $(BIN))/python
 paper: $(VENV)/.developing
@@ -116,6 +132,7 @@ bench: $(VENV)/.developing
 	$(BIN)/python benchmarks/bench_operator.py $(if $(FILES),--files $(FILES)) --keep build/bench --page docs/benchmarks.md
 	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md
 	$(BIN)/python benchmarks/bench_quads.py --page docs/quad-operator.md
+	$(BIN)/python benchmarks/bench_bodies.py --page docs/body-operator.md
 	for name in tfi variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done
 
 docs: $(VENV)/.developing

@@ -228,9 +228,9 @@ HEAD = """# Quad grids: TFI, Winslow, variational
 Angles are the largest included angle of each cell, in degrees; a corner of the boundary itself (arch 147.5,
 hexagon 135) bounds the maximum from below. Distances are relative, in L2, to the method without --coarse.
 Processor time of one thread of a shared, busy machine, the best of several runs. Folds are counted as they
-leave the solver, before the guard repairs them. No operator for four-sided domains is shipped; around
-airfoils it stands beside. Around a notch the full variational solve takes many iterations on fine grids;
-`--coarse auto` goes through fewer nodes there.
+leave the solver, before the guard repairs them. The operator for four-sided domains has
+[a page of its own](quad-operator.md). Around a notch the full variational solve takes many iterations on
+fine grids; `--coarse auto` goes through fewer nodes there.
 
 ![Grids by five ways, coloured by the largest included angle](img/quad-grids.png)
 """

@@ -39,16 +39,16 @@ class Together:
     ----------
     alone : solves one boundary.
     many : solves several boundaries in one go.
-    topology : of those that `many` solves.
+    topology : of those that `many` solves; None if it solves none.
     """
 
     def __init__(
         self,
         alone: Callable[[Boundary], Solution],
         many: Callable[[Sequence[Boundary]], list[Solution]],
-        topology: Topology = "quad",
+        topology: Topology | None,
     ) -> None:
-        self._alone, self._many, self._topology = alone, many, topology
+        self._alone, self._many, self.topology = alone, many, topology
         self._made: dict[int, Solution] = {}
 
     def __call__(self, boundary: Boundary) -> Solution:
@@ -59,7 +59,7 @@ class Together:
         """Yield the members of `found`, solved `AHEAD` at a time; one that fails does so in its turn."""
         while group := list(islice(found, AHEAD)):
             sampled = [_sampled(item.what, sampling) for item in group]
-            alike = [one for one in sampled if isinstance(one, Boundary) and one.topology == self._topology]
+            alike = [one for one in sampled if isinstance(one, Boundary) and one.topology == self.topology]
             if len(alike) > 1:
                 with suppress(MeshonetError):  # one of them fails: that is told in its turn
                     solutions = self._many(alike)

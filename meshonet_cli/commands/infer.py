@@ -93,11 +93,10 @@ def infer(
     }
     edges = wall.read_edges((), constant_layers, growth, res, layers)
     steps = o.polish_steps(polish)
-    topology_of_many = many_of(model)
     solver = Together(
         partial(operate, model=model, polish=steps, answer=answer),
         partial(infer_many, model=model, polish=steps),
-        topology_of_many or "quad",
+        many_of(model),
     )
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}
@@ -109,7 +108,7 @@ def infer(
         allow_invalid,
         parse_gates(fail_on),
         repair=answer == "valid",
-        together=solver if topology_of_many else None,
+        together=solver if solver.topology else None,
     )
     session = Session(quiet=quiet, as_json=as_json, debug=debug)
     destination = Destination(output, to_format, "grids")

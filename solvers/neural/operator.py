@@ -4,7 +4,8 @@ A boundary's two walls are lifted to a periodic strip, where the harmonic extens
 Winslow's equations; the network adds the difference, Picard's iteration polishes, and the separable sum is
 evaluated at the grid's nodes. Polished until it changes nothing the answer is the same without the network,
 in less time: unless a model is named, the network answers only alone or before a given number of steps.
-Boundaries the lift cannot take go to the elliptic solver, and the solution says so.
+Compact bodies the lift cannot take go to the model for bodies, unless a model was named, other boundaries to
+the elliptic solver, and the solution says so.
 """
 
 from __future__ import annotations
@@ -82,7 +83,9 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     try:
         nodes, changes, rough = _operate(boundary, network, polish)
     except InputError as error:
-        return _elliptic(boundary, f"the operator cannot take this body ({error.problem})", begun)
+        why = f"the operator cannot take this body ({error.problem})"
+        body = _around(boundary, why, begun) if model is None and polish == "auto" else None
+        return body or _elliptic(boundary, why, begun)
     if changes and not changes[-1] < WILD:
         return _elliptic(boundary, "the operator's polish diverged", begun)
     if rough and count_folded(nodes):
@@ -179,6 +182,28 @@ def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple
     grid.fill(lift, nodes, axis)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     return nodes, changes, rough
+
+
+def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:
+    """Return the grid by `hole-o` of a compact body, None where that has folds."""
+    from solvers.coarse import thinned
+    from solvers.neural.quads.around import compact
+    from solvers.neural.quads.encoding import LATENT
+    from solvers.neural.quads.inference import infer_quads
+    from solvers.neural.quads.unrolled import AROUND
+
+    if boundary.ni < LATENT or not compact(boundary):
+        return None
+    try:
+        coarse = infer_quads([thinned(boundary, AROUND, LATENT)], "hole-o", "off")[0]
+        if count_folded(coarse.grid.nodes):
+            return None  # to unfold it takes longer than to solve
+        found = infer_quads([boundary], "hole-o")[0]
+    except InputError:
+        return None
+    if count_folded(found.grid.nodes):
+        return None
+    return replace(found, notes=(f"{why}: hole-o used",), seconds={"grid": time.perf_counter() - begun})
 
 
 def _elliptic(boundary: Boundary, why: str, begun: float) -> Solution:

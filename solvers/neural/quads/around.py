@@ -26,6 +26,9 @@ from solvers.neural.quads.network import CHUNK
 from solvers.neural.quads.unrolled import AROUND, even, factors, middles, rolled, unrolled
 from solvers.spline import between
 
+COMPACT = 0.15
+"""Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""
+
 
 def coarse_grids(
     boundaries: Sequence[Boundary], model: QuadModel, head: int, dtype: str = "float64"
@@ -62,6 +65,13 @@ def coarse_grids(
     grids = rolled(base, centres)
     grids[:, :, [0, -1]] = walls
     return np.ascontiguousarray(np.stack([grids.real, grids.imag], axis=1))
+
+
+def compact(boundary: Boundary) -> bool:
+    """Return whether an O boundary's body is about as thick as those that models are trained on."""
+    wall = _complex(boundary.south.T[None])[:, :-1]
+    reach = np.abs(wall - middles(wall)[:, None])
+    return bool(reach.min() > COMPACT * reach.max())
 
 
 def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:

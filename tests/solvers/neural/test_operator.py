@@ -13,7 +13,7 @@ from geometry.families import procedural
 from geometry.families.family import family
 from geometry.naca import naca
 from geometry.outline import Outline
-from geometry.quality import count_folded
+from geometry.quality import count_folded, measure
 from geometry.sampling import Sampling
 from geometry.topology import o_boundary
 from solvers.elliptic.solve import solve
@@ -169,15 +169,19 @@ def test_polished_to_the_end_the_network_is_left_out_unless_it_is_named() -> Non
 
 
 @pytest.mark.parametrize("name", ["hole", "square"])
-def test_bodies_and_far_fields_with_corners_go_to_the_elliptic_solver(name: str) -> None:
+def test_bodies_and_far_fields_with_corners_go_to_the_model_for_bodies(name: str) -> None:
     if name == "hole":
         edges = family("hole").boundary(0.3, 101, 61)
     else:
         body = Outline(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]))
         edges = body.boundary(Sampling(ni=121, nj=61, topology="o"))
-    solution = infer(edges)
-    assert solution.method == "winslow"
-    assert "that the strip does not resolve" in solution.notes[0]
+    solution, named = infer(edges), infer(edges, model="airfoil-o")
+    assert (solution.model, named.method) == ("hole-o", "winslow")
+    for one in (solution, named):
+        assert "that the strip does not resolve" in one.notes[0]
+    own, other = (measure(one.grid)["max_angle"] for one in (solution, named))
+    assert own.mean < other.mean
+    assert own.max < other.max + 0.5
 
 
 def test_an_unknown_model_is_refused_with_those_that_exist() -> None:

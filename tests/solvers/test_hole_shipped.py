@@ -1,0 +1,59 @@
+"""The shipped network for bodies: golden nodes, folds and angles on bodies that it was not trained on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geometry.boundary import Boundary
+from geometry.compare import compare
+from geometry.families.bodies import boundary
+from geometry.families.family import family
+from geometry.quality import count_folded, measure
+from solvers.elliptic.solve import solve as winslow
+from solvers.neural.quads.inference import infer_quads
+
+GOLDEN = {
+    "hole-o": [[0.399751877859766, -0.01972566534495654], [-0.6791529086648774, 0.5824849318107179]],
+    "hole-winslow": [[0.41355677492126025, -0.016901873990759347], [-0.5721204755478535, 0.5749589200733005]],
+}
+"""Nodes (5, 8) and (40, 20) of the hole at 0.2 on 65 x 33, without polish."""
+
+
+def bodies() -> list[Boundary]:
+    return [boundary(np.random.default_rng([2000, k]), 97, 49) for k in range(10)]
+
+
+def hole(height: float, ni: int = 101, nj: int = 101) -> Boundary:
+    return family("hole").boundary(height, ni, nj)
+
+
+@pytest.mark.parametrize("model", list(GOLDEN))
+def test_golden_nodes(model: str) -> None:
+    nodes = infer_quads([hole(0.2, 65, 33)], model, "off")[0].grid.nodes
+    np.testing.assert_allclose(nodes[[5, 40], [8, 20]], GOLDEN[model], rtol=0, atol=1e-9)
+
+
+def test_polished_grids_are_valid_and_nearer_to_right_angles_than_winslows() -> None:
+    edges = bodies()
+    found = [solution.grid for solution in infer_quads(edges, "hole-o")]
+    assert sum(count_folded(grid.nodes) for grid in found) == 0
+    own, other = (
+        np.array([[measure(grid)["max_angle"].max, measure(grid)["max_angle"].mean] for grid in grids])
+        for grids in (found, [winslow(one).grid for one in edges])
+    )
+    assert (own[:, 1] < other[:, 1]).mean() >= 0.9
+    assert np.median(own[:, 1]) < 97.0 < np.median(other[:, 1])
+    assert np.median(own[:, 0]) < np.median(other[:, 0])
+
+
+def test_the_papers_hole_is_nearer_to_winslows_grid_than_the_papers_model_and_nearest_with_polish() -> None:
+    edges = [hole(height) for height in (-0.35, 0.0, 0.2)]
+    goals = [winslow(one, tol=1e-8).grid for one in edges]
+    worst = []
+    for polish in (0, 2):
+        found = [solution.grid for solution in infer_quads(edges, "hole-winslow", polish)]
+        assert sum(count_folded(grid.nodes) for grid in found) == 0
+        worst.append(max(compare(grid, goal).relative_l2 for grid, goal in zip(found, goals, strict=True)))
+    assert worst[0] < 3e-2  # MeshONet: 3.2e-2
+    assert worst[1] < 2e-3
