@@ -30,6 +30,8 @@ _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
 grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
 _BASE_GROWTH = 1.15
+_BASE_JUMP = 4.0
+"""Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
 _ROUND_CELLS = 14
 """Fewest cells on half a rounded base, when there are 16 times as many in all."""
 _BASE_SHARE = 0.35
@@ -146,7 +148,8 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
     wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
     plan = _natural(stations, Plan(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
     if stations.half_base:
-        half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, asked=bool(wanted_te))
+        fixed = bool(wanted_te) or sampling.spacing == "uniform"
+        half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
         if stations.rounded and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
             step = stations.half_base / half
@@ -185,17 +188,20 @@ def _natural(stations: Stations, plan: Plan, sampling: Sampling) -> Plan:
     return replace(plan, te=mean * min(0.5, _EDGE_STEP / n), le=min(max(le, 0.05 * mean), 0.7 * mean))
 
 
-def _base_cells(half_base: float, step: float, cells: int, *, asked: bool) -> tuple[int, float]:
+def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:
     """Return the cells of half a base and the size of the one at the corner.
 
     At least 2, more for wider bases (measured: fewer fold at the corners, more make the solver slow); as
-    many as a step of the size asked for needs when growing by 15 % towards the middle.
+    many as a step of the size asked for needs when growing by 15 % towards the middle. Where the steps beside
+    the base are `fixed`, those on it are not much smaller: cells fold at a corner between very unlike steps.
     """
     enough = cells >= 48
     least = max(2, round(2 * (half_base / 1.2e-4) ** (1 / 3))) if enough else 1
     least = min(least, max(cells // 24, 1), 12)
+    if fixed:
+        least = min(least, math.ceil(_BASE_JUMP * half_base / step))
     most = max(least, int(0.5 * _BASE_SHARE * cells))
-    if not asked:
+    if not fixed:
         step = min(step, half_base / least)
     if half_base <= 6 * step:
         half = min(max(least, round(half_base / step)), most)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from geometry.airfoil import Airfoil
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.families import procedural
@@ -143,6 +145,15 @@ def test_even_spacing_around_the_leading_edge_stays_with_the_operator() -> None:
     solution = infer(boundary("2412-sharp", 200, 100, spacing="uniform"))
     assert solution.method == "operator"
     assert count_folded(solution.grid.nodes) == 0
+
+
+@pytest.mark.parametrize("settings", [{"spacing": "uniform"}, {"spacing": "tanh", "te_spacing": 0.012}])
+def test_large_cells_beside_a_blunt_edge_do_not_fold(settings: dict[str, Any]) -> None:
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 80)))
+    half = 0.06 * np.sqrt(x) * (1 - x) * 2 + 0.003 * x
+    points = np.concatenate([np.stack([x, half], 1)[::-1], np.stack([x, -half], 1)[1:]])
+    edges = Airfoil(points, "blunt").boundary(Sampling(200, 200, "o", **settings))
+    assert count_folded(infer(edges).grid.nodes) == 0
 
 
 @pytest.mark.parametrize(
