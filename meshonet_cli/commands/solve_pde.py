@@ -28,8 +28,9 @@ Method = Annotated[
         help="Equations to solve: winslow is elliptic; thomas-middlecoff too, with control functions that "
         "carry the spacing of the edges inside; steger-sorenson has sources at walls that turn the lines "
         "there to --wall-angle; variational minimises a functional of angles "
-        "and edge lengths: better angles, no folds; hyperbolic marches from the wall, and is what auto takes "
-        "when a first cell is given.",
+        "and edge lengths: better angles, no folds; hyperbolic marches from the wall. auto: hyperbolic "
+        "around bodies when a first cell is given, else variational on C grids unless --coarse, --refine, --tol, "
+        "--max-cycles or --initial is given, else winslow.",
     ),
 ]
 Tolerance = Annotated[
@@ -52,8 +53,8 @@ Coarse = Annotated[
     str,
     typer.Option(
         "--coarse", metavar="auto|off|N",
-        help="Solve on N x N nodes and evaluate at --res by splines. auto: on quads, winslow above 512 nodes "
-        "a side with 257 and variational above 257 with 129, which measures as good; in full with --tol, "
+        help="Solve on N x N nodes and evaluate at --res by splines. auto: on quads (C grids), winslow above 512 "
+        "nodes a side with 257 and variational above 257 with 129, which measures as good; in full with --tol, "
         "--max-cycles or --initial.",
     ),
 ]

@@ -386,3 +386,17 @@ def test_a_wider_repair_moves_more(meshonet: Meshonet, tmp_path: Path) -> None:
     assert done.code == 2
     assert "repair-margin" in done.err
     assert not Path("no.vts").exists()
+
+
+@pytest.mark.parametrize("res", ["100x50", "270x60"])
+def test_lines_of_c_grids_do_not_lean_along_the_wake_unless_winslow_is_asked_for(
+    meshonet: Meshonet, res: str
+) -> None:
+    words = ("solve-pde", "naca:2412", "--topology", "c", "--res", res, "--json", "-o", "g.vts")
+    told, winslow, stopped = (
+        meshonet(*words, *more).only for more in ((), ("--method", "winslow"), ("--tol", "1e-6"))
+    )
+    assert [one["method"] for one in (told, winslow, stopped)] == ["variational", "winslow", "winslow"]
+    assert told["folded"] == 0
+    assert told["quality"]["max_angle"]["max"] < 140 < 155 < winslow["quality"]["max_angle"]["max"]
+    assert told["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"] - 5
