@@ -29,8 +29,8 @@ Method = Annotated[
         "carry the spacing of the edges inside; steger-sorenson has sources at walls that turn the lines "
         "there to --wall-angle; variational minimises a functional of angles "
         "and edge lengths: better angles, no folds; hyperbolic marches from the wall. auto: hyperbolic "
-        "around bodies when a first cell is given, else variational on C grids unless --coarse, --refine, --tol, "
-        "--max-cycles or --initial is given, else winslow.",
+        "around bodies when a first cell is given, else variational on C grids unless --coarse, --refine, "
+        "--tol, --max-cycles or --initial is given, else winslow.",
     ),
 ]
 Tolerance = Annotated[
@@ -53,9 +53,9 @@ Coarse = Annotated[
     str,
     typer.Option(
         "--coarse", metavar="auto|off|N",
-        help="Solve on N x N nodes and evaluate at --res by splines. auto: on quads (C grids), winslow above 512 "
-        "nodes a side with 257 and variational above 257 with 129, which measures as good; in full with --tol, "
-        "--max-cycles or --initial.",
+        help="Solve on N x N nodes and evaluate at --res by splines. auto: on quads (C grids), winslow "
+        "above 512 nodes a side with 257 and variational above 257 with 129, which measures as good; in full "
+        "with --tol, --max-cycles or --initial.",
     ),
 ]
 Refine = Annotated[
