@@ -48,7 +48,7 @@ def main() -> None:
     options = parser.parse_args()
     pages: Path = options.pages
     results = pages / "results"
-    parts = [words.HEAD, options.note, words.CLAIMS, claims(results), lowest(results)]
+    parts = [words.HEAD, options.note, words.STANDS, lowest(results), words.CLAIMS, claims(results)]
     parts += [words.QUALITY, *quality(results), words.RACE, race(results, pages)]
     parts += [words.PHYSICS, physics(results)]
     parts += [words.TIME.format(machine=options.machine), times(results), words.MAPS, maps(pages)]
