@@ -36,6 +36,7 @@ from geometry.sampling import Sampling
 from solvers.coarse import solve_coarse, thinned
 from solvers.elliptic.solve import solve as winslow
 from solvers.neural.operator import infer as operate
+from solvers.neural.quads.inference import infer_quads
 from solvers.solution import Solution
 from solvers.tfi import tfi
 from solvers.variational.solve import solve as variational
@@ -77,6 +78,7 @@ def ways(n: int) -> dict[str, Way]:
         found["**variational**"] = variational
     for m in counts:
         found[f"**variational --coarse {m}**"] = partial(solve_coarse, method=variational, n=m, smooth=True)
+    found["operator, quad-general"] = lambda b: infer_quads([b], "quad-general")[0]
     return found
 
 
@@ -90,7 +92,7 @@ def shapes(n: int, makers: tuple[Callable[[int, int], Boundary], ...] = SHAPES) 
         for name, way in ways(n).items():
             full_solve = "coarse" not in name
             seconds, nodes = best(way, boundary, 7 if n < 500 else 1 if full_solve else 4)
-            family = name.strip("*").split()[0]
+            family = "variational" if name.startswith("operator") else name.strip("*").split()[0]
             full = reference.setdefault(family, nodes)
             lines.append(row(name, nodes, full, seconds))
         copied = min(clocked(partial(full.copy, order="K"))[0] for _ in range(5))

@@ -42,7 +42,7 @@ STILL = 1e-4
 """Moves at which the finest level stops, in the side of a square of as many cells as the grid has."""
 
 FEW = 4
-"""Iterations on a finest level of more nodes unless a tolerance is given, or a wake is to be met.
+"""Iterations on a finest level of more nodes, of a quad, unless a tolerance is given.
 
 They mend what the evaluation of the copy's minimum has bent. From there on the value falls, for tens of
 iterations around notches, but the angles hardly change.
@@ -103,7 +103,7 @@ def solve(
     weights = weights or (Weights() if boundary.topology == "quad" else AROUND)
     still = tol if tol is not None else STILL
     if initial is None:
-        full = tol is not None or boundary.topology == "c"
+        full = tol is not None or boundary.topology != "quad"
         limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
         found = _nested(boundary, weights, still, limits)
         if not found[-1] and boundary.topology == "quad":  # the other minimum of the coarsest level
