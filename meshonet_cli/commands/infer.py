@@ -38,6 +38,14 @@ Answer = Annotated[
         "pasted puts the true boundary on its edges, valid unfolds cells after that.",
     ),
 ]
+DeviceName = Annotated[
+    Literal["cpu", "cuda"] | None,
+    typer.Option(
+        "--device", metavar="cpu|cuda", show_default=False,
+        help="Compute grids of networks with torch there, members of a batch together; needs torch. "
+        "[default: here, without torch]",
+    ),
+]
 # fmt: on
 
 
@@ -48,6 +56,7 @@ def infer(
     model: ModelName = None,
     polish: Polish = "auto",
     answer: Answer = "valid",
+    device: DeviceName = None,
     topology: o.TopologyOption = "auto",
     spacing: o.SpacingOption = "auto",
     le_spacing: o.LeSpacing = None,
@@ -90,13 +99,14 @@ def infer(
         "--model": model,
         "--polish": None if polish == "auto" else polish,
         "--answer": None if answer == "valid" else answer,
+        "--device": device,
     }
     edges = wall.read_edges((), constant_layers, growth, res, layers)
     steps = o.polish_steps(polish)
     solver = Together(
-        partial(operate, model=model, polish=steps, answer=answer),
-        partial(infer_many, model=model, polish=steps),
-        many_of(model),
+        partial(operate, model=model, polish=steps, answer=answer, device=device),
+        partial(infer_many, model=model, polish=steps, device=device),
+        many_of(model, device),
     )
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}

@@ -19,6 +19,7 @@ from solvers.neural.weights import KIND, kind_of, model_path
 from solvers.solution import Solution
 
 if TYPE_CHECKING:
+    from solvers.neural.devices import Device
     from solvers.neural.trained import Trained
 
 Answer = Literal["valid", "pasted", "raw"]
@@ -27,7 +28,11 @@ edges, as the paper does; ``valid`` folded cells are repaired as well (by the ca
 
 
 def infer(
-    boundary: Boundary, model: str | None = None, polish: Polish = "auto", answer: Answer = "valid"
+    boundary: Boundary,
+    model: str | None = None,
+    polish: Polish = "auto",
+    answer: Answer = "valid",
+    device: Device | None = None,
 ) -> Solution:
     """Return the grid inside `boundary` by a shipped model, or by one that `meshonet train` made.
 
@@ -37,12 +42,15 @@ def infer(
     polish : of the strip operator (`solvers.neural.operator.infer`) or of a quad model
         (`solvers.neural.quads.inference.infer_quads`).
     answer : what becomes of the answer of a model that does not meet the boundary exactly.
+    device : where torch computes the grid; None computes it here, without torch.
 
     Raises
     ------
     InputError
-        a model that does not exist, cannot be read or does not suit the boundary.
+        a model that does not exist, cannot be read or does not suit the boundary; no such device.
     """
+    if device is not None:
+        return infer_many([boundary], model, polish, device)[0]
     kind = KIND if model in (None, "base") else kind_of(model_path(model))
     if kind in ("", KIND):
         return infer_strip(boundary, model, polish)
@@ -63,8 +71,10 @@ def infer(
     return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)
 
 
-def many_of(model: str | None) -> Topology | None:
+def many_of(model: str | None, device: Device | None = None) -> Topology | None:
     """Return the topology of what `infer_many` makes grids of in one go; None if it does not."""
+    if device is not None and not _is_quad(model):
+        return "o"
     if model in (None, "base") or kind_of(model_path(model)) != QUADS:
         return None
     from solvers.neural.quads.model import load_quads
@@ -73,20 +83,39 @@ def many_of(model: str | None) -> Topology | None:
 
 
 def infer_many(
-    boundaries: Sequence[Boundary], model: str | None = None, polish: Polish = "auto"
+    boundaries: Sequence[Boundary],
+    model: str | None = None,
+    polish: Polish = "auto",
+    device: Device | None = None,
 ) -> list[Solution]:
-    """Return what `infer` does for each of the boundaries, by one pass of a quad model.
+    """Return what `infer` does for each of the boundaries, by one pass of a quad model, or on a device.
 
     Raises
     ------
     InputError
-        as `infer` does; a model that is no quad model.
+        as `infer` does; a model that makes one grid at a time, or none on a device.
     """
+    if device is not None:
+        from solvers.neural.devices import infer_on
+
+        quads = _is_quad(model)
+        other = kind_of(model_path(_named(model))) not in (KIND, QUADS)
+        if other or (quads and many_of(model) != "quad"):
+            raise InputError(f"model {model} has no grids on a device", "leave --device out")
+        return infer_on(device, boundaries, model, polish, quads=quads)
     from solvers.neural.quads.inference import infer_quads
 
     if model is None or many_of(model) is None:
         raise InputError(f"model {model} makes one grid at a time", "name a quad model")
     return infer_quads(boundaries, model, polish)
+
+
+def _named(model: str | None) -> str | None:
+    return None if model == "base" else model
+
+
+def _is_quad(model: str | None) -> bool:
+    return _named(model) is not None and kind_of(model_path(model)) == QUADS
 
 
 _DONE = {True: "replaced by the true one", False: "left so"}

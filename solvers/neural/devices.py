@@ -1,0 +1,116 @@
+"""Grids of many boundaries through torch, on a device of its: the networks' own, without guard."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.grid import Grid
+from solvers.neural.operator import Polish
+from solvers.neural.operator import infer as infer_strip
+from solvers.neural.weights import DEFAULT
+from solvers.solution import Solution
+
+Device = Literal["cpu", "cuda"]
+
+STEPS = 3
+"""Picard steps of "auto" after the network."""
+
+
+def infer_on(
+    device: Device, boundaries: Sequence[Boundary], model: str | None, polish: Polish, *, quads: bool
+) -> list[Solution]:
+    """Return a grid inside each boundary, those of equal size computed together.
+
+    Bodies that cannot be lifted are solved as `solvers.neural.operator.infer` does.
+
+    Parameters
+    ----------
+    device : ``cpu`` or ``cuda``.
+    model : a strip or quad model; None is the shipped strip model.
+    polish : Picard steps of the strip operator; ``auto`` or ``off`` for quad models.
+    quads : `model` is a quad model.
+
+    Raises
+    ------
+    InputError
+        torch or the device is not there; boundaries or polish that do not suit the model.
+    """
+    _check(device)
+    if quads and polish not in ("auto", "off", 0):
+        raise InputError("steps of descent are not taken on a device", "leave --polish or --device out")
+    topology = "quad" if quads else "o"
+    for boundary in boundaries:
+        if boundary.topology != topology:
+            told = f"model {model or DEFAULT} makes {topology} grids on a device"
+            raise InputError(f"{told}, and this boundary is {boundary.topology}", "name another model")
+    groups: dict[tuple[int, int], list[int]] = {}
+    for k, boundary in enumerate(boundaries):
+        groups.setdefault((boundary.ni, boundary.nj), []).append(k)
+    found: dict[int, Solution] = {}
+    for rows in groups.values():
+        some = [boundaries[k] for k in rows]
+        begun = time.perf_counter()
+        nodes = _quads(some, model, device) if quads else _strips(some, model, polish, device)
+        spent = (time.perf_counter() - begun) / len(rows)
+        for k, boundary, one in zip(rows, some, nodes, strict=True):
+            found[k] = _solution(boundary, one, model or DEFAULT, device, spent)
+    return [found[k] for k in range(len(boundaries))]
+
+
+def _check(device: Device) -> None:
+    try:
+        import torch
+    except ImportError:
+        raise InputError("--device needs torch", "install it: pip install 'meshonet[train]'") from None
+    if device == "cuda" and not torch.cuda.is_available():
+        raise InputError("torch sees no CUDA device", "use --device cpu, or leave it out", source="--device")
+
+
+def _stacked(boundaries: Sequence[Boundary], sides: Sequence[str], device: Device) -> list[Any]:
+    import torch
+
+    arrays = [np.stack([getattr(b, side) for b in boundaries]) for side in sides]
+    return [torch.tensor(array, device=device) for array in arrays]
+
+
+def _quads(boundaries: Sequence[Boundary], model: str | None, device: Device) -> list[Floats | None]:
+    from solvers.neural.quads.differentiable import QuadGrids
+
+    grids = QuadGrids(str(model), device)
+    return list(grids(*_stacked(boundaries, ("south", "north", "west", "east"), device)).cpu().numpy())
+
+
+def _strips(
+    boundaries: Sequence[Boundary], model: str | None, polish: Polish, device: Device
+) -> list[Floats | None]:
+    import torch
+
+    from solvers.neural.differentiable import AirfoilGrids
+
+    steps = STEPS if polish == "auto" else 0 if polish == "off" else polish
+    grids = AirfoilGrids(model or DEFAULT, steps, device)
+    with torch.no_grad():
+        try:
+            south, north = _stacked(boundaries, ("south", "north"), device)
+            return list(grids(south, north, boundaries[0].nj).cpu().numpy())
+        except InputError:
+            if len(boundaries) == 1:
+                return [None]
+    return [_strips([one], model, polish, device)[0] for one in boundaries]
+
+
+def _solution(boundary: Boundary, nodes: Floats | None, model: str, device: Device, spent: float) -> Solution:
+    if nodes is None or not np.isfinite(nodes).all():
+        found = infer_strip(boundary)
+        return replace(found, notes=("not made on the device", *found.notes))
+    facts = {"method": "operator", "model": model, "device": device}
+    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    return Solution(grid, "operator", model=model, seconds={"grid": spent})

@@ -1,0 +1,79 @@
+"""`meshonet infer --device`: the same grids through torch, a batch together, or a clear line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Meshonet
+
+from formats.registry import read_grids
+from solvers.neural.quads.encoding import HEADS
+from solvers.neural.quads.export import write_model
+from solvers.neural.quads.network import shapes
+
+torch = pytest.importorskip("torch")
+
+
+@pytest.fixture
+def quads(tmp_path: Path) -> str:
+    rng = np.random.default_rng(0)
+    weights = {
+        name: 0.1 * rng.normal(size=shape) for name, shape in shapes((1, 2), (0, 1), len(HEADS)).items()
+    }
+    write_model(tmp_path / "quads.safetensors", weights, name="random", recipe={}, figures={})
+    return str(tmp_path / "quads.safetensors")
+
+
+def same(one: str, other: str) -> bool:
+    pairs = zip(read_grids(one), read_grids(other), strict=True)
+    return all(np.allclose(a.nodes, b.nodes, rtol=0, atol=1e-9) for a, b in pairs)
+
+
+def test_airfoils_are_those_without_torch(meshonet: Meshonet) -> None:
+    family = ("--family", "airfoil", "--count", "3", "--res", "81x30", "-o", "bodies.h5")
+    assert meshonet("sample-boundary", *family).code == 0
+    words = ("infer", "bodies.h5", "--model", "airfoil-o", "--polish", "1")
+    assert meshonet(*words, "-o", "here.h5").code == 0
+    told = meshonet(*words, "--device", "cpu", "-o", "there.h5", "--json").objects
+    assert [(one["method"], one["model"], one["folded"]) for one in told] == 3 * [
+        ("operator", "airfoil-o", 0)
+    ]
+    assert same("here.h5", "there.h5")
+
+
+def test_bodies_without_a_lift_are_solved_all_the_same(meshonet: Meshonet) -> None:
+    family = ("--family", "hole", "--count", "1", "--res", "8x9", "-o", "holes.h5")
+    assert meshonet("sample-boundary", *family).code == 0
+    done = meshonet("infer", "holes.h5", "--device", "cpu", "-o", "grid.vts", "--json").only
+    assert done["method"] == "winslow"
+
+
+def test_four_sided_domains_are_those_without_torch(meshonet: Meshonet, quads: str) -> None:
+    family = ("--family", "arch", "--count", "3", "--res", "21x17", "-o", "arches.h5")
+    assert meshonet("sample-boundary", *family).code == 0
+    words = ("infer", "arches.h5", "--model", quads, "--polish", "off")
+    meshonet(*words, "-o", "here.h5")
+    meshonet(*words, "--device", "cpu", "-o", "there.h5")
+    assert same("here.h5", "there.h5")
+
+
+def test_what_a_device_cannot_do_is_said(meshonet: Meshonet, quads: str) -> None:
+    family = ("--family", "arch", "--count", "1", "--res", "21x17", "-o", "arches.h5")
+    assert meshonet("sample-boundary", *family).code == 0
+    done = meshonet("infer", "arches.h5", "--model", quads, "--polish", "2", "--device", "cpu", "-o", "g.h5")
+    assert done.code == 2
+    assert "steps of descent are not taken on a device; leave --polish or --device out" in done.err
+    done = meshonet("infer", "arches.h5", "--device", "cpu", "-o", "g.h5")
+    assert done.code == 2
+    assert "model airfoil-o makes o grids on a device, and this boundary is quad" in done.err
+    assert not Path("g.h5").exists()
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="there is a CUDA device")
+def test_a_missing_device_is_told(meshonet: Meshonet) -> None:
+    done = meshonet("infer", "naca:2412", "--device", "cuda", "-o", "grid.vts")
+    assert done.code == 2
+    assert "torch sees no CUDA device; use --device cpu, or leave it out" in done.err
+    assert not Path("grid.vts").exists()
