@@ -150,7 +150,7 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
     if stations.half_base:
         fixed = bool(wanted_te) or sampling.spacing == "uniform"
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
-        if stations.rounded and half < min(_ROUND_CELLS, cells // 16):
+        if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
             step = stations.half_base / half
         plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)

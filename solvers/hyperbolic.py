@@ -207,6 +207,7 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings, co
         distance *= front.outer / reached
     nodes = front.nodes(levels)
     _snap(nodes, front.heights(first), steps)
+    _equalise(nodes, min(constant, cells - 1), front.heights(1.0))
     front.close(nodes)
     return nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None
 
@@ -250,6 +251,31 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(_FADE, 1.5 / max(rate, 1e-3)))
     if rows > 2:
         redistribute(nodes[..., 0], nodes[..., 1], heights, fade, np.empty(5 * rows))
+
+
+def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
+    """Make the first `constant` cells of every line as high as its first one, in place; less along a wake.
+
+    The march keeps areas, so that heights change where lines spread: by a few per cent over some rows. Nodes
+    move along their lines, taken as straight between them, less and less beyond the equal cells.
+    """
+    away = np.arange(nodes.shape[1])
+    fade = np.exp(-np.maximum(away - constant, 0.0) / _FADE)
+    fade[-1] = 0.0
+    share = widening[:, None] ** -2
+    for _ in range(
+        0 if constant < 2 else 4
+    ):  # straight pieces: what is left falls by the part of a cell moved
+        step = np.diff(nodes, axis=1)
+        height = np.hypot(step[..., 0], step[..., 1])
+        arc = np.pad(np.cumsum(height, axis=1), ((0, 0), (1, 0)))
+        wanted = arc[:, 1:2] * away
+        behind = wanted[:, constant] - arc[:, constant]
+        move = share * np.where(away <= constant, wanted - arc, behind[:, None] * fade)
+        out = np.maximum(move[:, :-1], 0.0) / height
+        back = np.minimum(move[:, 1:], 0.0) / height
+        nodes[:, :-1] += out[..., None] * step
+        nodes[:, 1:] += back[..., None] * step
 
 
 def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:

@@ -13,6 +13,7 @@ from geometry.families import procedural
 from geometry.growth import growing_steps
 from geometry.naca import naca
 from geometry.outline import Outline
+from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from geometry.sampling import Sampling
 from geometry.topology import o_boundary
@@ -354,3 +355,15 @@ def test_airfoils_are_marched_once(
     wall = naca("2412").boundary(Sampling(ni, nj, topology, "curvature", te="wedge"))
     hyperbolic(wall, wall_spacing=height)
     assert len(marches) == 1
+
+
+@pytest.mark.parametrize(("topology", "te"), [("o", "round"), ("o", "exact"), ("c", "wedge")])
+def test_constant_layers_are_equal_at_every_wall_node(topology: Topology, te: str) -> None:
+    wall = naca("4415").boundary(Sampling(160, 70, topology, "curvature", te=te))  # type: ignore[arg-type]
+    nodes = hyperbolic(wall, wall_spacing=1e-5, constant=6).grid.nodes
+    height = np.hypot(*np.moveaxis(np.diff(nodes, axis=1), -1, 0))
+    behind = max(wake_nodes(wall.south) - 1, 0) if topology == "c" else 0
+    at_wall = height[behind : len(height) - behind]
+    np.testing.assert_allclose(at_wall[:, 1:6], np.repeat(at_wall[:, :1], 5, axis=1), rtol=1e-6)
+    assert (at_wall[:, 6:] / at_wall[:, 5:-1]).min() > 0.8
+    assert count_folded(nodes) == 0
