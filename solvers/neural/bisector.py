@@ -21,6 +21,7 @@ CELLS = 5.0  # reach of a nudge, in cells either way
 LARGEST = 0.4  # of a cell's width in theta: beyond it the neighbours would suffer
 SWEEPS = 3  # over the corners, which feel each other a little
 STEPS = 5  # of the secant method
+HALVED = 1e-12  # what may be left of the difference of the two angles (radians)
 
 
 def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> None:
@@ -82,9 +83,9 @@ def _secant(lift: Lift, wall: Complexes, c: int, w: complex, start: float, limit
     b = start - 0.05 * limit if fa > 0.0 else start + 0.05 * limit
     fb = unequal(b)
     for _ in range(STEPS):
-        if fa == fb:
+        if fa == fb or abs(fb) < HALVED:
             break
-        a, b, fa = b, float(np.clip(b - fb * (b - a) / (fb - fa), -limit, limit)), fb
+        a, b, fa = b, max(-limit, min(limit, b - fb * (b - a) / (fb - fa))), fb
         fb = unequal(b)
     return b if isfinite(fb) and abs(fb) <= abs(unequal(start)) else start
 
