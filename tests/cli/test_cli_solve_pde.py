@@ -400,3 +400,40 @@ def test_lines_of_c_grids_do_not_lean_along_the_wake_unless_winslow_is_asked_for
     assert told["folded"] == 0
     assert told["quality"]["max_angle"]["max"] < 140 < 155 < winslow["quality"]["max_angle"]["max"]
     assert told["quality"]["max_angle"]["mean"] < winslow["quality"]["max_angle"]["mean"] - 5
+
+
+@pytest.mark.parametrize("lean", [(-14.0, 14.0), (14.0, 14.0)])
+def test_lines_leave_leaning_walls_of_a_channel_at_right_angles(
+    meshonet: Meshonet, tmp_path: Path, lean: tuple[float, float]
+) -> None:
+    """But for the two ends, whose corners are not right ones."""
+    south, north = np.tan(np.radians(lean))
+    x = np.linspace(0.0, 3.0, 31)
+    y = np.linspace(3.0 * south, 1.0 + 3.0 * north, 13)[1:-1]
+    sides = [
+        (x, south * x),
+        (0 * y + 3.0, y),
+        (x[::-1], 1.0 + north * x[::-1]),
+        (0 * y, np.linspace(1, 0, 13)[1:-1]),
+    ]
+    np.savetxt(
+        tmp_path / "duct.csv", np.concatenate([np.stack(side, axis=1) for side in sides]), delimiter=","
+    )
+    words = (
+        "solve-pde",
+        tmp_path / "duct.csv",
+        "--topology",
+        "quad",
+        "--res",
+        "61x41",
+        "--wall-spacing",
+        "1e-4",
+    )
+    told = meshonet(*words, "-o", "g.vts", "--json").only
+    assert told["folded"] == 0
+    (grid,) = read_grids("g.vts")
+    for wall, near, angle in ((0, 1, lean[0]), (-1, -2, lean[1])):
+        cell = grid.nodes[:, near] - grid.nodes[:, wall]
+        np.testing.assert_allclose(np.hypot(*cell.T), 1e-4, rtol=1e-8)
+        along = cell[1:-1] @ [np.cos(np.radians(angle)), np.sin(np.radians(angle))] / 1e-4
+        assert np.degrees(np.abs(along)).max() < 1.0
