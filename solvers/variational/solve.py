@@ -49,7 +49,7 @@ iterations around notches, but the angles hardly change.
 """
 
 ROUGH = 3.0
-"""How much further nodes of levels between may move when a descent stops: the next level is farther away."""
+"""How much further nodes of levels between may move when a quad's descent stops: the next is farther away."""
 
 MOST = 1000
 """Iterations on a coarser level at the most."""
@@ -145,7 +145,7 @@ def _nested(
         below, large = counts, max(nodes.shape) > NEXT
         counts = nodes.shape[0], nodes.shape[1]
         limit = limits[large] if k == 0 else MOST
-        moves = still if k == 0 else ROUGH * still
+        moves = still if k == 0 or boundary.topology != "quad" else ROUGH * still
         iterations, valid = descend(nodes, weights, moves, limit, periodic=periodic, stiffness=stiffness)
         if valid and (large or (k == 0 and _worst_at_kink(nodes, boundary.topology))):
             sweep_kinks(nodes, levels[k], below, only_better=True)

@@ -92,7 +92,6 @@ def test_a_minimum_that_folds_on_finer_levels_gives_way_to_the_other() -> None:
     boundary = random_quad(171, 65, 65)
     assert boundary is not None
     assert folded(winslow(boundary).grid.nodes) > 100
-    assert not module._nested(boundary, Weights(), module.STILL, (200, 200))[-1]
     found = solve(boundary)
     assert found.notes == ()
     assert folded(found.grid.nodes) == 0
