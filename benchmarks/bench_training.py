@@ -10,8 +10,9 @@ train the same network on the same 30 arches of 101 x 101 nodes, one thread, fro
 * `meshonet train` with 30 and 15 geometries a step at 1,200 places drawn for all of them, with 10 and 5
   at 300, so that a step has no fewer errors than one geometry's 1,200.
 
-Processor seconds, since other programs share the machine; the loss is that of every place of every grid,
-after as many geometries seen, over several seeds of weights, order and places.
+Processor seconds, since other programs share the machine, the loops in turn and the best of several
+rounds; the loss is that of every place of every grid, after as many geometries seen, over several seeds
+of weights, order and places.
 """
 
 from __future__ import annotations
@@ -44,6 +45,7 @@ from solvers.neural.samples import Samples, gathered
 POINTS = (1000, 200)
 SEEN = (600, 1_500, 3_000, 6_000, 15_000)
 """Geometries seen at which the losses are compared."""
+ROUNDS, STEPS = 12, 25
 BATCHES = ((30, POINTS), (15, POINTS), (10, (250, 50)), (5, (250, 50)))
 """Geometries a step, and places drawn for all of them: inside, on the boundary."""
 
@@ -61,7 +63,8 @@ def main() -> None:
     samples = arches()
     rows = [Row("one geometry a step, every place", 1), Row("one geometry a step, 1,200 places", 1)]
     rows += [Row(f"`meshonet train --batch {n} --points {sum(points)}`", n) for n, points in BATCHES]
-    for seed in range(options.seeds):  # loops in turn, so that a busy machine slows them alike
+    pace(rows, samples, options.rate, options.batched_rate)
+    for seed in range(options.seeds):
         every, drawn, *others = rows
         if seed == 0:
             every.run(one_by_one(samples, None, options.rate, seed), SEEN[0])
@@ -79,6 +82,19 @@ def arches() -> Samples:
     """Return thirty solved arches."""
     heights = np.linspace(-0.1, 0.4, 30)
     return gathered(solve(family("arch").boundary(float(h), 101, 101)).grid for h in heights)
+
+
+def pace(rows: list[Row], samples: Samples, rate: float, batched_rate: float) -> None:
+    """Find the speed of every loop: in turn, so that a busy machine slows them alike, best of rounds."""
+    loops = [one_by_one(samples, points, rate, 0)[0] for points in (None, POINTS)]
+    loops += [batched(samples, batched_rate, batch, points, 0)[0] for batch, points in BATCHES]
+    for _ in range(ROUNDS):
+        for row, step in zip(rows, loops, strict=True):
+            begun = time.process_time()
+            for k in range(STEPS):
+                step(k)
+            row.speed = max(row.speed, row.each * STEPS / (time.process_time() - begun))
+    print({row.name: round(row.speed) for row in rows}, flush=True)
 
 
 Loop = tuple[Callable[[int], None], Callable[[], float]]
@@ -161,12 +177,11 @@ def batched(samples: Samples, rate: float, batch: int, points: tuple[int, int], 
 
 @dataclass
 class Row:
-    """A loop, `each` geometries a step: what its runs have seen and spent, and their losses."""
+    """A loop, `each` geometries a step: geometries a processor second, and losses after so many seen."""
 
     name: str
     each: int
-    seen: int = 0
-    spent: float = 0.0
+    speed: float = 0.0
     losses: dict[int, list[float]] = field(default_factory=lambda: defaultdict(list))
 
     def run(self, loop: Loop, limit: int) -> None:
@@ -174,19 +189,11 @@ class Row:
         step, loss = loop
         done = 0
         for goal in (goal for goal in SEEN if goal <= limit):
-            begun = time.process_time()
             while done * self.each < goal:
                 step(done)
                 done += 1
-            self.spent += time.process_time() - begun
             self.losses[goal].append(loss())
-        self.seen += done * self.each
-        print(self.name, f"{self.speed:.0f}", dict(self.losses), flush=True)
-
-    @property
-    def speed(self) -> float:
-        """Geometries a processor second."""
-        return self.seen / self.spent
+        print(self.name, dict(self.losses), flush=True)
 
     def cell(self, goal: int) -> str:
         """Return the losses of the seeds: their median, least and largest."""

@@ -115,9 +115,20 @@ DeviceName = Annotated[
         "auto]",
     ),
 ]
-Amp = Annotated[bool, typer.Option("--amp", help="Multiply in bfloat16 where that is safe.")]
+Amp = Annotated[
+    bool,
+    typer.Option(
+        "--amp",
+        help="Multiply in bfloat16 where that is safe; a CPU without units for it takes twice the time.",
+    ),
+]
 Compile = Annotated[
-    bool, typer.Option("--compile", help="Compile the step first (torch.compile; needs a C++ compiler).")
+    bool,
+    typer.Option(
+        "--compile",
+        help="Compile the step first (torch.compile; needs a C++ compiler); it gains nothing on small models "
+        "on a CPU.",
+    ),
 ]
 Resume = Annotated[
     bool, typer.Option("--resume", help="Go on from the checkpoint beside the output, if there is one.")

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
+from geometry.errors import InputError
 from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 from solvers.neural.models.model import Frame, Operator
 
@@ -52,7 +53,17 @@ class FNO2D(Operator):
         return True
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
+        """Return the shapes of what is trained.
+
+        Raises
+        ------
+        InputError
+            more modes than the grids have.
+        """
+        most = (min(frame.ni, frame.nj) + self.padding) // 2
+        if not 1 <= self.modes <= most:
+            told = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
+            raise InputError(told, f"use 1 to {most}", source="--set")
         shapes = {**dense_shapes("lift", (SEEN, self.width))}
         for k in range(self.layers):
             shapes |= dense_shapes(f"local{k}", (self.width, self.width))

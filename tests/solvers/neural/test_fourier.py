@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import torch
 
+from geometry.errors import InputError
 from solvers.neural.models.fno2d import FNO2D
+from solvers.neural.models.model import Frame
 
 
 def masked(h: np.ndarray, weight: np.ndarray, model: FNO2D) -> np.ndarray:
@@ -31,3 +33,11 @@ def test_a_fourier_layer_mixes_the_lowest_modes(ni: int, nj: int, modes: int) ->
     assert by_torch.numpy() == pytest.approx(found, abs=1e-12)
     single = model._mixed(torch, torch.from_numpy(weight).float(), torch.from_numpy(h).float())
     assert single.dtype == torch.float32
+
+
+def test_more_modes_than_the_grids_have_are_refused() -> None:
+    frame = Frame("quad", 25, 31)
+    assert FNO2D(modes=17).shapes(frame)["mix0/spectral"][:2] == (34, 17)
+    for modes in (0, 18, 40):
+        with pytest.raises(InputError, match=f"modes={modes} of grids of 25 x 31 nodes; use 1 to 17"):
+            FNO2D(modes=modes).shapes(frame)
