@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from formats.edges import boundary_of, usable
+from formats.edges import usable
 from formats.facts import plain
 from formats.format import Format
 from formats.hdf5_check import Checked, checked
@@ -106,12 +106,15 @@ class Writer:
                 "sample {} is {}x{} {} and the first is {}x{} {}".format(self._count, *shape, *self._first),
                 "one dataset has one size and topology: set --res and --topology, or write one file each",
             )
-        edges = boundary_of(sample) if isinstance(sample, Grid) else sample
-        arrays: dict[str, Floats] = {side: getattr(edges, side) for side in SIDES}
-        if isinstance(sample, Grid):
-            arrays["nodes"] = sample.nodes
+        arrays: dict[str, Floats]
+        if isinstance(sample, Grid):  # of any quality: its edges may be no valid boundary
+            nodes = sample.nodes
+            sides = (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])
+            arrays = dict(zip(("south", "north", "west", "east"), sides, strict=True)) | {"nodes": nodes}
             if self._count == 0:
                 self._facts(sample.provenance)
+        else:
+            arrays = {side: getattr(sample, side) for side in SIDES}
         if parameters is None and sample.origin.parameters:
             parameters = self._parameters(sample.origin)
         if parameters is not None:

@@ -21,6 +21,16 @@ def written(path: Path, grids: list[Grid]) -> h5py.File:
     return h5py.File(path, "r")
 
 
+def test_grids_whose_edges_are_no_boundary_are_written_all_the_same(tmp_path: Path) -> None:
+    """As those of a network that has learnt nothing, written by `infer --answer raw --allow-invalid`."""
+    turned = Grid(channel().nodes * [-1.0, 1.0], "quad")
+    with pytest.raises(InputError, match="clockwise"):
+        boundary_of(turned)
+    write_grids(tmp_path / "g.h5", [turned])
+    (found,) = read_grids(open_source(str(tmp_path / "g.h5")))
+    assert np.array_equal(found.nodes, turned.nodes)
+
+
 def test_the_layout_is_the_documented_one(tmp_path: Path) -> None:
     grids = [ring(name=f"r{k}") for k in range(3)]
     with written(tmp_path / "g.h5", grids) as file:
