@@ -11,13 +11,17 @@ linear interpolation, C those of what second derivatives B add between, and K th
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Floats
-from solvers.spline import between, places
+from solvers.spline import places
+
+Splined = tuple[Floats, Floats]
+"""A field at coarse nodes and its second derivatives along xi."""
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
 """Angles of a corner up to which all is taken out, and from which nothing is."""
@@ -48,20 +52,40 @@ def taken_out(at_corners: Floats, m: int, n: int) -> Floats:
     return np.asarray((flat * fading(m, n)).max(axis=-3))
 
 
-def across(difference: Floats, share: Floats, bends: Floats, count: int) -> Floats:
-    """Return (.., m, count), what to take from a spline of `difference` (.., m, n) at `count` places of eta.
+def take_out(values: Floats, second: Floats, coarse: Splined, opened: Floats, bends: Floats) -> None:
+    """Take the share out of splines along eta of `coarse`, in place.
 
     Parameters
     ----------
-    share : (.., m, n), from `taken_out`.
-    bends : (n, n), takes values along eta to the second derivatives of that spline.
+    values, second : (batch, 2, m, count), splines of differences and of their second derivatives along xi.
+    coarse : both at the coarse nodes, (batch, 2, m, n) each.
+    opened : (batch, 2, 2), from `openings`.
+    bends : (n, n), takes values along eta to the second derivatives of the splines.
     """
-    return np.asarray((share * (difference @ bends.T)) @ cubic(difference.shape[-1], count).T)
+    (m, n), count = coarse[0].shape[-2:], values.shape[-1]
+    share = taken_out(opened, m, n)[:, None]
+    straight, curved = linear(n, count).T, cubic(n, count).T
+    for rows, columns, places_ in _blocks(m, n, count):
+        some = np.flatnonzero(share[:, 0, rows, columns].any(axis=(1, 2)))
+        if len(some) == 0:
+            continue
+        part = share[some, :, rows, columns]
+        near = [(field[some, :, rows, columns], field[some, :, rows] @ bends[columns].T) for field in coarse]
+        flat, bent = straight[columns, places_], curved[columns, places_]
+        values[some, :, rows, places_] -= (part * near[0][1]) @ bent
+        second[some, :, rows, places_] -= (part * near[1][0]) @ flat + (part * near[1][1]) @ bent
 
 
-def along(second: Floats, share: Floats, bends: Floats, count: int) -> Floats:
-    """Return what to take from a spline along eta of second derivatives along xi, as `across`."""
-    return between(share * second, count) + across(second, share, bends, count)
+def _blocks(m: int, n: int, count: int) -> Iterator[tuple[slice, slice, slice]]:
+    """Yield rows, columns and fine columns of the blocks around corners; all where those would touch."""
+    reach = int(FAR)
+    if min(m, n) <= 2 * reach + 1:
+        yield slice(m), slice(n), slice(count)
+        return
+    fine = int(np.ceil(reach * (count - 1) / (n - 1))) + 1
+    for rows in (slice(reach), slice(m - reach, m)):
+        yield rows, slice(reach + 1), slice(fine)
+        yield rows, slice(n - reach - 1, n), slice(count - fine, count)
 
 
 @lru_cache(maxsize=16)
@@ -79,4 +103,14 @@ def cubic(n: int, count: int) -> Floats:
     matrix, rows = np.zeros((count, n)), np.arange(count)
     matrix[rows, first] = weights[:, 2]
     matrix[rows, first + 1] = weights[:, 3]
+    return matrix
+
+
+@lru_cache(maxsize=16)
+def linear(n: int, count: int) -> Floats:
+    """Return the matrix (count, n) of linear interpolation between n knots."""
+    first, weights = places(n, count)
+    matrix, rows = np.zeros((count, n)), np.arange(count)
+    matrix[rows, first] = weights[:, 0]
+    matrix[rows, first + 1] = weights[:, 1]
     return matrix

@@ -153,9 +153,8 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     opened = acute.openings(planes[0] + 1j * planes[1], np)
     bends = xi.bends @ values
     if not periodic and opened.any():
-        share = acute.taken_out(opened, m, n)
-        values -= acute.across(difference, share, eta.bends, boundary.nj)
-        bends -= acute.along(xi.bends @ difference, share, eta.bends, boundary.nj)
+        both = difference[None], (xi.bends @ difference)[None]
+        acute.take_out(values[None], bends[None], both, opened[None], eta.bends)
     for c in (0, 1):
         add_rows(nodes[..., c], first, weights, values[c], bends[c], periodic)
         for rows, ramp, jump in zip(xi.rows, xi.ramps, xi.jumps, strict=True):

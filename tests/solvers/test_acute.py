@@ -59,13 +59,22 @@ def test_each_corner_is_looked_at() -> None:
         np.testing.assert_allclose(shares(turned), expected, atol=1e-12)
 
 
-def test_with_the_whole_share_the_spline_is_linear() -> None:
-    values = np.random.default_rng(0).normal(size=(2, 9, 9))
-    bends, share = bending(9, False), np.ones((9, 9))
-    spline = values @ spline_matrix(9, 17).T
-    across = spline - acute.across(values, share, bends, 17)
-    np.testing.assert_allclose(across[..., 1::2], 0.5 * (values[..., 1:] + values[..., :-1]), atol=1e-12)
-    np.testing.assert_allclose(acute.along(bends @ values, share, bends, 17), bends @ spline, atol=1e-12)
+@pytest.mark.parametrize(("m", "n", "count"), [(33, 33, 65), (33, 33, 200), (65, 25, 31), (12, 9, 17)])
+def test_splines_keep_the_share_that_is_left(m: int, n: int, count: int) -> None:
+    rng = np.random.default_rng(0)
+    difference, opened = rng.normal(size=(3, 2, m, n)), rng.random((3, 2, 2)) * [[[0]], [[1]], [[1]]]
+    opened[2, 0] = 0.0
+    along, across = bending(m, False), bending(n, False)
+    off = np.minimum(np.abs(np.linspace(0, n - 1, count) - np.arange(n)[:, None]), 1.0)
+    straight, curved = 1.0 - off, -off * (1.0 - off) * (2.0 - off) / 6.0
+    second = along @ difference
+    left = 1.0 - acute.taken_out(opened, m, n)[:, None]
+    values, bends = (field @ spline_matrix(n, count).T for field in (difference, second))
+    acute.take_out(values, bends, (difference, second), opened, across)
+    expected = difference @ straight + (left * (difference @ across.T)) @ curved
+    np.testing.assert_allclose(values, expected, atol=1e-10)
+    expected = (left * second) @ straight + (left * (second @ across.T)) @ curved
+    np.testing.assert_allclose(bends, expected, atol=1e-10)
 
 
 def test_wide_corners_are_left_to_the_spline() -> None:

@@ -32,6 +32,9 @@ from solvers.spline import bending, between, places, spline_matrix
 BATCH = 64
 """Domains in memory at a time at the most."""
 
+TOGETHER = 16
+"""Grids that are evaluated together: what is between stays in the caches."""
+
 
 def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float64") -> Floats:
     """Return the planes (batch, 2, n, n) of the network's grids inside the `edges` at n = 33 nodes each.
@@ -60,8 +63,8 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
     nodes = np.empty((len(edges), 2, *edges.counts))
-    for k in range(0, len(edges), CHUNK):  # what is between stays in the caches
-        rows = slice(k, k + CHUNK)
+    for k in range(0, len(edges), TOGETHER):
+        rows = slice(k, k + TOGETHER)
         _evaluate(coarse[rows], edges[rows], nodes[rows])
     return nodes
 
@@ -80,11 +83,8 @@ def _evaluate(coarse: Floats, edges: Edges, nodes: Floats) -> None:
     values = difference @ np.ascontiguousarray(spline_matrix(n, nj).T)
     bends = along @ values
     opened = acute.openings(coarse[:, 0] + 1j * coarse[:, 1], np)
-    sharp = opened.any(axis=(1, 2))
-    if sharp.any():
-        share = acute.taken_out(opened[sharp], m, n)[:, None]
-        values[sharp] -= acute.across(difference[sharp], share, across, nj)
-        bends[sharp] -= acute.along(along @ difference[sharp], share, across, nj)
+    if opened.any():
+        acute.take_out(values, bends, (difference, along @ difference), opened, across)
     first, weights = places(m, ni)
     for plane, value, bend in zip(_flat(nodes), _flat(values), _flat(bends), strict=True):
         add_rows(plane, first, weights, value, bend, False)
