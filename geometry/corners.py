@@ -61,6 +61,8 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     [1]
     """
     angle = np.abs(turning(points, closed=closed))
+    if not (angle > KINK).any():
+        return np.empty(0, np.intp)
     if closed:
         beside = np.maximum(np.roll(angle, 1), np.roll(angle, -1))
     else:
