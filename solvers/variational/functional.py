@@ -43,6 +43,9 @@ class Weights:
 AROUND = Weights(smoothness=3e-6)
 """Around a body, where cells grow by orders of magnitude: more smoothness would cost angles."""
 
+WAKE = Weights(smoothness=3e-5)
+"""Around a body and its wake: with less, rows grow threefold from one to the next, with more angles widen."""
+
 
 def energy(
     nodes: Floats, aspect: float, weights: Weights, epsilon: float = 0.0, *, periodic: bool = False

@@ -22,7 +22,7 @@ from solvers.repair import repair
 from solvers.solution import Solution
 from solvers.spline import spline_matrix
 from solvers.variational._variational import Minimiser, Stiffness, energy, workspace
-from solvers.variational.functional import AROUND, Weights, aspect_of, relief_of
+from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.start import winslow_start
 
@@ -66,6 +66,9 @@ EASY = 1.7
 REACH = 0.25
 """Cells that a node moves at the most in a first iteration."""
 
+WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}
+"""Of the functional, by topology."""
+
 
 def solve(
     boundary: Boundary,
@@ -100,7 +103,7 @@ def solve(
     """
     _check(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
-    weights = weights or (Weights() if boundary.topology == "quad" else AROUND)
+    weights = weights or WEIGHTS[boundary.topology]
     still = tol if tol is not None else STILL
     if initial is None:
         full = tol is not None or boundary.topology != "quad"
