@@ -109,8 +109,8 @@ class Writer:
         arrays: dict[str, Floats]
         if isinstance(sample, Grid):  # of any quality: its edges may be no valid boundary
             nodes = sample.nodes
-            sides = (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])
-            arrays = dict(zip(("south", "north", "west", "east"), sides, strict=True)) | {"nodes": nodes}
+            sides = (nodes[:, 0], nodes[-1], nodes[:, -1], nodes[0])
+            arrays = dict(zip(SIDES, sides, strict=True)) | {"nodes": nodes}
             if self._count == 0:
                 self._facts(sample.provenance)
         else:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import _cells
-from geometry.arrays import Floats, as_planar
+from geometry.arrays import Floats, Topology, as_planar
 from geometry.errors import BadCell, InputError
 from geometry.grid import Grid
 from geometry.metrics import METRICS, NAMES
@@ -121,6 +121,14 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
             ends = [float(v) for v in np.percentile(all_values.ravel(), PERCENTS, overwrite_input=True)]
         metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
     return Quality(cells, count_folded(grid.nodes), metrics)
+
+
+def angles(nodes: Floats, topology: Topology = "quad") -> tuple[float, float]:
+    """Return the largest and the mean of the cells' largest included angles, in degrees; 360 when folded."""
+    if count_folded(nodes):
+        return 360.0, 360.0
+    summary = measure(Grid(nodes, topology))["max_angle"]
+    return summary.max, summary.mean
 
 
 def per_cell(grid: Grid, name: str) -> Floats:

@@ -60,6 +60,7 @@ class Together:
         while group := list(islice(found, AHEAD)):
             sampled = [_sampled(item.what, sampling) for item in group]
             alike = [one for one in sampled if isinstance(one, Boundary) and one.topology == self.topology]
+            self._made = {}  # what was not asked for goes with its boundary, whose id another may get
             if len(alike) > 1:
                 with suppress(MeshonetError):  # one of them fails: that is told in its turn
                     solutions = self._many(alike)

@@ -99,18 +99,18 @@ def fading(m: int, n: int) -> Floats:
 @lru_cache(maxsize=16)
 def cubic(n: int, count: int) -> Floats:
     """Return the matrix (count, n) that takes second derivatives at n knots to what they add between."""
-    first, weights = places(n, count)
-    matrix, rows = np.zeros((count, n)), np.arange(count)
-    matrix[rows, first] = weights[:, 2]
-    matrix[rows, first + 1] = weights[:, 3]
-    return matrix
+    return _weighted(n, count, 2)
 
 
 @lru_cache(maxsize=16)
 def linear(n: int, count: int) -> Floats:
     """Return the matrix (count, n) of linear interpolation between n knots."""
+    return _weighted(n, count, 0)
+
+
+def _weighted(n: int, count: int, k: int) -> Floats:
+    """Return the matrix (count, n) of columns k and k + 1 of the weights of `places`."""
     first, weights = places(n, count)
     matrix, rows = np.zeros((count, n)), np.arange(count)
-    matrix[rows, first] = weights[:, 0]
-    matrix[rows, first + 1] = weights[:, 1]
+    matrix[rows, first], matrix[rows, first + 1] = weights[:, k], weights[:, k + 1]
     return matrix

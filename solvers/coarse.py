@@ -24,7 +24,7 @@ from geometry.boundary import Boundary
 from geometry.corners import Indices, find_corners
 from geometry.errors import InputError
 from geometry.grid import Grid
-from geometry.quality import count_folded, measure
+from geometry.quality import angles, count_folded
 from solvers import acute
 from solvers._combine import add_rows
 from solvers.solution import Solution
@@ -186,6 +186,8 @@ def sweep_kinks(
     `only_better` a kink is left alone around which the largest angle would not be smaller. Returns whether
     there are kinks.
     """
+    from solvers.elliptic.relax import relax
+
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]
     for axis, sides in ((0, ("south", "north")), (1, ("west", "east"))):
@@ -202,9 +204,9 @@ def sweep_kinks(
             for start, stop in _joined(corners, reach, n):
                 window = (slice(start, stop), inside) if axis == 0 else (inside, slice(start, stop))
                 patch = as_planar(nodes[window])
-                before = _largest_angle(patch) if only_better else 0.0
-                _sweep(patch)
-                if not only_better or _largest_angle(patch) < before:
+                before = angles(patch)[0] if only_better else 0.0
+                relax(patch, SWEEPS)
+                if not only_better or angles(patch)[0] < before:
                     nodes[window] = patch
     return any_kinks
 
@@ -220,21 +222,6 @@ def _joined(kinks: Indices, reach: int, n: int) -> Iterator[tuple[int, int]]:
         stop = min(int(kink) + reach + 1, n)
     if stop:
         yield start, stop
-
-
-def _sweep(nodes: Floats) -> None:
-    """Relax the inner nodes of planar `nodes` in place."""
-    from solvers.elliptic._multigrid import Level, scratch_size
-    from solvers.elliptic.coarsening import Direction
-
-    xi, eta = (Direction(np.arange(float(n)), False) for n in nodes.shape[:2])
-    scratch = np.empty(scratch_size(xi.cells, eta.cells))
-    level = Level(nodes[..., 0], nodes[..., 1], xi.differences(), eta.differences(), False, scratch, False)
-    level.smooth(False, SWEEPS)
-
-
-def _largest_angle(nodes: Floats) -> float:
-    return 360.0 if count_folded(nodes) else measure(Grid(nodes))["max_angle"].max
 
 
 def _thinned(edge: Floats, n: int) -> Floats:

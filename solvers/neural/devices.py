@@ -15,6 +15,7 @@ from geometry.errors import InputError
 from geometry.grid import Grid
 from solvers.neural.operator import Polish
 from solvers.neural.operator import infer as infer_strip
+from solvers.neural.quads.operator import in_batches
 from solvers.neural.weights import DEFAULT
 from solvers.solution import Solution
 
@@ -51,11 +52,8 @@ def infer_on(
         if boundary.topology != topology:
             told = f"model {model or DEFAULT} makes {topology} grids on a device"
             raise InputError(f"{told}, and this boundary is {boundary.topology}", "name another model")
-    groups: dict[tuple[int, int], list[int]] = {}
-    for k, boundary in enumerate(boundaries):
-        groups.setdefault((boundary.ni, boundary.nj), []).append(k)
     found: dict[int, Solution] = {}
-    for rows in groups.values():
+    for rows in in_batches(boundaries):
         some = [boundaries[k] for k in rows]
         begun = time.perf_counter()
         nodes = _quads(some, model, device) if quads else _strips(some, model, polish, device)

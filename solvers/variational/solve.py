@@ -16,7 +16,7 @@ from geometry.arrays import Floats, Topology
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
-from geometry.quality import count_folded, measure
+from geometry.quality import angles, count_folded, measure
 from solvers.coarse import evaluate, sweep_kinks, thinned
 from solvers.repair import repair
 from solvers.solution import Solution
@@ -175,13 +175,13 @@ def _coarsest(
     made weaker until they are not.
     """
     start = winslow_start(boundary)
-    limits = [value + 1e-9 for value in _angles(start, boundary.topology)]
+    limits = [value + 1e-9 for value in angles(start, boundary.topology)]
     periodic = boundary.topology == "o"
     nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
         if not valid or all(
-            value <= limit for value, limit in zip(_angles(nodes, boundary.topology), limits, strict=True)
+            value <= limit for value, limit in zip(angles(nodes, boundary.topology), limits, strict=True)
         ):
             return nodes, weights, iterations, valid
         weights = replace(weights, smoothness=0.25 * weights.smoothness)
@@ -223,14 +223,6 @@ def _worst_at_kink(nodes: Floats, topology: Topology) -> bool:
     at = measure(Grid(nodes, topology))["max_angle"].worst
     ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
     return ends[0] != ends[1]
-
-
-def _angles(nodes: Floats, topology: Topology) -> tuple[float, float]:
-    """Return the largest and the mean of the cells' largest included angles, in degrees; 360 when folded."""
-    if count_folded(nodes):
-        return 360.0, 360.0
-    summary = measure(Grid(nodes, topology))["max_angle"]
-    return summary.max, summary.mean
 
 
 def _stiffness(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:

@@ -6,8 +6,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
-from solvers.elliptic._multigrid import Level, scratch_size
-from solvers.elliptic.coarsening import Direction
+from solvers.elliptic.relax import relax
 from solvers.tfi import tfi
 
 RELAXED = 400
@@ -21,9 +20,7 @@ def winslow_start(boundary: Boundary) -> Floats:
     """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2)."""
     if boundary.topology == "quad" and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes
-        xi, eta = (Direction(np.arange(float(n)), False).differences() for n in nodes.shape[:2])
-        scratch = np.empty(scratch_size(boundary.ni - 1, boundary.nj - 1))
-        Level(nodes[..., 0], nodes[..., 1], xi, eta, False, scratch, False).smooth(False, SWEEPS)
+        relax(nodes, SWEEPS)
         if np.isfinite(nodes).all():
             return nodes
     from solvers.elliptic.solve import solve as winslow
