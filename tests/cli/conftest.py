@@ -14,6 +14,9 @@ import numpy as np
 import pytest
 
 from meshonet_cli.app import run
+from solvers.neural.quads.encoding import HEADS
+from solvers.neural.quads.export import write_model
+from solvers.neural.quads.network import shapes
 
 ROOT = Path(__file__).parents[2]
 
@@ -137,3 +140,14 @@ def three_h5(tmp_path: Path) -> Path:
 def folding_h5(tmp_path: Path) -> Path:
     """A boundary that transfinite interpolation folds."""
     return dataset(tmp_path / "wave.h5", "quad", wave())
+
+
+@pytest.fixture
+def quad_model(tmp_path: Path) -> str:
+    """A quad model with random weights."""
+    rng = np.random.default_rng(0)
+    weights = {
+        name: 0.1 * rng.normal(size=shape) for name, shape in shapes((1, 2), (0, 1), len(HEADS)).items()
+    }
+    write_model(tmp_path / "quads.safetensors", weights, name="random", recipe={}, figures={})
+    return str(tmp_path / "quads.safetensors")

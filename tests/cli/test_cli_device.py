@@ -9,21 +9,8 @@ import pytest
 from conftest import Meshonet
 
 from formats.registry import read_grids
-from solvers.neural.quads.encoding import HEADS
-from solvers.neural.quads.export import write_model
-from solvers.neural.quads.network import shapes
 
 torch = pytest.importorskip("torch")
-
-
-@pytest.fixture
-def quads(tmp_path: Path) -> str:
-    rng = np.random.default_rng(0)
-    weights = {
-        name: 0.1 * rng.normal(size=shape) for name, shape in shapes((1, 2), (0, 1), len(HEADS)).items()
-    }
-    write_model(tmp_path / "quads.safetensors", weights, name="random", recipe={}, figures={})
-    return str(tmp_path / "quads.safetensors")
 
 
 def same(one: str, other: str) -> bool:
@@ -50,19 +37,21 @@ def test_bodies_without_a_lift_are_solved_all_the_same(meshonet: Meshonet) -> No
     assert done["method"] == "winslow"
 
 
-def test_four_sided_domains_are_those_without_torch(meshonet: Meshonet, quads: str) -> None:
+def test_four_sided_domains_are_those_without_torch(meshonet: Meshonet, quad_model: str) -> None:
     family = ("--family", "arch", "--count", "3", "--res", "21x17", "-o", "arches.h5")
     assert meshonet("sample-boundary", *family).code == 0
-    words = ("infer", "arches.h5", "--model", quads, "--polish", "off")
+    words = ("infer", "arches.h5", "--model", quad_model, "--polish", "off")
     meshonet(*words, "-o", "here.h5")
     meshonet(*words, "--device", "cpu", "-o", "there.h5")
     assert same("here.h5", "there.h5")
 
 
-def test_what_a_device_cannot_do_is_said(meshonet: Meshonet, quads: str) -> None:
+def test_what_a_device_cannot_do_is_said(meshonet: Meshonet, quad_model: str) -> None:
     family = ("--family", "arch", "--count", "1", "--res", "21x17", "-o", "arches.h5")
     assert meshonet("sample-boundary", *family).code == 0
-    done = meshonet("infer", "arches.h5", "--model", quads, "--polish", "2", "--device", "cpu", "-o", "g.h5")
+    done = meshonet(
+        "infer", "arches.h5", "--model", quad_model, "--polish", "2", "--device", "cpu", "-o", "g.h5"
+    )
     assert done.code == 2
     assert "steps of descent are not taken on a device; leave --polish or --device out" in done.err
     done = meshonet("infer", "arches.h5", "--device", "cpu", "-o", "g.h5")

@@ -9,19 +9,6 @@ import pytest
 from conftest import Meshonet
 
 from formats.registry import read_grids
-from solvers.neural.quads.encoding import HEADS
-from solvers.neural.quads.export import write_model
-from solvers.neural.quads.network import shapes
-
-
-@pytest.fixture
-def model(tmp_path: Path) -> str:
-    rng = np.random.default_rng(0)
-    weights = {
-        name: 0.1 * rng.normal(size=shape) for name, shape in shapes((1, 2), (0, 1), len(HEADS)).items()
-    }
-    write_model(tmp_path / "quads.safetensors", weights, name="random", recipe={}, figures={})
-    return str(tmp_path / "quads.safetensors")
 
 
 @pytest.fixture
@@ -31,29 +18,31 @@ def arches(meshonet: Meshonet) -> Path:
     return Path("arches.h5")
 
 
-def test_a_dataset_has_the_grids_of_its_members_alone(meshonet: Meshonet, arches: Path, model: str) -> None:
-    told = meshonet("infer", arches, "--model", model, "--polish", "1", "-o", "g.h5", "--json").objects
+def test_a_dataset_has_the_grids_of_its_members_alone(
+    meshonet: Meshonet, arches: Path, quad_model: str
+) -> None:
+    told = meshonet("infer", arches, "--model", quad_model, "--polish", "1", "-o", "g.h5", "--json").objects
     assert [(one["method"], one["model"], one["cycles"], one["folded"]) for one in told] == 5 * [
         ("operator", "random", 1, 0)
     ]
     together = list(read_grids("g.h5"))
-    meshonet("infer", arches, "--model", model, "--polish", "1", "--jobs", "2", "-o", "apart.h5")
+    meshonet("infer", arches, "--model", quad_model, "--polish", "1", "--jobs", "2", "-o", "apart.h5")
     for one, other in zip(together, read_grids("apart.h5"), strict=True):
         assert one.name == other.name
         np.testing.assert_array_equal(one.nodes, other.nodes)
 
 
 def test_members_that_fail_leave_the_others_alone(
-    meshonet: Meshonet, arches: Path, model: str, body_h5: Path
+    meshonet: Meshonet, arches: Path, quad_model: str, body_h5: Path
 ) -> None:
-    done = meshonet("infer", arches, body_h5, "--model", model, "-o", "{stem}-{index}.vts")
+    done = meshonet("infer", arches, body_h5, "--model", quad_model, "-o", "{stem}-{index}.vts")
     assert done.code == 2
     assert "makes quad grids, and this boundary is o; use another model" in done.err
     assert len(list(Path().glob("arches-*.vts"))) == 5
 
 
-def test_members_of_different_sizes_go_together(meshonet: Meshonet, arches: Path, model: str) -> None:
+def test_members_of_different_sizes_go_together(meshonet: Meshonet, arches: Path, quad_model: str) -> None:
     meshonet("sample-boundary", "--family", "wrench", "--count", "2", "--res", "30x33", "-o", "w.h5")
-    done = meshonet("infer", arches, "w.h5", "--model", model, "-o", "{stem}-{index}.vts", "--json")
+    done = meshonet("infer", arches, "w.h5", "--model", quad_model, "-o", "{stem}-{index}.vts", "--json")
     assert {(one["ni"], one["nj"]) for one in done.objects} == {(21, 17), (30, 33)}
     assert done.code == 0
