@@ -11,6 +11,10 @@ cdef extern from "network_kernel.h":
         int stride
     void network_convolve_float(const float *x, const Convolution *c, const float *w, const float *bias, const float *add, float *out) nogil
     void network_convolve_double(const double *x, const Convolution *c, const double *w, const double *bias, const double *add, double *out) nogil
+    void network_winograd_float(const float *x, const Convolution *c, const float *w, const float *bias, const float *add, float *scratch, float *out) nogil
+    void network_winograd_double(const double *x, const Convolution *c, const double *w, const double *bias, const double *add, double *scratch, double *out) nogil
+    Py_ssize_t WINOGRAD_SCRATCH(Py_ssize_t inputs, Py_ssize_t wide, Py_ssize_t line) nogil
+    int WINOGRAD_VALUES
     void network_activate_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, float *out) nogil
     void network_activate_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, double *out) nogil
     void network_refine_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, const float *add, float *out) nogil
@@ -53,6 +57,42 @@ def convolve(const real[:, :, :, ::1] x, const real[:, ::1] w, const real[::1] b
             network_convolve_float(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &out[0, 0, 0, 0])
         else:
             network_convolve_double(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &out[0, 0, 0, 0])
+
+
+def winograd_scratch(Py_ssize_t inputs, Py_ssize_t wide, Py_ssize_t line):
+    """Return how many numbers `winograd` needs as scratch, with `line` of them in 64 bytes."""
+    return WINOGRAD_SCRATCH(inputs, wide, line)
+
+
+def winograd(const real[:, :, :, ::1] x, const real[:, ::1] w, const real[::1] bias, const real[:, :, :, ::1] add,
+             real[::1] scratch, real[:, :, :, ::1] out):
+    """Do what `convolve` does with size 3 and stride 1, in fewer products.
+
+    `w` is (25 inputs, outputs rounded up to 64 bytes), the kernels at pairs of the points; there are at least 16
+    inputs and outputs, 5 x 5 pixels in `x` and `winograd_scratch` numbers in `scratch`.
+    """
+    cdef Convolution c
+    cdef Py_ssize_t per = 64 // sizeof(real)
+    c.batch, c.m, c.n, c.inputs, c.outputs = x.shape[0], x.shape[1], x.shape[2], x.shape[3], out.shape[3]
+    c.size, c.stride = 3, 1
+    if c.m < 5 or c.n < 5 or c.outputs < 16 or c.inputs < 16:
+        raise ValueError("images or channels that are too few")
+    if out.shape[0] != c.batch or out.shape[1] != c.m - 2 or out.shape[2] != c.n - 2:
+        raise ValueError("an output of another size")
+    if w.shape[0] != WINOGRAD_VALUES * c.inputs or w.shape[1] != (c.outputs + per - 1) // per * per or bias.shape[0] != w.shape[1]:
+        raise ValueError("weights of other channels")
+    if add is not None and not (add.shape[0] == c.batch and add.shape[1] == c.m - 2 and add.shape[2] == c.n - 2 and add.shape[3] == c.outputs):
+        raise ValueError("a summand of another shape")
+    if scratch.shape[0] < WINOGRAD_SCRATCH(c.inputs, w.shape[1], per):
+        raise ValueError("scratch that is too small")
+    if c.batch == 0:
+        return
+    cdef const real *more = NULL if add is None else &add[0, 0, 0, 0]
+    with nogil:
+        if real is float:
+            network_winograd_float(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &scratch[0], &out[0, 0, 0, 0])
+        else:
+            network_winograd_double(&x[0, 0, 0, 0], &c, &w[0, 0], &bias[0], more, &scratch[0], &out[0, 0, 0, 0])
 
 
 def activate(const real[:, :, :, ::1] x, real[:, :, :, ::1] out, bint around=False):

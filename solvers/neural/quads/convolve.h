@@ -1,5 +1,6 @@
 /* Convolutions over images whose channels lie together, and what stands between them: included once for each real
-   type T, with SUFFIX after every name, VECTOR bytes a vector, and KERNEL before functions (their processor). */
+   type T, with SUFFIX after every name, VECTOR bytes a vector, and KERNEL before functions (their processor). winograd.h
+   goes after it. */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)
@@ -9,11 +10,12 @@
 
 typedef T NAME(Lanes) __attribute__((vector_size(VECTOR), aligned(sizeof(T)), may_alias));
 
-/* sum (pixels, vectors LANES) = bias + the taps of `pixels` neighbours in a row. Of each pixel `rows` runs of `run`
-   numbers count, `line` apart; w has a line of `wide` outputs for each. All sums stay in registers. */
+/* sum (pixels, vectors LANES), lines `pitch` apart = bias + the taps of `pixels` neighbours in a row. Of each pixel
+   `rows` runs of `run` numbers count, `line` apart; w has a line of `wide` outputs for each. All sums stay in
+   registers. */
 MESHONET_INLINE void NAME(tile)(const T *restrict in, ptrdiff_t pixel, ptrdiff_t line, int rows, ptrdiff_t run,
-                                const T *restrict w, ptrdiff_t wide, const T *bias, T *sum, const int pixels,
-                                const int vectors)
+                                const T *restrict w, ptrdiff_t wide, const T *bias, T *sum, ptrdiff_t pitch,
+                                const int pixels, const int vectors)
 {
     NAME(Lanes) held[MOST_PIXELS][MOST_VECTORS], weight[MOST_VECTORS];
 #pragma GCC unroll 16
@@ -40,7 +42,7 @@ MESHONET_INLINE void NAME(tile)(const T *restrict in, ptrdiff_t pixel, ptrdiff_t
     for (int p = 0; p < pixels; p++)
 #pragma GCC unroll 4
         for (int v = 0; v < vectors; v++)
-            *(NAME(Lanes) *)(sum + (p * vectors + v) * LANES) = held[p][v];
+            *(NAME(Lanes) *)(sum + p * pitch + v * LANES) = held[p][v];
 }
 
 /* out (pixels, n) of `stride` numbers a pixel = sum (pixels, wide) + add; not inlined: copies of it would be slow to
@@ -67,7 +69,8 @@ static int NAME(pixels_of)(int vectors, ptrdiff_t m)
 #endif
 }
 
-#define TILE(p, v) case 16 * v + p: NAME(tile)(from, pixel, line, rows, run, w, wide, bias, sum, p, v); break;
+#define TILE(p, v) case 16 * v + p: \
+    NAME(tile)(from, pixel, line, rows, run, w, wide, bias, sum, v * LANES, p, v); break;
 
 /* One row of m outputs; the last tile of a row begins early enough to be whole. */
 static KERNEL __attribute__((noinline)) void NAME(row)(const T *in, ptrdiff_t pixel, ptrdiff_t line, int rows,
@@ -111,9 +114,3 @@ static KERNEL void NAME(convolve)(const T *in, const Convolution *c, const T *w,
         v += vectors;
     }
 }
-
-#undef TILE
-#undef LANES
-#undef NAME
-#undef MOST_PIXELS
-#undef MOST_VECTORS

@@ -8,7 +8,8 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
     d = m · project(silu(last(silu(h))))       two components for each head, m = 0 on the rim
 
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b, down and last. Expanded
-once, the kernels are those of an ordinary convolutional network, which is compiled.
+once, the kernels are those of an ordinary convolutional network, which is compiled, most of it by fewer
+products (`winograd.h`).
 `solvers.neural.models.quad_unet` is the same in torch.
 Ronneberger et al., U-Net, MICCAI 2015.
 """
@@ -26,15 +27,18 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Complexes, Floats
 from solvers.neural.quads import kernels
-from solvers.neural.quads._network import activate, convolve, refine
+from solvers.neural.quads._network import activate, convolve, refine, winograd, winograd_scratch
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
 
 Reals: TypeAlias = NDArray[Any]
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
-CHUNK = 8
+CHUNK = 16
 """Domains that go through a layer together: their fields stay in the cache, and so do its weights."""
+
+FEWEST = 16
+"""Channels from which a convolution by 3 x 3 taps goes by fewer products."""
 
 LINE = 64
 """Bytes that a row of weights is rounded up to."""
@@ -101,6 +105,8 @@ class Network:
             layer, _, rest = name.rpartition(".")
             if rest == "weight":
                 kernel = kernels.convolution(exact[name], kernels.table(exact[name].shape[-1]), np)
+                if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
+                    kernel = kernels.at_points(kernel)
                 self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
         self._rooms = threading.local()  # arrays that later calls in the same thread use again
         self.heads = len(exact["project"])
@@ -149,12 +155,23 @@ class _Work:
             self._room[key] = np.empty(shape, self.dtype)
         return self._room[key]
 
+    def scratch(self, count: int) -> Reals:
+        key = "scratch", (count,)
+        if key not in self._room:
+            self._room[key] = _aligned((count,), self.dtype)
+        return self._room[key]
+
     def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None) -> Reals:
         weight, bias, outputs = self._layers[name]
-        size = 1 if len(weight) == x.shape[3] else 3
+        taps = len(weight) // x.shape[3]
+        size = 1 if taps == 1 else 3
         m, n = ((count - size) // stride + 1 for count in x.shape[1:3])
         out = self.room(name, (len(x), m, n, outputs))
-        convolve(x, weight, bias, size, stride, add, out)
+        if taps > 9:
+            scratch = self.scratch(winograd_scratch(x.shape[3], weight.shape[1], LINE // self.dtype.itemsize))
+            winograd(x, weight, bias, add, scratch, out)
+        else:
+            convolve(x, weight, bias, size, stride, add, out)
         return out
 
     def silu(self, x: Reals) -> Reals:

@@ -70,11 +70,13 @@ MESHONET_INLINE float exp_float(float x)
 #define T float
 #define SUFFIX _float
 #include "convolve.h"
+#include "winograd.h"
 #undef T
 #undef SUFFIX
 #define T double
 #define SUFFIX _double
 #include "convolve.h"
+#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef VECTOR
@@ -87,11 +89,13 @@ MESHONET_INLINE float exp_float(float x)
 #define T float
 #define SUFFIX _wide_float
 #include "convolve.h"
+#include "winograd.h"
 #undef T
 #undef SUFFIX
 #define T double
 #define SUFFIX _wide_double
 #include "convolve.h"
+#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef VECTOR
@@ -115,4 +119,16 @@ void network_convolve_double(const double *in, const Convolution *c, const doubl
                              const double *add, double *out)
 {
     WIDE(convolve_wide_double(in, c, w, bias, add, out), convolve_double(in, c, w, bias, add, out))
+}
+
+void network_winograd_float(const float *in, const Convolution *c, const float *w, const float *bias, const float *add,
+                            float *scratch, float *out)
+{
+    WIDE(winograd_wide_float(in, c, w, bias, add, scratch, out), winograd_float(in, c, w, bias, add, scratch, out))
+}
+
+void network_winograd_double(const double *in, const Convolution *c, const double *w, const double *bias,
+                             const double *add, double *scratch, double *out)
+{
+    WIDE(winograd_wide_double(in, c, w, bias, add, scratch, out), winograd_double(in, c, w, bias, add, scratch, out))
 }

@@ -15,6 +15,19 @@ void network_convolve_float(const float *in, const Convolution *c, const float *
                             float *out);
 void network_convolve_double(const double *in, const Convolution *c, const double *w, const double *bias,
                              const double *add, double *out);
+
+/* The same for 3 x 3 taps one pixel apart, at least 16 inputs and outputs and images of 5 x 5 or more, by fewer
+   products: w is (WINOGRAD_VALUES inputs, outputs rounded up), scratch as WINOGRAD_SCRATCH numbers. */
+#define WINOGRAD_VALUES 25
+#define WINOGRAD_TILES 36 /* that go together */
+#define WINOGRAD_PLANE(channels, line) (WINOGRAD_TILES * (channels) + (line)) /* lines apart, lest they share a set */
+#define WINOGRAD_SCRATCH(inputs, wide, line) \
+    (WINOGRAD_VALUES * (WINOGRAD_PLANE(inputs, line) + WINOGRAD_PLANE(wide, line)))
+void network_winograd_float(const float *in, const Convolution *c, const float *w, const float *bias, const float *add,
+                            float *scratch, float *out);
+void network_winograd_double(const double *in, const Convolution *c, const double *w, const double *bias,
+                             const double *add, double *scratch, double *out);
+
 void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
                             float *out);
 void network_activate_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels,
