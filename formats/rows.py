@@ -8,8 +8,7 @@ blanks, tabs, commas, semicolons.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from formats.edges import LARGEST
 from geometry.errors import InputError
@@ -32,8 +31,7 @@ _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE)
 _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 
-@dataclass(frozen=True)
-class Line:
+class Line(NamedTuple):
     """One line: its number from 1, what it is, its values when it is a row, its text.
 
     Kinds: ``row`` is numbers only, two or more; ``noted`` is two numbers and then words; ``gap`` begins with

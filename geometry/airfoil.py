@@ -28,7 +28,7 @@ _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
 
 
-_PARTS = 32
+_PARTS = 128
 """Parts into which a stretch is cut to find the place farthest from the trailing edge."""
 _WIDEST_WEDGE = 50.0
 """Largest angle in degrees between surfaces whose edge a C grid takes by itself."""
@@ -306,7 +306,7 @@ def _farthest(curve: Curve, point: Floats) -> float:
     slopes = _slopes(curve, point, arcs := np.array([low, high]))
     if slopes[0] <= 0 or slopes[1] >= 0:
         return float(s[best[0]])
-    for _ in range(4):  # parts of parts, all places at once: a call costs more than a place
+    for _ in range(2):  # parts of parts, all places at once: a call costs more than a place
         arcs = np.linspace(low, high, _PARTS + 1)
         slopes = _slopes(curve, point, arcs)
         k = max(int(np.argmax(slopes <= 0)), 1)
@@ -317,4 +317,5 @@ def _farthest(curve: Curve, point: Floats) -> float:
 
 def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
     """Return by how much half the squared distance from `point` grows (m,) along the curve at `arcs` (m,)."""
-    return np.asarray(((curve.at(arcs) - point) * curve.tangent(arcs)).sum(axis=1))
+    points, ways = curve.at(arcs) - point, curve.tangent(arcs)
+    return np.asarray(points[:, 0] * ways[:, 0] + points[:, 1] * ways[:, 1])

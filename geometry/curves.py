@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from geometry._curve import locate, slopes, speeds, values
 from geometry.arrays import Floats, distinct
 from geometry.corners import Indices, find_corners
 from geometry.errors import InputError
@@ -87,34 +88,25 @@ class Curve:
 
     def _measure(self, intervals: int) -> None:
         """Make the table of arc length, and the slopes of its inverse."""
-        i = np.arange(intervals)[:, None]
-        pieces = (_norm(self._derivative(i, _INNER[None])).reshape(-1, _STEPS, 3) @ _WEIGHTS).ravel()
-        speed = _norm(self._derivative(i, _EDGES[None]))
+        inner, speed = np.empty((intervals, len(_INNER))), np.empty((intervals, len(_EDGES)))
+        speeds(self._cubic, _INNER, inner)
+        speeds(self._cubic, _EDGES, speed)
+        pieces = (inner.reshape(-1, _STEPS, 3) @ _WEIGHTS).ravel()
         self._table: Floats = np.concatenate([[0.0], np.cumsum(pieces)])
         # dt/ds in units of the piece; at most 3 keeps the inverse monotone
-        floor = 1e-300 + np.zeros_like(speed)
         rate = pieces.reshape(-1, _STEPS) * _STEPS
-        self._rate_start = np.minimum(rate / np.maximum(speed[:, :-1], floor[:, 1:]), 3.0).ravel()
-        self._rate_stop = np.minimum(rate / np.maximum(speed[:, 1:], floor[:, 1:]), 3.0).ravel()
+        self._rate_start = np.minimum(rate / np.maximum(speed[:, :-1], 1e-300), 3.0).ravel()
+        self._rate_stop = np.minimum(rate / np.maximum(speed[:, 1:], 1e-300), 3.0).ravel()
         self.length = float(self._table[-1])
         self.knots = self._table[::_STEPS][: len(self.points)].copy()
         self.corners = self.knots[self.corner_index]
 
-    def _derivative(self, i: Indices, t: Floats) -> Floats:
-        _, b, c, d = self._cubic
-        t = t[..., None]
-        return np.asarray(b[i] + t * (2 * c[i] + 3 * t * d[i]))
-
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
-        """Return the interval and the parameter in it (0 to 1) at arc lengths s."""
-        s = np.asarray(s, dtype=np.float64)
-        s = np.mod(s, self.length) if self.closed else np.clip(s, 0.0, self.length)
-        last = len(self._table) - 2
-        k = np.minimum(np.searchsorted(self._table, s, side="right") - 1, last)
-        f = (s - self._table[k]) / (self._table[k + 1] - self._table[k])
-        a, b = self._rate_start[k], self._rate_stop[k]
-        t = f * (a + f * ((3 - 2 * a - b) + f * (a + b - 2)))
-        return k // _STEPS, np.where(s >= self.length, 1.0, (k % _STEPS + t) / _STEPS)
+        """Return the interval and the parameter in it (0 to 1) at arc lengths s (m,)."""
+        s = np.ascontiguousarray(s, dtype=np.float64)
+        i, t = np.empty(s.shape, dtype=np.intp), np.empty(s.shape)
+        locate(s, self._table, self._rate_start, self._rate_stop, _STEPS, self.closed, i, t)
+        return i, t
 
     def at(self, s: Floats) -> Floats:
         """Return the points (m, 2) at arc lengths `s` (m,).
@@ -123,15 +115,19 @@ class Curve:
         ones, bitwise.
         """
         i, t = self._locate(s)
-        a, b, c, d = self._cubic
-        t = t[..., None]
-        end = self.points[0 if self.closed else -1]
-        return np.asarray(np.where(t == 1.0, end, a[i] + t * (b[i] + t * (c[i] + t * d[i]))))
+        points = np.empty((len(t), 2))
+        values(self._cubic, i, t, self.points[0 if self.closed else -1], points)
+        return points
 
     def tangent(self, s: Floats) -> Floats:
         """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the side that leaves it."""
         d = self._derivative(*self._locate(s))
         return np.asarray(d / _norm(d)[..., None])
+
+    def _derivative(self, i: Indices, t: Floats) -> Floats:
+        d = np.empty((len(t), 2))
+        slopes(self._cubic, i, t, d)
+        return d
 
     def curvature(self, s: Floats) -> Floats:
         """Return the curvature (m,), 1/length, at arc lengths `s` (m,), positive where it turns left."""

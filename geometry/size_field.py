@@ -25,7 +25,7 @@ TURN = math.radians(3.0)
 """How much of the curve's turning one cell may take."""
 _WINDOW = 2e-3
 """Chords over which curvature is averaged, so that the last digit of the points does not count."""
-_SAMPLES = 2400
+_SAMPLES = 1600
 _SCARCEST = math.log(64.0)
 """Logarithm of the largest factor by which curvature and the leading edge get less."""
 _REACH = 8.0

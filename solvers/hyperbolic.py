@@ -303,6 +303,7 @@ def _told(boundary: Boundary, nodes: Floats, first: float) -> str:
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)
     if np.abs(heights / first - 1.0).max() > 1e-6:
         return f"first cells are {heights.min():.3g} to {heights.max():.3g} instead of {first:.6g}"
-    length = float(np.hypot(*np.diff(wall, axis=1).T).sum(axis=0).mean())
+    some = wall[:: max(len(wall) // 16, 1)]
+    length = float(np.hypot(*np.diff(some, axis=1).T).sum(axis=0).mean())
     growth = growth_ratio(first, length, nodes.shape[1] - 1)
     return f"first cell {first:.6g} at every wall node, growing by {growth:.3f} a row on average"

@@ -29,6 +29,26 @@ def test_goes_through_its_points_bitwise(seed, n, closed):
     np.testing.assert_array_equal(curve.at(np.array([curve.length]))[0], points[0 if closed else -1])
 
 
+@pytest.mark.parametrize("closed", [True, False])
+def test_places_in_any_order_next_to_points_and_beyond_the_ends(closed):
+    curve = Curve(star(7, 12), closed=closed)
+    s = np.random.default_rng(7).permutation(
+        [
+            f(k)
+            for k in curve.knots[1:]
+            for f in (lambda k: np.nextafter(k, 0), float, lambda k: k * (1 + 1e-15))
+        ]
+    )
+    expected = curve.points[1:][np.abs(s[:, None] - curve.knots[1:]).argmin(axis=1)]
+    np.testing.assert_allclose(curve.at(s), expected, rtol=0, atol=1e-12)
+    inside = np.linspace(0.1, 0.9, 20) * curve.length
+    beyond = [inside + curve.length, inside - curve.length] if closed else [inside, inside]
+    for shifted in beyond:
+        np.testing.assert_allclose(curve.at(shifted), curve.at(inside), rtol=0, atol=1e-12)
+    ends = curve.at(np.array([-1.0, curve.length + 1.0, np.inf]) if not closed else np.zeros(3))
+    np.testing.assert_array_equal(ends, curve.points[[0, 0, 0] if closed else [0, -1, -1]])
+
+
 def test_parameter_is_arc_length():
     curve = Curve(selig(0.12, 0.03)[:-1], closed=True, corners=[0])
     s = np.linspace(0, curve.length, 200_001)
