@@ -9,12 +9,11 @@ model has seen. Folds are counted before the guard. Processor time of one thread
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-from bench_quads import clocked, judged, operate, percent, published
+from gains import Way, clocked, distances, figures, gains, operate, percent, published
 
 from geometry.boundary import Boundary
 from geometry.compare import compare
@@ -34,8 +33,6 @@ from solvers.variational.solve import solve as variational
 
 SEED = 1000
 """Of the bodies here; those of training have another."""
-
-Way = Callable[[Boundary], Solution]
 
 
 def main() -> None:
@@ -74,7 +71,6 @@ def bodies(ni: int, nj: int, count: int) -> list[Boundary]:
 
 def tables(edges: list[Boundary], model: str, twin: str) -> list[str]:
     """Return the tables of angles and of distances to Winslow's solution."""
-    ni, nj = edges[0].ni, edges[0].nj
     ways: dict[str, Way] = {
         "TFI": lambda b: Solution(tfi(b), "tfi"),
         "Winslow": winslow,
@@ -85,42 +81,15 @@ def tables(edges: list[Boundary], model: str, twin: str) -> list[str]:
         "**network, 2 steps**": partial(operate, model, 2),
         "**network, 5 steps**": partial(operate, model, 5),
     }
-    table = {name: np.array([judged(way, one) for one in edges]) for name, way in ways.items()}
-    before, best = table["Winslow"], table["variational"]
-    valid = before[:, 0] == 0
-    lines = [f"\n## {len(edges)} random bodies, {ni} x {nj}\n", *ANGLES]
-    for name, rows in table.items():
-        folds, largest, mean, spent = rows.T
-        low = (folds == 0) & (largest <= before[:, 1] + 1e-6) & (mean <= before[:, 2] + 1e-6)
-        mean_gain, max_gain = (
-            100 * (before - rows)[valid, k].sum() / (before - best)[valid, k].sum() for k in (2, 1)
-        )
-        lines.append(
-            f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
-            f"| {mean_gain:.0f} / {max_gain:.0f} | {1e3 * np.median(spent):.1f} |"
-        )
-    return ["\n".join(lines), distances(edges, twin)]
-
-
-def distances(edges: list[Boundary], twin: str) -> str:
-    """Return the table of distances to Winslow's solution."""
-    ways: dict[str, Way] = {
-        "TFI": lambda b: Solution(tfi(b), "tfi"),
-        "Winslow --coarse 65": partial(solve_coarse, method=winslow, n=65, smooth=True),
-        "**hole-winslow**": partial(operate, twin, 0),
-        "**hole-winslow, 2 cycles**": partial(operate, twin, 2),
+    to_winslow: dict[str, Way] = {
+        "TFI": ways["TFI"],
+        "Winslow --coarse 65": ways["Winslow --coarse 65"],
+        f"**{twin}**": partial(operate, twin, 0),
+        f"**{twin}, 2 cycles**": partial(operate, twin, 2),
     }
     goals = [winslow(one, tol=1e-8, max_cycles=60).grid for one in edges]
-    lines = [
-        "\n| way | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
-        3 * "| --- " + "|",
-    ]
-    for name, way in ways.items():
-        spent = [clocked(partial(way, one)) for one in edges]
-        errors = [compare(way(one).grid, goal).relative_l2 for one, goal in zip(edges, goals, strict=True)]
-        median, high = np.quantile(errors, (0.5, 0.9))
-        lines.append(f"| {name} | {median:.1e} / {high:.1e} | {1e3 * np.median(spent):.1f} |")
-    return "\n".join(lines)
+    title = f"{len(edges)} random bodies, {edges[0].ni} x {edges[0].nj}"
+    return [gains(title, edges, ways), distances(edges, goals, to_winslow)]
 
 
 def batches(model: str) -> str:
@@ -152,8 +121,8 @@ def holes(model: str, twin: str) -> str:
             errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
             cells.append(f"{np.median(errors):.1e} ({sum(count_folded(grid.nodes) > 0 for grid in grids)})")
         judgements = [
-            [judged(partial(operate, model, polish), one) for one in edges] for polish in (0, 5)
-        ] + [[judged(winslow, one) for one in edges]]
+            [figures(partial(operate, model, polish), one) for one in edges] for polish in (0, 5)
+        ] + [[figures(winslow, one) for one in edges]]
         angles = ["{:.1f} / {:.1f}".format(*np.array(rows)[:, 1:3].mean(axis=0)) for rows in judgements]
         told = [published(f"hole.random.{kind}") for kind in ("meshonet.raw", "meshonet-hard.raw")]
         told = told if name == "random" else ["", ""]
@@ -178,7 +147,7 @@ def wakes() -> str:
     ]
     lines = [WAKES]
     for name, way in ways.items():
-        folds, largest, mean, spent = np.array([judged(way, one) for one in edges]).T
+        folds, largest, mean, spent = np.array([figures(way, one) for one in edges]).T
         lines.append(
             f"| {name} | {percent(folds == 0)} | {largest.mean():.1f} / {mean.mean():.2f} "
             f"| {1e3 * np.median(spent):.1f} |"
@@ -195,11 +164,6 @@ side: alone it is worse than TFI. No `airfoil-c` is shipped; `infer` makes C gri
 
 | way | valid % | max / mean angle, averaged | CPU ms, median |
 | --- | --- | --- | --- |"""
-ANGLES = (
-    "| way | valid % | max and mean not above Winslow's % | max / mean angle, averaged "
-    "| gain in the mean / max % | CPU ms, median |",
-    6 * "| --- " + "|",
-)
 HOLES = """
 ## The paper's moving hole, 101 x 101
 

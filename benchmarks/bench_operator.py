@@ -16,7 +16,6 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
 import argparse
-import json
 import platform
 import time
 from collections.abc import Callable
@@ -24,8 +23,9 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from gains import operate, published
 from judged import Way, rows, table
-from kept import ROOT, Kept
+from kept import Kept
 from shapes import Shape, airfoil_files, members, random_airfoils, random_domains
 
 from geometry.arrays import Floats
@@ -41,7 +41,6 @@ from solvers.elliptic.solve import solve as winslow
 from solvers.guard import guard
 from solvers.neural.harmonic import extend
 from solvers.neural.operator import infer
-from solvers.neural.quads.inference import infer_quads
 from solvers.solution import Solution
 from solvers.tfi import tfi
 from solvers.variational.solve import solve as variational
@@ -51,11 +50,6 @@ SOLVER = "multigrid Winslow"
 SIZES = (100, 200, 400, 800, 1600, 3200)
 LARGEST = {"variational": 800}
 """Nodes along a direction up to which a way is timed."""
-
-
-def quads(model: str, polish: int) -> Way:
-    """Return the way of a quad model with so many steps of polish."""
-    return lambda boundary: infer_quads([boundary], model, polish)[0]
 
 
 def coarse(method: Way, n: int) -> Way:
@@ -84,10 +78,10 @@ DOMAINS: dict[str, Way] = {
     "harmonic base": lambda b: Solution(Grid(extend(b), b.topology), "harmonic"),
     "Winslow, coarse 33": coarse(winslow, 33),
     "variational, coarse 33": coarse(variational, 33),
-    "**quad-winslow**": quads("quad-winslow", 0),
-    "**quad-winslow, 2 cycles**": quads("quad-winslow", 2),
-    "**quad-general**": quads("quad-general", 0),
-    "**quad-general, 5 steps**": quads("quad-general", 5),
+    "**quad-winslow**": partial(operate, "quad-winslow", 0),
+    "**quad-winslow, 2 cycles**": partial(operate, "quad-winslow", 2),
+    "**quad-general**": partial(operate, "quad-general", 0),
+    "**quad-general, 5 steps**": partial(operate, "quad-general", 5),
 }
 
 
@@ -173,11 +167,15 @@ def families(kept: Kept) -> str:
         "harmonic base": DOMAINS["harmonic base"],
         "Winslow, coarse 33": DOMAINS["Winslow, coarse 33"],
         SOLVER: winslow,
-        "ours": quads("quad-winslow", 0),
-        "ours, polish": quads("quad-winslow", 2),
+        "ours": partial(operate, "quad-winslow", 0),
+        "ours, polish": partial(operate, "quad-winslow", 2),
     }
     ring = {**quad, "ours": lambda b: infer(b, polish="off"), "ours, polish": infer}
-    plate = {**quad, "ours": quads("hole-winslow", 0), "ours, polish": quads("hole-winslow", 2)}
+    plate = {
+        **quad,
+        "ours": partial(operate, "hole-winslow", 0),
+        "ours, polish": partial(operate, "hole-winslow", 2),
+    }
     lines = [FAMILIES_TOLD, "| family | " + " | ".join([*quad, "MeshONet", "MeshONet-hard"]) + " |"]
     lines.append("| --- |" + " --- |" * (len(quad) + 2))
     for name in FAMILIES:
@@ -190,15 +188,6 @@ def families(kept: Kept) -> str:
             cells += [published(f"{name}.{split}.{kind}.raw") for kind in ("meshonet", "meshonet-hard")]
             lines.append(f"| {title} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
-
-
-def published(name: str) -> str:
-    """Return the median error of a paper model in docs/paper/results, and how many of its grids fold."""
-    path = ROOT / "docs" / "paper" / "results" / f"{name}.json"
-    if not path.exists():
-        return "not run"
-    told = json.loads(path.read_text())["summary"]
-    return f"{told['relative_l2']['median']:.1e} ({told['folded']['members']})"
 
 
 def times(kept: Kept) -> str:

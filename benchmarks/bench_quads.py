@@ -14,26 +14,24 @@ for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
 
 import argparse
-import json
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 import numpy as np
+from gains import Way, clocked, distances, figures, gains, operate, published
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
 from solver_shapes import arch
 
 from formats.registry import read_shapes
-from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.compare import compare
-from geometry.quality import count_folded, measure
+from geometry.quality import count_folded
 from solvers.coarse import solve_coarse
 from solvers.elliptic.solve import solve as winslow
 from solvers.neural.quads.inference import infer_quads
@@ -41,11 +39,8 @@ from solvers.solution import Solution
 from solvers.tfi import tfi
 from solvers.variational.solve import solve as variational
 
-ROOT = Path(__file__).parents[1]
 FIRST = 1000
 """Seed of the first random domain."""
-
-Way = Callable[[Boundary], Solution]
 
 
 def main() -> None:
@@ -62,17 +57,12 @@ def main() -> None:
     for size in options.sizes.split(","):
         n, count = (int(word) for word in size.split(":"))
         boundaries = domains(n, count)
-        parts += [angles(n, boundaries, network), distances(n, boundaries, partial(operate, options.twin))]
+        parts += [angles(n, boundaries, network), to_winslow(n, boundaries, partial(operate, options.twin))]
     parts += [large(options.large, network), batches(options.model), families(options.twin), TAIL]
     text = "\n".join(parts)
     print(text)
     if options.page:
         options.page.write_text(text)
-
-
-def operate(model: str, polish: int, boundary: Boundary) -> Solution:
-    """Return the solution of `boundary` alone by a quad model."""
-    return infer_quads([boundary], model, polish)[0]
 
 
 def domains(n: int, count: int) -> list[Boundary]:
@@ -93,45 +83,10 @@ def angles(n: int, boundaries: list[Boundary], network: Callable[..., Solution])
         "**network, 2 steps**": partial(network, 2),
         "**network, 5 steps**": partial(network, 5),
     }
-    if n <= 65:
-        del ways["Winslow --coarse 65"], ways["variational --coarse 65"]
-    found = {name: [judged(way, boundary) for boundary in boundaries] for name, way in ways.items()}
-    table = {name: np.array(rows) for name, rows in found.items()}
-    before, best = table["Winslow"], table["variational"]
-    valid = before[:, 0] == 0
-    lines = [f"\n## {len(boundaries)} random domains, {n} x {n}\n", *ANGLES]
-    for name, rows in table.items():
-        folds, largest, mean, spent = rows.T
-        low = (folds == 0) & (largest <= before[:, 1] + 1e-6) & (mean <= before[:, 2] + 1e-6)
-        gains = [
-            (before[valid, k] - rows[valid, k]).sum() / (before[valid, k] - best[valid, k]).sum()
-            for k in (2, 1)
-        ]
-        each = np.median((before[valid, 2] - mean[valid]) / (before[valid, 2] - best[valid, 2]))
-        lines.append(
-            f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
-            f"| {100 * gains[0]:.0f} / {100 * each:.0f} | {100 * gains[1]:.0f} "
-            f"| {1e3 * np.median(spent):.1f} |"
-        )
-    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; gains are over these.")
-    return "\n".join(lines)
+    return gains(f"{len(boundaries)} random domains, {n} x {n}", boundaries, _coarser(ways, n))
 
 
-def judged(way: Way, boundary: Boundary) -> tuple[float, float, float, float]:
-    """Return folded cells, largest angle, mean angle and processor seconds."""
-    begun = time.process_time()
-    grid = way(boundary).grid
-    spent = time.process_time() - begun
-    summary = measure(grid)["max_angle"]
-    return count_folded(grid.nodes), summary.max, summary.mean, spent
-
-
-def percent(where: Floats) -> str:
-    """Return the share of a mask in percent."""
-    return f"{100 * where.mean():.1f}"
-
-
-def distances(n: int, boundaries: list[Boundary], network: Callable[..., Solution]) -> str:
+def to_winslow(n: int, boundaries: list[Boundary], network: Callable[..., Solution]) -> str:
     """Return the table of distances to Winslow's solution at n x n nodes."""
     ways: dict[str, Way] = {
         "TFI": lambda b: Solution(tfi(b), "tfi"),
@@ -142,22 +97,12 @@ def distances(n: int, boundaries: list[Boundary], network: Callable[..., Solutio
         "**quad-winslow, 2 cycles**": partial(network, 2),
     }
     goals = [winslow(boundary, tol=1e-8).grid for boundary in boundaries]
-    lines = [
-        "\n| way | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
-        "| --- | --- | --- |",
-    ]
-    for name, way in ways.items():
-        if name.endswith("65") and n <= 65:
-            continue
-        errors, spent = [], []
-        for boundary, goal in zip(boundaries, goals, strict=True):
-            begun = time.process_time()
-            grid = way(boundary).grid
-            spent.append(time.process_time() - begun)
-            errors.append(compare(grid, goal).relative_l2)
-        median, high = np.quantile(errors, (0.5, 0.9))
-        lines.append(f"| {name} | {median:.1e} / {high:.1e} | {1e3 * np.median(spent):.1f} |")
-    return "\n".join(lines)
+    return distances(boundaries, goals, _coarser(ways, n))
+
+
+def _coarser(ways: dict[str, Way], n: int) -> dict[str, Way]:
+    """Return the ways that solve on fewer than n nodes, or on all."""
+    return {name: way for name, way in ways.items() if n > 65 or not name.endswith("65")}
 
 
 def large(n: int, network: Callable[..., Solution]) -> str:
@@ -176,7 +121,7 @@ def large(n: int, network: Callable[..., Solution]) -> str:
         "| --- | --- | --- | --- |",
     ]
     for name, way in ways.items():
-        runs = [judged(way, boundary) for _ in range(1 if name == "variational" else 3)]
+        runs = [figures(way, boundary) for _ in range(1 if name == "variational" else 3)]
         folds, largest, mean, spent = min(runs, key=lambda run: run[3])
         lines.append(f"| {name} | {folds} | {largest:.1f} / {mean:.2f} | {1e3 * spent:.1f} |")
     return "\n".join(lines)
@@ -203,13 +148,6 @@ def batches(model: str) -> str:
         spent = min(clocked(way) for _ in range(3 if "variational" in name else 12)) / len(boundaries)
         lines.append(f"| {name} | {1e3 * spent:.2f} | {1 / spent:.0f} |")
     return "\n".join(lines)
-
-
-def clocked(call: Callable[[], object]) -> float:
-    """Return the processor seconds of `call`."""
-    begun = time.process_time()
-    call()
-    return time.process_time() - begun
 
 
 def families(twin: str) -> str:
@@ -248,20 +186,6 @@ def families(twin: str) -> str:
     return "\n".join(lines)
 
 
-def published(name: str) -> str:
-    """Return the median error of a paper model in docs/paper/results, and how many of its grids fold."""
-    path = ROOT / "docs" / "paper" / "results" / f"{name}.json"
-    if not path.exists():
-        return ""
-    told = json.loads(path.read_text())["summary"]
-    return f"{told['relative_l2']['median']:.1e} ({told['folded']['members']})"
-
-
-ANGLES = (
-    "| way | valid % | max and mean not above Winslow's % | max / mean angle, averaged "
-    "| gain in the mean %, of all / median | gain in the max % | CPU ms, median |",
-    "| --- | --- | --- | --- | --- | --- | --- |",
-)
 FAMILIES = """
 ## The paper's families, 101 x 101, test members
 

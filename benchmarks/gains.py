@@ -1,0 +1,100 @@
+"""Tables of the quad network's benchmarks: what ways gain over Winslow's angles, how far off they are.
+
+Folds are counted before the guard; times are processor seconds of one thread, in one run.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+from kept import ROOT
+
+from geometry.arrays import Floats
+from geometry.boundary import Boundary
+from geometry.compare import compare
+from geometry.grid import Grid
+from geometry.quality import count_folded, measure
+from solvers.neural.quads.inference import infer_quads
+from solvers.solution import Solution
+
+Way = Callable[[Boundary], Solution]
+
+ANGLES = (
+    "| way | valid % | max and mean not above Winslow's % | max / mean angle, averaged "
+    "| gain in the mean %, of all / median | gain in the max % | CPU ms, median |",
+    7 * "| --- " + "|",
+)
+DISTANCES = (
+    "\n| way | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
+    3 * "| --- " + "|",
+)
+
+
+def operate(model: str, polish: int, boundary: Boundary) -> Solution:
+    """Return the solution of `boundary` alone by a quad model."""
+    return infer_quads([boundary], model, polish)[0]
+
+
+def figures(way: Way, boundary: Boundary) -> tuple[float, float, float, float]:
+    """Return folded cells, largest angle, mean angle and processor seconds."""
+    begun = time.process_time()
+    grid = way(boundary).grid
+    spent = time.process_time() - begun
+    summary = measure(grid)["max_angle"]
+    return count_folded(grid.nodes), summary.max, summary.mean, spent
+
+
+def gains(title: str, boundaries: Sequence[Boundary], ways: Mapping[str, Way]) -> str:
+    """Return the table of folds, angles and gains of `ways`, ``Winslow`` and ``variational`` among them."""
+    table = {name: np.array([figures(way, one) for one in boundaries]) for name, way in ways.items()}
+    before, best = table["Winslow"], table["variational"]
+    valid = before[:, 0] == 0
+    lines = [f"\n## {title}\n", *ANGLES]
+    for name, rows in table.items():
+        folds, largest, mean, spent = rows.T
+        low = (folds == 0) & (largest <= before[:, 1] + 1e-6) & (mean <= before[:, 2] + 1e-6)
+        of_max, of_mean = ((before - rows)[valid, k].sum() / (before - best)[valid, k].sum() for k in (1, 2))
+        each = np.median((before - rows)[valid, 2] / (before - best)[valid, 2])
+        lines.append(
+            f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
+            f"| {100 * of_mean:.0f} / {100 * each:.0f} | {100 * of_max:.0f} | {1e3 * np.median(spent):.1f} |"
+        )
+    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; gains are over these.")
+    return "\n".join(lines)
+
+
+def distances(boundaries: Sequence[Boundary], goals: Sequence[Grid], ways: Mapping[str, Way]) -> str:
+    """Return the table of distances to the converged Winslow grids `goals`."""
+    lines = [*DISTANCES]
+    for name, way in ways.items():
+        spent = [clocked(partial(way, one)) for one in boundaries]
+        pairs = zip(boundaries, goals, strict=True)
+        errors = [compare(way(one).grid, goal).relative_l2 for one, goal in pairs]
+        median, high = np.quantile(errors, (0.5, 0.9))
+        lines.append(f"| {name} | {median:.1e} / {high:.1e} | {1e3 * np.median(spent):.1f} |")
+    return "\n".join(lines)
+
+
+def clocked(call: Callable[[], object]) -> float:
+    """Return the processor seconds of `call`."""
+    begun = time.process_time()
+    call()
+    return time.process_time() - begun
+
+
+def percent(where: Floats) -> str:
+    """Return the share of a mask in percent."""
+    return f"{100 * where.mean():.1f}"
+
+
+def published(name: str) -> str:
+    """Return the median error of a paper model in docs/paper/results, and how many of its grids fold."""
+    path = ROOT / "docs" / "paper" / "results" / f"{name}.json"
+    if not path.exists():
+        return "not run"
+    told = json.loads(path.read_text())["summary"]
+    return f"{told['relative_l2']['median']:.1e} ({told['folded']['members']})"
