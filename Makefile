@@ -83,10 +83,10 @@ train-airfoils: $(VENV)/.developing
 
 # the same domains by both methods; Winslow's with twice the nodes, of which every other one is kept.
 # Exit code 3 tells that a few domains have no valid grid: they are left out
-SEEDED := sample-boundary --family four-sided --count 18600 --seed 1
+SEEDED := sample-boundary --family four-sided --count 36000 --seed 1
 train-quads: train/winslow.h5 train/variational.h5
 	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o train/quad-general.safetensors \
-	  --epochs 64 --seed 0 --resume
+	  --epochs 24 --seed 0 --resume
 	cp train/quad-general.safetensors $(MODELS)
 
 train/winslow.h5: | $(VENV)/.developing

@@ -1,7 +1,8 @@
 """Four-sided domains nobody drew, to train and test operators on.
 
 Between moved corners run sides that are straight, wavy, bowed, kinked, bumped or bulged by an arc of a
-circle; some domains are bent around a centre or warped as a whole. Nodes are spaced evenly or clustered.
+circle; some domains are drawn out to a tail, bent around a centre or warped as a whole. Nodes are spaced
+evenly or clustered.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ FINE = 601
 CHECKED = 65
 """Nodes of a side at which a domain is judged, whatever its node counts: a seed is one shape at any size."""
 
-LEAST, MOST = np.radians(20.0), np.radians(174.0)
+LEAST, MOST = np.radians(3.0), np.radians(178.0)
 """Angles of the four corners."""
 
 LEAST_AREA = 0.05
@@ -31,7 +32,7 @@ ENDS = ((0, 1), (3, 2), (0, 3), (1, 2))
 
 
 def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
-    """Return a random quad boundary of a simple outline, its corners open by 20 to 174 degrees."""
+    """Return a random quad boundary of a simple outline, its corners open by 3 to 178 degrees."""
     while True:
         sides = _sides(rng)
         laws = [_law(rng) for _ in sides]
@@ -46,7 +47,11 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
 
 def _sides(rng: np.random.Generator) -> list[Complexes]:
     """Return south, north, west and east, (FINE,) each."""
-    corners = CORNERS + rng.normal(0, 0.13, 4) + 1j * rng.normal(0, 0.13, 4)
+    spread = rng.choice([0.13, 0.2], p=[0.6, 0.4])
+    corners = CORNERS + rng.normal(0, spread, 4) + 1j * rng.normal(0, spread, 4)
+    if rng.random() < 0.35:  # to a tail
+        pulled = rng.integers(4)
+        corners[pulled] += rng.uniform(0.3, 1.2) * (CORNERS[pulled] - CORNERS.mean())
     stretch = np.exp(0.5 * rng.uniform(-0.9, 0.9))
     corners = corners.real * stretch + 1j * corners.imag / stretch
     swing = rng.choice([0.35, 0.7, 1.0], p=[0.4, 0.35, 0.25])
