@@ -110,7 +110,8 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int]]:
     for block in blocks:
         starts.append(len(rows))
         rows += block
-    return _without_heading(rows, starts, usual)
+    rows, starts = _without_heading(rows, starts, usual)
+    return _without_mark(rows), starts
 
 
 def _far_or_told(blocks: list[list[Line]], lines: list[Line]) -> bool:
@@ -120,6 +121,13 @@ def _far_or_told(blocks: list[list[Line]], lines: list[Line]) -> bool:
         return sum(map(len, blocks[:-1])) >= 10
     points = np.array([line.values[:2] for block in blocks[:-1] for line in block])
     return _outside(np.array(last.values[:2]), points)
+
+
+def _without_mark(rows: list[Line]) -> list[Line]:
+    """Return rows without one behind the data such as 999 999: a number twice, far outside the rest."""
+    values = np.array([line.values[:2] for line in rows])
+    marked = len(rows) > 4 and values[-1, 0] == values[-1, 1] and _outside(values[-1], values[:-1])
+    return rows[:-1] if marked else rows
 
 
 def _outside(point: Floats, points: Floats) -> bool:

@@ -24,7 +24,7 @@ MOST_LINES = 300_000
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
 _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
-_COMMA = re.compile(r"[+-]?\d*,\d+(?:[eEdD][+-]?\d+)?")
+_COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")
 _SPLIT = re.compile(r"[\s,;]+")
 _PLACEHOLDER = re.compile(r"[.*_?-]{2,}|-")
 _NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE)
@@ -141,7 +141,7 @@ def _line(number: int, text: str) -> Line:
 def _words(text: str) -> list[str]:
     """Return the words between separators; a comma inside a number is its decimal point where no point is."""
     blank = re.split(r"[\s;]+", text.strip(" \t,;"))
-    if len(blank) > 1 and "." not in text and all(_COMMA.fullmatch(word) for word in blank):
+    if len(blank) > 1 and "," in text and "." not in text and all(map(_COMMA.fullmatch, blank)):
         return [word.replace(",", ".") for word in blank]
     words = []
     for word in _SPLIT.split(text.strip(" \t,;")):

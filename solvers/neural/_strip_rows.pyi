@@ -3,7 +3,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
+from geometry.arrays import Floats
 from geometry.lift import Lift
 
 def fill(
@@ -11,7 +11,7 @@ def fill(
     y: Floats,
     order: NDArray[np.intp],
     lift: Lift,
-    sums: Sequence[tuple[int, Complexes]],
+    sums: Sequence[tuple[int, int, Floats]],
     sharpness: float,
     along: Floats,
     across: Floats,
@@ -19,4 +19,4 @@ def fill(
     cuts: NDArray[np.intp],
     begin: int,
     axis: tuple[complex, complex] | None,
-) -> None: ...
+) -> bool: ...

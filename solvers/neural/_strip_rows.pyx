@@ -1,7 +1,11 @@
 """Binding of strip_rows_kernel.c: rows of a grid from the columns of a strip solution."""
 
+from libc.math cimport isfinite
 from libc.stdlib cimport free, malloc
 
+
+cdef extern from "lanes.h":
+    int LANES
 
 cdef extern from "strip_rows_kernel.h":
     int PANEL_NODES
@@ -21,8 +25,8 @@ cdef extern from "strip_rows_kernel.h":
         const CornerMap *corners
 
     ctypedef struct WindowSum:
-        const Cplx *columns
-        Py_ssize_t count, from_ "from", m
+        const double *columns
+        Py_ssize_t count, from_ "from", m, width
 
     ctypedef struct StripRows:
         Py_ssize_t n, m
@@ -39,8 +43,9 @@ cdef extern from "strip_rows_kernel.h":
         int symmetric
         Cplx on_axis, turned
 
-    void strip_rows(const StripRows *s, const Py_ssize_t *order, Py_ssize_t count, double *x, double *y,
-                    Py_ssize_t nj, Cplx *scratch) noexcept nogil
+    void expand_corner(CornerMap *corner) noexcept nogil
+    double strip_rows(const StripRows *s, const Py_ssize_t *order, Py_ssize_t count, double *x, double *y,
+                      Py_ssize_t nj, double *scratch) noexcept nogil
 
 
 cdef Cplx _pair(z):
@@ -53,12 +58,12 @@ cdef Cplx _pair(z):
 def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, sums, double sharpness,
          const double[:, ::1] along, const double[:, ::1] across, const double[:, ::1] matrix,
          const Py_ssize_t[::1] cuts, Py_ssize_t begin, axis):
-    """Write levels 1 .. nj - 2 of the rows in `order` to `x` and `y` (n + 1, nj).
+    """Write levels 1 .. nj - 2 of the rows in `order` to `x` and `y` (n + 1, nj); return whether they are finite.
 
     Parameters
     ----------
     lift : `geometry.lift.Lift`.
-    sums : pairs of a point and its columns (Q, m'), Q a power of two: points [from, from + m') of every row.
+    sums : a point, how many follow with it, and their columns (Q, 2, width) by `waves.columns`.
     sharpness : of the window of `waves`.
     along, across : (nudges, n) and (nudges, points), whose products are added to phi.
     matrix, cuts : of the panels, (PANEL_NODES, levels) and the levels where they meet, the first at `begin`.
@@ -68,10 +73,12 @@ def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, 
     cdef StripRows s
     cdef Py_ssize_t n = x.shape[0] - 1, nj = x.shape[1], m = across.shape[1], i
     cdef Py_ssize_t panels = cuts.shape[0] - 1, width = matrix.shape[1]
-    cdef const double complex[:, ::1] columns
+    cdef Py_ssize_t start, count
+    cdef const double[:, :, ::1] columns
     cdef WindowSum *windows = NULL
     cdef CornerMap *corners = NULL
-    cdef Cplx *scratch = NULL
+    cdef double *scratch = NULL
+    cdef double total
     if y.shape[0] != n + 1 or y.shape[1] != nj or along.shape[1] != n or along.shape[0] != across.shape[0]:
         raise ValueError("x, y and nudges do not fit")
     if matrix.shape[0] != PANEL_NODES or cuts[0] != 0 or cuts[panels] != width:
@@ -85,27 +92,31 @@ def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, 
         if not 0 <= order[i] < n:
             raise ValueError("a row beyond the last")
     if m == 0 or order.shape[0] == 0:
-        return
+        return True
     try:
         windows = <WindowSum *>malloc(max(len(sums), 1) * sizeof(WindowSum))
         corners = <CornerMap *>malloc(max(len(lift.corners), 1) * sizeof(CornerMap))
-        scratch = <Cplx *>malloc(4 * m * sizeof(Cplx))
+        scratch = <double *>malloc(8 * (m + LANES) * sizeof(double))
         if windows == NULL or corners == NULL or scratch == NULL:
             raise MemoryError
         s.n_sums = 0
-        for start, values in sums:
+        for start, count, values in sums:
             columns = values
-            if start < 0 or start + columns.shape[1] > m or columns.shape[0] & (columns.shape[0] - 1):
+            if start < 0 or count < 0 or start + count > m or columns.shape[0] & (columns.shape[0] - 1):
                 raise ValueError("columns do not fit")
-            if columns.shape[0] == 0 or columns.shape[1] == 0:
+            if columns.shape[1] != 2 or count > columns.shape[2] or columns.shape[2] % LANES:
+                raise ValueError("columns are not as wide as the points they are for")
+            if columns.shape[0] == 0 or count == 0:
                 continue
-            windows[s.n_sums].columns = <const Cplx *>&columns[0, 0]
-            windows[s.n_sums].count, windows[s.n_sums].m = columns.shape[0], columns.shape[1]
+            windows[s.n_sums].columns = &columns[0, 0, 0]
+            windows[s.n_sums].count, windows[s.n_sums].width = columns.shape[0], columns.shape[2]
+            windows[s.n_sums].m = count
             windows[s.n_sums].from_ = start
             s.n_sums += 1
         for i, corner in enumerate(reversed(lift.corners)):
             corners[i].p, corners[i].q = _pair(corner.p), _pair(corner.q)
             corners[i].P, corners[i].Q, corners[i].k = _pair(corner.P), _pair(corner.Q), corner.k
+            expand_corner(&corners[i])
         s.lift.centre, s.lift.quarter, s.lift.pole = _pair(lift.centre), _pair(lift.quarter), _pair(lift.pole)
         s.lift.phase, s.lift.n_corners, s.lift.corners = lift.phase, len(lift.corners), corners
         s.n, s.m, s.sharpness, s.sums, s.begin, s.panels = n, m, sharpness, windows, begin, panels
@@ -116,7 +127,8 @@ def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, 
         s.symmetric = axis is not None
         s.on_axis, s.turned = _pair(axis[0] if axis else 0j), _pair(axis[1] if axis else 0j)
         with nogil:
-            strip_rows(&s, &order[0], order.shape[0], &x[0, 0], &y[0, 0], nj, scratch)
+            total = strip_rows(&s, &order[0], order.shape[0], &x[0, 0], &y[0, 0], nj, scratch)
+        return bool(isfinite(total))
     finally:
         free(windows)
         free(corners)

@@ -62,8 +62,10 @@ class StripGrid:
         """Add `along` (n,) times ``across(eta)`` to phi."""
         self._nudges.append((along, across))
 
-    def fill(self, lift: Lift, out: Floats, axis: Axis | None = None) -> None:
+    def fill(self, lift: Lift, out: Floats, axis: Axis | None = None) -> bool:
         """Write the grid in the plane to `out` (n + 1, nj, 2) planar, its two walls left out.
+
+        Return whether it is finite.
 
         The last row repeats the first bitwise. With an `axis`, rows i and n - i become mirror images.
         """
@@ -81,11 +83,12 @@ class StripGrid:
             order = np.stack([half, -half % n], axis=1).ravel()
         sums = list(self._columns(eta, len(eta) - len(far)))
         x, y = out[..., 0], out[..., 1]
-        fill(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
+        finite = fill(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
         out[-1, 1:-1] = out[0, 1:-1]
+        return finite
 
-    def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, Complexes]]:
-        """Yield the points at `eta` in slices, by their first, and the columns of their modes.
+    def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, int, Floats]]:
+        """Yield the points at `eta` in slices: their first, their number and the columns of their modes.
 
         Those before `last` may feel the high modes of the wall, the others those of the far field.
         """
@@ -93,14 +96,14 @@ class StripGrid:
         low = (interpolation(eta).T @ base.view(np.float64)).view(np.complex128)
         first = 0
         for where, ahead, behind in self._near.bands(eta[:last]):
-            yield where.start, columns(_widened(low[where], ahead, behind))
+            yield where.start, len(ahead), columns(_widened(low[where], ahead, behind))
             first = where.stop
         depth, beyond = 1.0 - eta[last:][::-1], len(eta)
         for where, ahead, behind in self._away.bands(depth):
             start, stop = len(eta) - where.stop, len(eta) - where.start
-            yield start, columns(_widened(low[start:stop], ahead[::-1], behind[::-1]))
+            yield start, len(ahead), columns(_widened(low[start:stop], ahead[::-1], behind[::-1]))
             beyond = start
-        yield first, columns(low[first:beyond])
+        yield first, beyond - first, columns(low[first:beyond])
 
 
 def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:

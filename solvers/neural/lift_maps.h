@@ -15,10 +15,18 @@ extern double atan2(double, double) __attribute__((simd("notinbranch")));
 #endif
 
 #define CHUNK 256
+#define TERMS 13 /* of the series below */
+#define FAR 0.0625 /* |e^2| up to which it holds to round-off: FAR^TERMS is 2e-16 */
+#define TOGETHER 8 /* points for which one tells whether it does */
 
 typedef struct { double re, im; } Cplx;
 
-typedef struct { Cplx p, q, P, Q; double k; } CornerMap;
+/* With m the middle of p and q, m' and h' that of P and Q and half their distance, e = h'/(v' - m'):
+
+       v = m + k h' coth(k artanh e) = m + (v' - m') (series[0] + series[1] e^2 + ...)
+
+   is the map without any power, for all points that are not near the corner. */
+typedef struct { Cplx p, q, P, Q; double k; double series[TERMS]; } CornerMap;
 
 typedef struct {
     Cplx centre, quarter, pole;
@@ -74,6 +82,17 @@ MESHONET_INLINE void unroll(const double *psi, const double *phi, double phase, 
     }
 }
 
+/* Fill in the series of a corner: y = k e coth(k artanh e) solves (1 - e^2) (e y' - y) = k^2 e^2 - y^2. */
+MESHONET_INLINE void expand_corner(CornerMap *m) {
+    double *a = m->series;
+    a[0] = 1.0;
+    for (int n = 1; n < TERMS; n++) {
+        double sum = (2 * n - 3) * a[n - 1] + (n == 1 ? m->k * m->k : 0.0);
+        for (int j = 1; j < n; j++) sum -= a[j] * a[n - j];
+        a[n] = sum / (2 * n + 1);
+    }
+}
+
 /* v <- (q r - p)/(r - 1) with r = ((v - P)/(v - Q))^k */
 MESHONET_INLINE void restore_corner(const CornerMap *m, long n, double *restrict vr, double *restrict vi,
                                     double *restrict lr, double *restrict an) {
@@ -97,21 +116,60 @@ MESHONET_INLINE void restore_corner(const CornerMap *m, long n, double *restrict
     }
 }
 
-/* At most CHUNK points: psi + i phi in, x + i y out (y mirrored back: minus the imaginary part of z), in place. */
-MESHONET_INLINE void lift_to_plane(Cplx *points, long n, const LiftMaps *m) {
-    double psi[CHUNK], phi[CHUNK], vr[CHUNK], vi[CHUNK], a[CHUNK], b[CHUNK];
-    for (long j = 0; j < n; j++) psi[j] = points[j].re, phi[j] = points[j].im;
-    unroll(psi, phi, m->phase, n, vr, vi);
+/* The same by the series, from point `first` on. */
+MESHONET_INLINE void restore_far(const CornerMap *m, long first, long n, double *restrict vr, double *restrict vi) {
+    const double mr = 0.5 * (m->p.re + m->q.re), mi = 0.5 * (m->p.im + m->q.im);
+    const double Mr = 0.5 * (m->P.re + m->Q.re), Mi = 0.5 * (m->P.im + m->Q.im);
+    const double hr = 0.5 * (m->P.re - m->Q.re), hi = 0.5 * (m->P.im - m->Q.im);
+    for (long j = first; j < n; j++) {
+        const double dr = vr[j] - Mr, di = vi[j] - Mi, w = 1.0 / (dr * dr + di * di);
+        const double er = (hr * dr + hi * di) * w, ei = (hi * dr - hr * di) * w;
+        const double zr = er * er - ei * ei, zi = 2.0 * er * ei;
+        double sr = m->series[TERMS - 1], si = 0.0;
+        for (int t = TERMS - 2; t >= 0; t--) {
+            const double next = sr * zr - si * zi + m->series[t];
+            si = sr * zi + si * zr;
+            sr = next;
+        }
+        vr[j] = mr + dr * sr - di * si;
+        vi[j] = mi + dr * si + di * sr;
+    }
+}
+
+/* Return how many of the points, all that are near the corner among them, the series is not for. Points run outwards:
+   the nearest to the corner of some behind each other is the first. */
+MESHONET_INLINE long near_corner(const CornerMap *m, long n, const double *vr, const double *vi) {
+    const double Mr = 0.5 * (m->P.re + m->Q.re), Mi = 0.5 * (m->P.im + m->Q.im);
+    const double hr = 0.5 * (m->P.re - m->Q.re), hi = 0.5 * (m->P.im - m->Q.im);
+    const double far = (hr * hr + hi * hi) / FAR;
+    while (n > 0) {
+        const long first = n > TOGETHER ? n - TOGETHER : 0;
+        const double dr = vr[first] - Mr, di = vi[first] - Mi;
+        if (!(dr * dr + di * di > far)) break;
+        n = first;
+    }
+    return n;
+}
+
+/* At most CHUNK points, psi and phi in, x and y out (y mirrored back: minus the imaginary part of z), in place. */
+MESHONET_INLINE void lift_to_plane(double *restrict psi_x, double *restrict phi_y, long n, const LiftMaps *m) {
+    double vr[CHUNK], vi[CHUNK], a[CHUNK], b[CHUNK];
+    unroll(psi_x, phi_y, m->phase, n, vr, vi);
     for (long j = 0; j < n; j++) {
         vr[j] += m->pole.re;
         vi[j] += m->pole.im;
     }
-    for (int k = 0; k < m->n_corners; k++) restore_corner(&m->corners[k], n, vr, vi, a, b);
+    for (int k = 0; k < m->n_corners; k++) {
+        const long near = near_corner(&m->corners[k], n, vr, vi);
+        restore_corner(&m->corners[k], near, vr, vi, a, b);
+        restore_far(&m->corners[k], near, n, vr, vi);
+    }
+    MESHONET_INDEPENDENT
     for (long j = 0; j < n; j++) {
         double w = 1.0 / (vr[j] * vr[j] + vi[j] * vi[j]);
         double zr = vr[j] * (1.0 + w), zi = vi[j] * (1.0 - w);
-        points[j].re = m->centre.re + m->quarter.re * zr - m->quarter.im * zi;
-        points[j].im = -(m->centre.im + m->quarter.re * zi + m->quarter.im * zr);
+        psi_x[j] = m->centre.re + m->quarter.re * zr - m->quarter.im * zi;
+        phi_y[j] = -(m->centre.im + m->quarter.re * zi + m->quarter.im * zr);
     }
 }
 

@@ -81,7 +81,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     across()  # like the model, made once a process: neither is part of a grid's time
     begun = time.perf_counter()
     try:
-        nodes, changes, rough = _operate(boundary, network, polish)
+        nodes, finite, changes, rough = _operate(boundary, network, polish)
     except InputError as error:
         why = f"the operator cannot take this body ({error.problem})"
         body = _around(boundary, why, begun) if model is None and polish == "auto" else None
@@ -95,7 +95,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
                 return found
     spent = time.perf_counter() - begun
     facts = {"method": "operator", "model": network.name if network else "base", "polish": len(changes)}
-    grid = Grid(nodes, "o", boundary.parts, boundary.name, facts)
+    grid = Grid(nodes, "o", boundary.parts, boundary.name, facts, finite=finite)
     return Solution(
         grid,
         "operator",
@@ -161,8 +161,10 @@ def _bent(found: Walls) -> bool:
     return bool(turn.max() > BENT)
 
 
-def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple[Floats, list[float], bool]:
-    """Return the nodes, the largest change in each Picard step, and whether the wall is rough."""
+def _operate(
+    boundary: Boundary, network: Model | None, polish: Polish
+) -> tuple[Floats, bool, list[float], bool]:
+    """Return the nodes, whether they are finite, the change in each Picard step, if the wall is rough."""
     found = walls(boundary)
     lift, wall, far, z, corners, axis, hand = found
     rough = _roughness(found)
@@ -179,9 +181,9 @@ def _operate(boundary: Boundary, network: Model | None, polish: Polish) -> tuple
     nodes = planar_nodes(boundary.ni, boundary.nj)
     grid = StripGrid(c, wall, far, np.linspace(0.0, 1.0, boundary.nj))
     halve_corners(grid, lift, z, corners)
-    grid.fill(lift, nodes, axis)
+    finite = grid.fill(lift, nodes, axis)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    return nodes, changes, rough
+    return nodes, finite, changes, rough
 
 
 def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:

@@ -16,13 +16,16 @@
 
 #define ROWS 4
 
-MESHONET_INLINE void gather_row(double *restrict out, const double *const *taken, const double *weights,
-                                ptrdiff_t taps, ptrdiff_t m)
+/* The points of a row: psi and phi, then x and y; room for LANES more than there are. */
+typedef struct { double *x, *y; } Row;
+
+/* Whole lanes: what is added behind the last of m points is zero. */
+MESHONET_INLINE void gather(double *restrict out, const double *const *taken, const double *weights, ptrdiff_t m)
 {
     ptrdiff_t l = 0;
     for (; l + 4 * LANES <= m; l += 4 * LANES) {
         Lanes a = LOAD(out + l), b = LOAD(out + l + LANES), c = LOAD(out + l + 2 * LANES), d = LOAD(out + l + 3 * LANES);
-        for (ptrdiff_t t = 0; t < taps; t++) {
+        for (int t = 0; t < TAPS; t++) {
             const double w = weights[t], *column = taken[t] + l;
             ADD_PRODUCT(a, w, LOAD(column));
             ADD_PRODUCT(b, w, LOAD(column + LANES));
@@ -34,51 +37,53 @@ MESHONET_INLINE void gather_row(double *restrict out, const double *const *taken
         STORE(out + l + 2 * LANES, c);
         STORE(out + l + 3 * LANES, d);
     }
-    for (; l < m; l++) {
-        double sum = out[l];
-        for (ptrdiff_t t = 0; t < taps; t++) sum += weights[t] * taken[t][l];
-        out[l] = sum;
+    for (; l < m; l += LANES) {
+        Lanes a = LOAD(out + l);
+        for (int t = 0; t < TAPS; t++) ADD_PRODUCT(a, weights[t], LOAD(taken[t] + l));
+        STORE(out + l, a);
     }
 }
 
 /* Add the sum at node i of n to its points; waves.py has the window. */
-MESHONET_INLINE void add_sum(const WindowSum *s, double sharpness, ptrdiff_t i, ptrdiff_t n, Cplx *row)
+MESHONET_INLINE void add_sum(const WindowSum *s, double sharpness, ptrdiff_t i, ptrdiff_t n, Row row)
 {
     const double place = (double)i * (double)s->count / (double)n, first = ceil(place - 0.5 * TAPS);
-    const double *taken[TAPS];
+    const double *re[TAPS], *im[TAPS];
     double weights[TAPS];
     for (int t = 0; t < TAPS; t++) {
         const double u = (first + t - place) / (0.5 * TAPS), inside = 1.0 - u * u;
         weights[t] = fast_exp(sharpness * (sqrt(inside > 0.0 ? inside : 0.0) - 1.0));
-        taken[t] = (const double *)(s->columns + (((ptrdiff_t)first + t) & (s->count - 1)) * s->m);
+        re[t] = s->columns + (((ptrdiff_t)first + t) & (s->count - 1)) * 2 * s->width;
+        im[t] = re[t] + s->width;
     }
-    gather_row((double *)(row + s->from), taken, weights, TAPS, 2 * s->m);
+    gather(row.x + s->from, re, weights, s->m);
+    gather(row.y + s->from, im, weights, s->m);
 }
 
-MESHONET_INLINE void make_row(const StripRows *s, ptrdiff_t i, Cplx *row)
+MESHONET_INLINE void make_row(const StripRows *s, ptrdiff_t i, Row row)
 {
     const double theta = 6.283185307179586476925 / (double)s->n * (double)i;
-    for (ptrdiff_t l = 0; l < s->m; l++) row[l].re = 0.0, row[l].im = theta;
+    for (ptrdiff_t l = 0; l < s->m; l++) row.x[l] = 0.0, row.y[l] = theta;
     for (ptrdiff_t k = 0; k < s->n_sums; k++) add_sum(&s->sums[k], s->sharpness, i, s->n, row);
     for (ptrdiff_t k = 0; k < s->n_nudges; k++) {
         const double along = s->along[k * s->n + i];
         if (along != 0.0)
-            for (ptrdiff_t l = 0; l < s->m; l++) row[l].im += along * s->across[k * s->m + l];
+            for (ptrdiff_t l = 0; l < s->m; l++) row.y[l] += along * s->across[k * s->m + l];
     }
     for (ptrdiff_t l = 0; l < s->m; l += CHUNK)
-        lift_to_plane(row + l, s->m - l < CHUNK ? s->m - l : CHUNK, &s->lift);
+        lift_to_plane(row.x + l, row.y + l, s->m - l < CHUNK ? s->m - l : CHUNK, &s->lift);
 }
 
 /* a and b become the means of each with the mirror image of the other. */
-MESHONET_INLINE void make_symmetric(const StripRows *s, Cplx *a, Cplx *b)
+MESHONET_INLINE void make_symmetric(const StripRows *s, Row a, Row b)
 {
     const Cplx o = s->on_axis, t = s->turned;
     for (ptrdiff_t l = 0; l < s->m; l++) {
-        const double ax = a[l].re - o.re, ay = a[l].im - o.im, bx = b[l].re - o.re, by = b[l].im - o.im;
+        const double ax = a.x[l] - o.re, ay = a.y[l] - o.im, bx = b.x[l] - o.re, by = b.y[l] - o.im;
         const double px = t.re * bx + t.im * by, py = t.im * bx - t.re * by; /* t conj(b) */
         const double mx = 0.5 * (ax + px), my = 0.5 * (ay + py);
-        a[l].re = o.re + mx, a[l].im = o.im + my;
-        b[l].re = o.re + t.re * mx + t.im * my, b[l].im = o.im + t.im * mx - t.re * my;
+        a.x[l] = o.re + mx, a.y[l] = o.im + my;
+        b.x[l] = o.re + t.re * mx + t.im * my, b.y[l] = o.im + t.im * mx - t.re * my;
     }
 }
 
@@ -110,48 +115,50 @@ MESHONET_INLINE void lay(double *const *out, int count, double (*c)[PANEL_NODES]
         }
 }
 
-/* One coordinate (0: x, 1: y) of `count` rows of points to their levels. */
-MESHONET_INLINE void write_levels(const StripRows *s, Cplx *const *points, int coordinate, int count,
-                                  double *const *out, ptrdiff_t nj)
+/* One coordinate of the points of `count` rows to their levels. */
+MESHONET_INLINE void write_levels(const StripRows *s, double *const *points, int count, double *const *out,
+                                  ptrdiff_t nj)
 {
     const ptrdiff_t near = s->begin - 1, last = near + PANEL_NODES * s->panels, width = s->cuts[s->panels];
     double *levels[ROWS];
     for (int r = 0; r < count; r++) {
-        const double *values = (const double *)points[r] + coordinate;
-        for (ptrdiff_t l = 0; l < near; l++) out[r][1 + l] = values[2 * l];
-        for (ptrdiff_t l = last; l < s->m; l++) out[r][nj - 1 - s->m + l] = values[2 * l];
+        for (ptrdiff_t l = 0; l < near; l++) out[r][1 + l] = points[r][l];
+        for (ptrdiff_t l = last; l < s->m; l++) out[r][nj - 1 - s->m + l] = points[r][l];
         levels[r] = out[r] + s->begin;
     }
     for (ptrdiff_t p = 0; p < s->panels; p++) {
         double c[ROWS][PANEL_NODES];
         for (int r = 0; r < count; r++)
-            for (int k = 0; k < PANEL_NODES; k++)
-                c[r][k] = ((const double *)(points[r] + near + PANEL_NODES * p + k))[coordinate];
+            for (int k = 0; k < PANEL_NODES; k++) c[r][k] = points[r][near + PANEL_NODES * p + k];
         lay(levels, count, c, s->matrix, width, s->cuts[p], s->cuts[p + 1]);
     }
 }
 
-MESHONET_INLINE void some_rows(const StripRows *s, const ptrdiff_t *order, int count, double *x, double *y,
-                               ptrdiff_t nj, Cplx *const *points)
+MESHONET_INLINE double some_rows(const StripRows *s, const ptrdiff_t *order, int count, double *x, double *y,
+                                 ptrdiff_t nj, double *const *px, double *const *py)
 {
-    double *to_x[ROWS], *to_y[ROWS];
+    double *to_x[ROWS], *to_y[ROWS], sum = 0.0;
     for (int r = 0; r < count; r++) {
-        make_row(s, order[r], points[r]);
+        make_row(s, order[r], (Row){px[r], py[r]});
         to_x[r] = x + order[r] * nj, to_y[r] = y + order[r] * nj;
     }
     if (s->symmetric)
-        for (int r = 0; r + 1 < count; r += 2) make_symmetric(s, points[r], points[r + 1]);
-    write_levels(s, points, 0, count, to_x, nj);
-    write_levels(s, points, 1, count, to_y, nj);
+        for (int r = 0; r + 1 < count; r += 2) make_symmetric(s, (Row){px[r], py[r]}, (Row){px[r + 1], py[r + 1]});
+    write_levels(s, px, count, to_x, nj);
+    write_levels(s, py, count, to_y, nj);
+    for (int r = 0; r < count; r++)
+        for (ptrdiff_t l = 0; l < s->m; l++) sum += px[r][l] + py[r][l];
+    return sum;
 }
 
 MESHONET_CLONES
-void strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
-                Cplx *scratch)
+double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
+                  double *scratch)
 {
-    Cplx *points[ROWS];
-    for (int r = 0; r < ROWS; r++) points[r] = scratch + r * s->m;
+    double *px[ROWS], *py[ROWS], sum = 0.0;
+    for (int r = 0; r < ROWS; r++) px[r] = scratch + 2 * r * (s->m + LANES), py[r] = px[r] + s->m + LANES;
     ptrdiff_t i = 0;
-    for (; i + ROWS <= count; i += ROWS) some_rows(s, order + i, ROWS, x, y, nj, points);
-    for (; i < count; i += 2) some_rows(s, order + i, count - i < 2 ? 1 : 2, x, y, nj, points);
+    for (; i + ROWS <= count; i += ROWS) sum += some_rows(s, order + i, ROWS, x, y, nj, px, py);
+    for (; i < count; i += 2) sum += some_rows(s, order + i, count - i < 2 ? 1 : 2, x, y, nj, px, py);
+    return sum;
 }

@@ -9,8 +9,9 @@
 #define PANEL_NODES 16
 #define TAPS 14
 
-/* Points [from, from + m) of a row weigh the columns around it: (count, m), count a power of two. */
-typedef struct { const Cplx *columns; ptrdiff_t count, from, m; } WindowSum;
+/* Points [from, from + m) of a row weigh the columns around it: (count, 2, width), count a power of two, width a
+   multiple of LANES, zero from m on. */
+typedef struct { const double *columns; ptrdiff_t count, from, m, width; } WindowSum;
 
 /* A row is m points: levels 1 .. before the panels, `panels` times PANEL_NODES, levels after them .. nj - 2. */
 typedef struct {
@@ -28,8 +29,9 @@ typedef struct {
     Cplx on_axis, turned;   /* a point of it, and its direction squared */
 } StripRows;
 
-/* x, y (., nj): levels 1 .. nj - 2 of the `count` rows named in `order`; scratch for 4 m points. */
-void strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
-                Cplx *scratch);
+/* x, y (., nj): levels 1 .. nj - 2 of the `count` rows named in `order`; scratch for 8 (m + LANES) numbers. The
+   sum of all points, finite when they are. */
+double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
+                  double *scratch);
 
 #endif

@@ -21,8 +21,10 @@ from functools import lru_cache
 import numpy as np
 
 from geometry.arrays import Complexes, Floats
+from solvers.neural._columns import sample
 
 TAPS = 14  # as in strip_rows_kernel.h
+LANES = 8  # as in lanes.h
 SHARPNESS = 2.30 * TAPS  # b
 FEWEST = 256  # columns
 
@@ -35,23 +37,28 @@ def columns_for(highest: int) -> int:
     return count
 
 
-def columns(modes: Complexes) -> Complexes:
-    """Return f (Q, m) whose windowed sums are those of `modes` (m, 2 K + 1), k = 0 .. K, -K .. -1."""
-    highest = modes.shape[1] // 2
-    count = columns_for(highest)
-    gain = 1.0 / _transform(count)
-    spectrum = np.zeros((len(modes), count), complex)
-    np.multiply(modes[:, : highest + 1], gain[: highest + 1], out=spectrum[:, : highest + 1])
-    if highest:
-        np.multiply(modes[:, -highest:], gain[highest:0:-1], out=spectrum[:, -highest:])
-    return np.ascontiguousarray(np.fft.ifft(spectrum, norm="forward").T)
+def columns(modes: Complexes) -> Floats:
+    """Return f (Q, 2, width) whose windowed sums are those of `modes` (m, 2 K + 1), k = 0 .. K, -K .. -1.
+
+    Real parts before imaginary ones, zero from m on; the width is a multiple of `LANES`.
+    """
+    count, wide = len(modes), -(-len(modes) // LANES) * LANES
+    gain, unit = _transform(columns_for(modes.shape[1] // 2))
+    found = np.zeros((2 * len(unit), 2, wide))
+    if count:
+        sample(np.ascontiguousarray(modes), gain, unit, found)
+    return found
 
 
 @lru_cache(maxsize=16)
-def _transform(count: int) -> Floats:
-    """Return v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b)."""
+def _transform(count: int) -> tuple[Floats, Complexes]:
+    """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b).
+
+    And exp(2 pi i j / count) for j below count / 2.
+    """
     steps = 8 * TAPS
     x = np.arange(-steps, steps + 1) / steps
     window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))
     angle = np.pi * TAPS / count * np.outer(np.arange(count // 4 + 1), x)
-    return np.asarray(np.cos(angle) @ window * (0.5 * TAPS / steps))
+    unit = np.exp(2j * np.pi * np.arange(count // 2) / count)
+    return np.asarray(steps / (0.5 * TAPS) / (np.cos(angle) @ window)), unit

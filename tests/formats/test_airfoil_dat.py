@@ -88,6 +88,9 @@ def test_every_dialect_gives_the_same_airfoil(dialect):
 def test_decimal_commas_and_missing_zeros():
     same("TEST\n" + lines(SELIG).replace(".", ","))
     same("TEST\n" + lines(SELIG).replace("0.", "."))
+    numbered = "".join(f"{k}\t{x:.6f}\t{y:.6f}\n" for k, (x, y) in enumerate(SELIG, start=1))
+    same("TEST\n" + numbered.replace(".", ","))
+    same("TEST\n" + lines(SELIG).replace("1.000000 0.000000", "1 0.0").replace(".", ","))
 
 
 HEADS = {
@@ -111,6 +114,7 @@ TAILS = [
     "modif 0.99 -> 1.00\n0.1 0.2 -> 0.1 0.3\n",
     "\x1a",
     "ZZ\n",
+    "999.0 999.0\n",
 ]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geometry.errors import InputError
-from geometry.lift import lift_body, mirrored
+from geometry.lift import follow, lift_body, mirrored
 from geometry.naca import naca_points
 
 
@@ -89,3 +89,23 @@ def test_mirrored_turns_a_clockwise_walk_counter_clockwise() -> None:
     nodes = np.array([[1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0]])
     z = mirrored(nodes)
     assert np.sum((np.conj(z) * np.roll(z, -1)).imag) > 0
+
+
+@pytest.mark.parametrize(("camber", "crosses"), [(0.0, False), (0.03, True), (-0.03, True), (0.1, False)])
+def test_the_root_is_the_one_of_a_walk_in_small_steps(camber: float, crosses: bool) -> None:
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 31)))
+    half, middle = 0.02 * np.sqrt(x) * (1 - x), 4 * camber * x * (1 - x)
+    wall = np.concatenate([(x + 1j * (middle + half))[::-1], (x + 1j * (middle - half))[1:-1]])
+    centre, quarter, pieces = 0.501 + 0j, 0.2495 + 0j, 400  # the slit lies inside both ends
+    zeta = follow(wall, centre, quarter)
+    t = np.arange(pieces) / pieces
+    ring = np.append(wall, wall[0])
+    path = (ring[1:-1, None] * (1 - t) + ring[2:, None] * t).ravel()[: 1 - pieces]
+    both = np.polynomial.polynomial.polyroots
+    walked = [zeta[1]]
+    for z in path[1:]:
+        roots = both([1.0, -(z - centre) / quarter, 1.0])
+        walked.append(roots[np.argmin(np.abs(roots - walked[-1]))])
+    np.testing.assert_allclose(zeta[1:], walked[::pieces], rtol=1e-6)
+    np.testing.assert_allclose(centre + quarter * (zeta + 1 / zeta), wall, atol=1e-13)
+    assert (np.abs(zeta) < 1).any() == crosses
