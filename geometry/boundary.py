@@ -14,12 +14,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
+from geometry.corners import Indices, find_corners
 from geometry.curves import Curve, resample_like
 from geometry.errors import InputError
 from geometry.origin import UNKNOWN, Origin
@@ -101,6 +104,11 @@ class Boundary:
     def nj(self) -> int:
         """Nodes along eta."""
         return len(self.west)
+
+    @cached_property
+    def corners(self) -> Mapping[str, Indices]:
+        """Indices of the corners of each edge, its ends left out (`geometry.corners`)."""
+        return {side: find_corners(getattr(self, side)) for side in SIDES}
 
     def outline(self) -> Floats:
         """Return the closed outline (n, 2) south, east, north, west, first node not repeated."""
@@ -190,7 +198,7 @@ class Boundary:
         )
         for one, k, other, m in corners:
             p, q = getattr(self, one)[k], getattr(self, other)[m]
-            if not np.array_equal(p, q):
+            if p[0] != q[0] or p[1] != q[1]:
                 raise InputError(
                     f"{one} ends at ({p[0]:.6g}, {p[1]:.6g}) and {other} at ({q[0]:.6g}, {q[1]:.6g})",
                     "neighbouring edges must share their corner",
@@ -232,6 +240,9 @@ def _edge(side: str, points: Floats) -> Floats:
     edge = np.ascontiguousarray(points, dtype=np.float64)
     if edge.ndim != 2 or edge.shape[1] != 2 or len(edge) < 2:
         raise InputError(f"{side} has shape {edge.shape}", "give (n, 2) with n at least 2")
+    steps = np.abs(edge[1:] - edge[:-1]).sum(axis=1)
+    if steps.min() > 0 and steps.max() < np.inf:  # neither is so with a node that is not a number
+        return edge
     bad = np.flatnonzero(~np.isfinite(edge).all(axis=1))
     if bad.size:
         raise InputError(f"{side} node {bad[0]} is not finite", "check the input for NaN or infinity")

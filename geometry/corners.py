@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TypeAlias
 
 import numpy as np
@@ -35,9 +36,11 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
     [0.0, 90.0, 0.0]
     """
     ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
-    dx, dy = np.diff(ring[:, 0]), np.diff(ring[:, 1])
-    angle = np.arctan2(dx[:-1] * dy[1:] - dy[:-1] * dx[1:], dx[:-1] * dx[1:] + dy[:-1] * dy[1:])
-    return np.asarray(angle if closed else np.concatenate([[0.0], angle, [0.0]]))
+    dx, dy = (ring[1:] - ring[:-1]).T
+    angle = np.zeros(len(points))
+    inner = angle if closed else angle[1:-1]
+    np.arctan2(dx[:-1] * dy[1:] - dy[:-1] * dx[1:], dx[:-1] * dx[1:] + dy[:-1] * dy[1:], out=inner)
+    return angle
 
 
 def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Indices:
@@ -61,12 +64,12 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     [1]
     """
     angle = np.abs(turning(points, closed=closed))
-    if not (angle > KINK).any():
+    if not angle.max() > KINK:
         return np.empty(0, np.intp)
-    if closed:
-        beside = np.maximum(np.roll(angle, 1), np.roll(angle, -1))
-    else:
-        beside = np.maximum(np.append(0.0, angle[:-1]), np.append(angle[1:], 0.0))
+    beside = np.empty_like(angle)
+    np.maximum(angle[:-2], angle[2:], out=beside[1:-1])
+    first, last = (angle[-1], angle[0]) if closed else (0.0, 0.0)
+    beside[0], beside[-1] = max(first, angle[1]), max(angle[-2], last)
     polygon = closed and len(points) <= few
     sharp = (
         (angle > KINK) & (angle > 5 * beside)
@@ -98,8 +101,8 @@ def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:
     if n < 5 or (not closed and not 2 <= k < n - 2):
         return np.inf
     a2, a1, b1, b2 = (points[(k + step) % n] for step in (-2, -1, 1, 2))
-    near, far = np.hypot(*(a1 - b1)), np.hypot(*(a2 - b2))
-    d1, d2 = (np.hypot(*(0.5 * (a + b) - points[k])) for a, b in ((a1, b1), (a2, b2)))
+    near, far = math.hypot(*(a1 - b1)), math.hypot(*(a2 - b2))
+    d1, d2 = (math.hypot(*(0.5 * (a + b) - points[k])) for a, b in ((a1, b1), (a2, b2)))
     if not (near > 0 and far > 0 and 0 < d1 < d2):
         return np.inf
-    return float(np.log(far / near) / np.log(d2 / d1))
+    return math.log(far / near) / math.log(d2 / d1)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import _cells
-from geometry.arrays import Floats, Topology, as_planar
+from geometry.arrays import Floats, as_planar
 from geometry.errors import BadCell, InputError
 from geometry.grid import Grid
 from geometry.metrics import METRICS, NAMES
@@ -123,12 +123,26 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     return Quality(cells, count_folded(grid.nodes), metrics)
 
 
-def angles(nodes: Floats, topology: Topology = "quad") -> tuple[float, float]:
+def angles(nodes: Floats) -> tuple[float, float]:
     """Return the largest and the mean of the cells' largest included angles, in degrees; 360 when folded."""
     if count_folded(nodes):
         return 360.0, 360.0
-    summary = measure(Grid(nodes, topology))["max_angle"]
-    return summary.max, summary.mean
+    table, _ = _angle_table(nodes)
+    return float(table[2]), float(table[1])
+
+
+def widest_cell(nodes: Floats) -> tuple[int, int]:
+    """Return the cell (i, j) of `nodes` (ni, nj, 2) with the largest included angle, the first of them."""
+    _, where = _angle_table(nodes)
+    return int(where[1, 0]), int(where[1, 1])
+
+
+def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
+    """Return min, mean, max of the cells' largest angles and the places of min and max, without a `Grid`."""
+    x, y = _planes(nodes)
+    table, where = _summed(x, y, (False, 0), 0, np.empty((0, len(x) - 1, x.shape[1] - 1)), no_run())
+    k = NAMES.index("max_angle")
+    return table[k], where[k]
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
@@ -151,9 +165,15 @@ def _run(grid: Grid, first: int, values: Floats, run: Run) -> tuple[Floats, NDAr
 
     `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
     """
+    return _summed(grid.x, grid.y, (grid.topology == "o", wake_cells(grid)), first, values, run)
+
+
+def _summed(
+    x: Floats, y: Floats, joins: tuple[bool, int], first: int, values: Floats, run: Run
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Return what `_run` does, for planes x and y; `joins` are whether they close and the cells of a wake."""
     table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
-    joins = grid.topology == "o", wake_cells(grid)
-    _cells.measure(grid.x, grid.y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
+    _cells.measure(x, y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
     return table, where
 
 

@@ -12,7 +12,19 @@ from geometry.errors import InputError
 from solvers.progress import Cycle
 from solvers.solution import Solution
 
-COLUMNS = ("input", "method", "ni", "nj", "attempt", "cycle", "residual", "change", "seconds", "folded")
+COLUMNS = (
+    "input",
+    "method",
+    "ni",
+    "nj",
+    "attempt",
+    "cycle",
+    "residual",
+    "change",
+    "seconds",
+    "folded",
+    "functional",
+)
 """Of the file; see `Row`."""
 
 INTERVAL = 0.1
@@ -28,7 +40,7 @@ class Row:
     method : that iterated.
     ni, nj : nodes of the grid.
     attempt : counted from 1; the next one begins where the one before diverged.
-    residual, change, folded : see `solvers.progress.Cycle`; None where a method has none.
+    residual, change, folded, functional : see `solvers.progress.Cycle`; None where a method has none.
     seconds : since the solve began.
     """
 
@@ -41,6 +53,7 @@ class Row:
     change: float | None
     seconds: float
     folded: int | None
+    functional: float | None = None
 
 
 class Recorder:
@@ -59,7 +72,7 @@ class Recorder:
         self._attempt += cycle.number == 0
         spent = round(time.perf_counter() - self._begun, 6)
         place = cycle.method, cycle.ni, cycle.nj, self._attempt, cycle.number
-        self.rows.append(Row(*place, cycle.residual, cycle.change, spent, cycle.folded))
+        self.rows.append(Row(*place, cycle.residual, cycle.change, spent, cycle.folded, cycle.functional))
 
     def of(self, solution: Solution) -> tuple[Row, ...]:
         """Return the rows of the method that made it; of one that tells of no cycles, one for its result."""

@@ -19,9 +19,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology, as_planar, planar_nodes
+from geometry.arrays import Floats, Topology, as_planar, distinct, planar_nodes
 from geometry.boundary import Boundary
-from geometry.corners import Indices, find_corners
+from geometry.corners import Indices
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import angles, count_folded
@@ -164,6 +164,21 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     return nodes
 
 
+def divided(coarse: Floats, boundary: Boundary) -> Floats:
+    """Return what `evaluate` does for a quad by straight lines between coarse nodes.
+
+    They bend at these, but cells inside a valid coarse cell are valid: folds are left only beside edges that
+    bend between coarse nodes.
+    """
+    nodes = planar_nodes(boundary.ni, boundary.nj)
+    along, across = acute.linear(len(coarse), boundary.ni), acute.linear(coarse.shape[1], boundary.nj)
+    for c in (0, 1):
+        nodes[..., c] = along @ coarse[..., c] @ across.T
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    nodes[0], nodes[-1] = boundary.west, boundary.east
+    return nodes
+
+
 def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks:
     """Return how the lines along `axis` bend and turn that have m coarse nodes.
 
@@ -174,7 +189,7 @@ def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks:
         periodic = boundary.topology == "o" and axis == 0
         return Kinks(bending(m, periodic), np.empty((0, m)), (), ())
     sides = (("south", "north"), ("west", "east"))[axis]
-    return kinks(m, n, np.unique(np.concatenate([find_corners(getattr(boundary, side)) for side in sides])))
+    return kinks(m, n, distinct(np.concatenate([boundary.corners[side] for side in sides])))
 
 
 def sweep_kinks(
@@ -196,7 +211,7 @@ def sweep_kinks(
         n, lines = nodes.shape[axis], nodes.shape[1 - axis]
         reach, depth = (int(np.ceil(REACH * step)) for step in (steps[axis], steps[1 - axis]))
         for side in sides:
-            corners = find_corners(getattr(boundary, side))
+            corners = boundary.corners[side]
             any_kinks = any_kinks or len(corners) > 0
             inside = (
                 slice(0, depth + 1) if side in {"south", "west"} else slice(max(lines - depth - 1, 0), lines)

@@ -19,9 +19,11 @@ class Cycle:
     method : that iterates.
     ni, nj : nodes of the grid.
     number : of the cycle, 0 for the start; it begins anew with every attempt.
-    residual : relative to that of the transfinite interpolation.
+    residual : relative to that of the transfinite interpolation; of a minimisation the norm of the gradient,
+        relative to that of its start on this grid.
     change : root mean square of what the cycle's coarse levels moved the nodes by, in units of length.
     folded : cells.
+    functional : value of what is minimised.
     """
 
     method: str
@@ -31,6 +33,7 @@ class Cycle:
     residual: float
     change: float | None
     folded: int
+    functional: float | None = None
 
 
 Listener = Callable[[Cycle], None]
@@ -47,10 +50,23 @@ def listening(listener: Listener) -> Iterator[None]:
         _listeners.remove(listener)
 
 
-def tell(method: str, nodes: Floats, number: int, residual: float, change: float | None = None) -> None:
+def heard() -> bool:
+    """Return whether anybody listens."""
+    return bool(_listeners)
+
+
+def tell(
+    method: str,
+    nodes: Floats,
+    number: int,
+    residual: float,
+    change: float | None = None,
+    functional: float | None = None,
+) -> None:
     """Tell the listeners of a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
     if not _listeners:
         return
-    cycle = Cycle(method, nodes.shape[0], nodes.shape[1], number, residual, change, count_folded(nodes))
+    counts = nodes.shape[0], nodes.shape[1]
+    cycle = Cycle(method, *counts, number, residual, change, count_folded(nodes), functional)
     for listener in tuple(_listeners):
         listener(cycle)

@@ -87,7 +87,7 @@ def kinks(m: int, n: int, at: NDArray[np.intp]) -> Kinks:
         fourth[np.arange(m - 4), np.arange(m - 4) + k] = factor
     seen = fourth @ ramps
     near = np.abs(seen).max(axis=1) > 1e-9
-    jumps = np.linalg.pinv(seen[near], rcond=SEPARATE) @ fourth[near]
+    jumps = _determined(seen[near]) @ fourth[near]
     bends = bending(m, False) @ (np.eye(m) - ramps @ jumps)
     rows, added = [], []
     for place in places_:
@@ -100,19 +100,37 @@ def kinks(m: int, n: int, at: NDArray[np.intp]) -> Kinks:
     return Kinks(np.asarray(bends), np.asarray(jumps), tuple(rows), tuple(added))
 
 
+def _determined(seen: Floats) -> Floats:
+    """Return the pseudo-inverse (k, n) of `seen` (n, k), without what is `SEPARATE` times less seen."""
+    squares, modes = np.linalg.eigh(seen.T @ seen)
+    kept = squares > SEPARATE**2 * squares[-1]
+    modes = modes[:, kept]
+    return np.asarray((modes / squares[kept]) @ modes.T @ seen.T)
+
+
 def between(values: Floats, n: int) -> Floats:
     """Return (..., n), linear between the columns of `values` (..., m), at equal steps; the ends are kept."""
     m = values.shape[-1]
     if n == m:
         return values
-    at = np.arange(n) * ((m - 1) / (n - 1))
-    first = np.minimum(at.astype(np.intp), m - 2)
-    t = at - first
-    if not t[:-1].any():
-        return np.ascontiguousarray(values[..., np.append(first[:-1], m - 1)])
-    result = values[..., first] + t * (values[..., first + 1] - values[..., first])
+    first, t = _uniform(m, n)
+    if t is None:
+        return np.ascontiguousarray(values[..., first])
+    before = values[..., first]
+    result = before + t * (values[..., first + 1] - before)
     result[..., -1] = values[..., -1]
     return np.ascontiguousarray(result)
+
+
+@lru_cache(maxsize=16)
+def _uniform(m: int, n: int) -> tuple[NDArray[np.intp], Floats | None]:
+    """Return for n uniform places among m the one before and the way to the next; None: all are places."""
+    at = np.arange(n) * ((m - 1) / (n - 1))
+    first = np.minimum(at.astype(np.intp), m - 2)
+    t = np.asarray(at - first, dtype=np.float64)
+    if t[:-1].any():
+        return first, t
+    return np.append(first[:-1], m - 1), None
 
 
 @lru_cache(maxsize=16)

@@ -82,7 +82,9 @@ def arc_length_fraction(points: Floats) -> Floats:
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])
     """
-    steps = np.hypot(*np.diff(points, axis=0).T)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
+    along = np.zeros(len(points))
+    dx, dy = (points[1:] - points[:-1]).T
+    np.hypot(dx, dy, out=along[1:])
+    np.cumsum(along, out=along)
     along /= along[-1]
     return along

@@ -81,7 +81,7 @@ History = Annotated[
     str | None,
     typer.Option(
         "--history", metavar="F.csv", show_default=False,
-        help="Write residual, change, seconds and folded cells of every cycle to F.csv.",
+        help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
     ),
 ]
 # fmt: on

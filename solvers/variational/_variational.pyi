@@ -1,3 +1,4 @@
+from collections.abc import Callable
 from typing import TypeAlias
 
 from geometry.arrays import Floats
@@ -15,7 +16,10 @@ def energy(
     work: Floats,
 ) -> tuple[float, float]: ...
 
-Modes: TypeAlias = tuple[Floats, Floats]
+class Waves:
+    def __init__(self, matrix: Floats) -> None: ...
+
+Modes: TypeAlias = tuple[Waves, Waves]
 
 class Stiffness:
     positive: bool
@@ -37,4 +41,5 @@ class Minimiser:
         still: float,
         reach: float,
         most: int,
+        told: Callable[[int, float, float], None] | None = None,
     ) -> tuple[float, float, int]: ...

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from libc.math cimport sqrt
+
 cdef extern from "variational_kernel.h":
     ctypedef struct Weights:
         double aspect
@@ -43,6 +45,7 @@ cdef extern from "variational_kernel.h":
         Spectrum spectrum
         Space space
         double *z
+        double *gradient
         double value
         double smallest
         double reach
@@ -119,25 +122,38 @@ cdef class Stiffness:
             self.positive = space_factor(&self.space, &copy[0, 0, 0], &weights, &room[0])
 
 
+cdef class Waves:
+    """Even or odd modes of a direction over half of its nodes, (nodes, modes), as products of matrices read them."""
+
+    cdef Half half
+    cdef object held
+
+    def __init__(self, matrix):
+        cdef float[:, ::1] q = _padded(matrix), q_t = _padded(matrix.T)
+        self.half.nodes, self.half.modes = matrix.shape
+        self.half.q = &q[0, 0] if q.shape[0] and q.shape[1] else NULL
+        self.half.q_t = &q_t[0, 0] if q_t.shape[0] and q_t.shape[1] else NULL
+        self.held = (q, q_t)
+
+
 cdef class Minimiser:
     """Descents of the functional over nodes of one shape, (ni, nj).
 
-    `rows` are the modes along xi, even and odd, over half of its free nodes each, (nodes, modes) the two; `columns`
-    those along eta; `scale` (2, modes of xi, modes of eta) what divides by the symbol of the Hessian for moves along
+    `rows` are the modes along xi, even and odd; `columns` those along eta; `scale` (2, modes of xi, modes of eta) what divides by the symbol of the Hessian for moves along
     xi and along eta, and `rest` what divides the modes that are left out.
     """
 
     cdef Descent state
     cdef object held
 
-    def __init__(self, Py_ssize_t ni, Py_ssize_t nj, bint periodic, rows, columns, scale, float rest):
+    def __init__(self, Py_ssize_t ni, Py_ssize_t nj, bint periodic, tuple rows, tuple columns, scale, float rest):
         cdef float[:, :, ::1] factors
         cdef size_t doubles = 0, floats = 0
         cdef double[::1] room
         cdef float[::1] small
         cdef Spectrum *s = &self.state.spectrum
-        held = [_half(&s.xi.even, rows[0]), _half(&s.xi.odd, rows[1])]
-        held += [_half(&s.eta.even, columns[0]), _half(&s.eta.odd, columns[1])]
+        s.xi.even, s.xi.odd = (<Waves?>rows[0]).half, (<Waves?>rows[1]).half
+        s.eta.even, s.eta.odd = (<Waves?>columns[0]).half, (<Waves?>columns[1]).half
         s.mi, s.mj = s.xi.even.nodes + s.xi.odd.nodes, s.eta.even.nodes + s.eta.odd.nodes
         if s.mi != (ni - 1 if periodic else ni - 2) or s.mj != nj - 2:
             raise ValueError("transforms of another size")
@@ -151,7 +167,7 @@ cdef class Minimiser:
         descent_sizes(&self.state, &doubles, &floats)
         room, small = np.empty(doubles), np.empty(floats, np.float32)
         descent_place(&self.state, &room[0], &small[0])
-        self.held = (held, factors, room, small)
+        self.held = (rows, columns, factors, room, small)
 
     def steer(self, Stiffness stiffness, along, across):
         """Let descents follow `stiffness` in smooth moves: `along` (mi, mi coarse) and `across` (mj, mj coarse) take
@@ -171,11 +187,12 @@ cdef class Minimiser:
         self.held = (*self.held, stiffness, first, second, turned)
 
     def run(self, double[:, :, ::1] z, double aspect, double shape, double smoothness, double epsilon, const double[::1] relief,
-            double still, double reach, int most):
+            double still, double reach, int most, told=None):
         """Descend from the planes z (2, ni, nj), in place; return (value, smallest Jacobian, iterations).
 
         It stops when no node moves by more than `still` of its cells in three iterations on end, or after `most`
-        of them. No node moves by more than `reach` cells in the first.
+        of them. No node moves by more than `reach` cells in the first. `told` is called with the iterations done, the
+        value and the norm of its gradient, at the start and after each.
         """
         cdef int done = 0, state = GOES_ON
         if z.shape[0] != 2 or z.shape[1] != self.state.ni or z.shape[2] != self.state.nj:
@@ -187,12 +204,25 @@ cdef class Minimiser:
         self.state.still, self.state.reach = still, reach
         with nogil:
             descent_start(&self.state)
+        if told is not None:
+            told(0, self.state.value, self.slope())
         while done < most and state == GOES_ON:
             PyErr_CheckSignals()
             with nogil:
                 state = descent_step(&self.state)
             done += 1
+            if told is not None:
+                told(done, self.state.value, self.slope())
         return self.state.value, self.state.smallest, done
+
+
+    cdef double slope(self):
+        """Return the norm of the gradient."""
+        cdef Py_ssize_t k, n = 2 * self.state.spectrum.mi * self.state.spectrum.mj
+        cdef double total = 0.0
+        for k in range(n):
+            total += self.state.gradient[k] * self.state.gradient[k]
+        return sqrt(total)
 
 
 cdef const double *_relief(const double[::1] relief, Py_ssize_t ni) except? NULL:
@@ -201,15 +231,6 @@ cdef const double *_relief(const double[::1] relief, Py_ssize_t ni) except? NULL
     if relief.shape[0] != ni:
         raise ValueError("a relief of another length")
     return &relief[0]
-
-
-cdef _half(Half *half, matrix):
-    """Set `half` to the modes in `matrix` (nodes, modes); return what must be kept alive."""
-    cdef float[:, ::1] q = _padded(matrix), q_t = _padded(matrix.T)
-    half.nodes, half.modes = matrix.shape
-    half.q = &q[0, 0] if q.shape[0] and q.shape[1] else NULL
-    half.q_t = &q_t[0, 0] if q_t.shape[0] and q_t.shape[1] else NULL
-    return q, q_t
 
 
 def _padded(matrix, panel=32):

@@ -13,7 +13,7 @@ from typing import TypeAlias
 import numpy as np
 
 from geometry.arrays import Floats
-from solvers.variational._variational import Minimiser
+from solvers.variational._variational import Minimiser, Waves
 from solvers.variational.functional import Weights
 
 MODES = 512
@@ -49,8 +49,8 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
     return Minimiser(ni, nj, periodic, rows, columns, scale - rest, rest)
 
 
-Modes: TypeAlias = tuple[Floats, Floats]
-"""Even and odd modes about the middle, (nodes, modes) each, over the first half of the nodes."""
+Modes: TypeAlias = tuple[Waves, Waves]
+"""Even and odd modes about the middle, over the first half of the nodes."""
 
 
 @lru_cache(maxsize=16)
@@ -72,9 +72,9 @@ def _fourier(n: int) -> tuple[Modes, Floats]:
     return (_folded(even, True), _folded(odd, False)), values
 
 
-def _folded(modes: Floats, even: bool) -> Floats:
+def _folded(modes: Floats, even: bool) -> Waves:
     """Return the first half of even or odd `modes` (n, m), of length 1 as they are when folded."""
     n = len(modes)
     half = modes[: (n + 1) // 2 if even else n // 2].copy()
     half[: n // 2] *= np.sqrt(2.0)
-    return np.asarray(half / np.sqrt((half**2).sum(axis=0)))
+    return Waves(half / np.sqrt((half**2).sum(axis=0)))

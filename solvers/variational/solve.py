@@ -8,16 +8,18 @@ descent itself, preconditioned L-BFGS, is compiled; its smooth moves follow the 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology
+from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
-from geometry.quality import angles, count_folded, measure
-from solvers.coarse import evaluate, sweep_kinks, thinned
+from geometry.quality import angles, count_folded, widest_cell
+from solvers.coarse import divided, evaluate, sweep_kinks, thinned
+from solvers.progress import heard, tell
 from solvers.repair import repair
 from solvers.solution import Solution
 from solvers.spline import spline_matrix
@@ -144,13 +146,16 @@ def _nested(
     stiffness = _stiffness(nodes, weights) if valid and last > 0 and not periodic else None
     counts = nodes.shape[0], nodes.shape[1]
     for k in range(last - 1, -1, -1):
-        nodes = _evaluated(nodes, levels[k])
+        coarse, nodes = nodes, _evaluated(nodes, levels[k])
         below, large = counts, max(nodes.shape) > NEXT
         counts = nodes.shape[0], nodes.shape[1]
         limit = limits[large] if k == 0 else MOST
         moves = still if k == 0 or boundary.topology != "quad" else ROUGH * still
         iterations, valid = descend(nodes, weights, moves, limit, periodic=periodic, stiffness=stiffness)
-        if valid and (large or (k == 0 and _worst_at_kink(nodes, boundary.topology))):
+        if not valid and not periodic:  # walls that nearly meet: splines swing by more than the gap
+            nodes = divided(coarse, levels[k])
+            iterations, valid = descend(nodes, weights, moves, limit, stiffness=stiffness)
+        if valid and (large or (k == 0 and _worst_at_kink(nodes))):
             sweep_kinks(nodes, levels[k], below, only_better=True)
     return nodes, weights, iterations, valid
 
@@ -175,14 +180,12 @@ def _coarsest(
     made weaker until they are not.
     """
     start = winslow_start(boundary)
-    limits = [value + 1e-9 for value in angles(start, boundary.topology)]
+    limits = [value + 1e-9 for value in angles(start)]
     periodic = boundary.topology == "o"
     nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
-        if not valid or all(
-            value <= limit for value, limit in zip(angles(nodes, boundary.topology), limits, strict=True)
-        ):
+        if not valid or all(value <= limit for value, limit in zip(angles(nodes), limits, strict=True)):
             return nodes, weights, iterations, valid
         weights = replace(weights, smoothness=0.25 * weights.smoothness)
         nodes = nodes.copy(order="K")
@@ -207,7 +210,8 @@ def _descended(
     z, descent = np.moveaxis(nodes, -1, 0), minimiser(ni, nj, False, terms[0], weights)
     value, low, iterations = np.inf, 0.0, 0
     if _unfold(z, descent, terms):
-        value, low, iterations = descent.run(z, *terms, 0.0, None, _moves(still, start), REACH, most)
+        told = _teller(nodes)
+        value, low, iterations = descent.run(z, *terms, 0.0, None, _moves(still, start), REACH, most, told)
     if value <= easy:
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
@@ -218,9 +222,9 @@ def _descended(
     return nodes, iterations, low > 0
 
 
-def _worst_at_kink(nodes: Floats, topology: Topology) -> bool:
+def _worst_at_kink(nodes: Floats) -> bool:
     """Return whether the cell with the largest angle is at the rim but not in a corner of it."""
-    at = measure(Grid(nodes, topology))["max_angle"].worst
+    at = widest_cell(nodes)
     ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
     return ends[0] != ends[1]
 
@@ -262,7 +266,22 @@ def descend(
     terms = aspect, weights.shape, weights.smoothness
     if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
         return 0, False
-    return descent.run(z, *terms, 0.0, relief, _moves(still, nodes), REACH, most)[2], True
+    moves, told = _moves(still, nodes), _teller(nodes)
+    return descent.run(z, *terms, 0.0, relief, moves, REACH, most, told)[2], True
+
+
+def _teller(nodes: Floats) -> Callable[[int, float, float], None] | None:
+    """Return what tells listeners of iterations that move `nodes` (ni, nj, 2), None without listeners."""
+    if not heard():
+        return None
+    first = 0.0
+
+    def told(number: int, value: float, slope: float) -> None:
+        nonlocal first
+        first = slope if number == 0 else first
+        tell("variational", nodes, number, slope / first if first else 0.0, functional=value)
+
+    return told
 
 
 def _moves(still: float, nodes: Floats) -> float:

@@ -44,7 +44,7 @@ typedef struct {
 } Space;
 
 enum { GOES_ON, SETTLED, STUCK };
-#define PAIRS 8 /* steps that are remembered */
+#define PAIRS 14 /* steps that are remembered */
 
 /* A descent under way. The free nodes are those of rows `first` to `first` + mi - 1, columns 1 to mj. */
 typedef struct {

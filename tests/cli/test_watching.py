@@ -20,6 +20,7 @@ from formats.registry import read_grids
 from geometry.quality import count_folded
 from meshonet_cli.watching import COLUMNS, Live
 from solvers.progress import Cycle, listening, tell
+from solvers.variational.functional import Weights, aspect_of, energy
 
 
 def table(path: str = "h.csv") -> list[dict[str, str]]:
@@ -56,14 +57,30 @@ def test_history_of_a_batch_names_its_members(meshonet: Meshonet, three_h5: Path
     assert sorted(set(names), key=names.index) == [f"{three_h5}[{name}]" for name in ("flat", "low", "high")]
 
 
-def test_history_of_other_methods_has_their_result(meshonet: Meshonet, duct_h5: Path, body_h5: Path) -> None:
-    assert (
-        meshonet("solve-pde", duct_h5, "--method", "variational", "-o", "g.vts", "--history", "h.csv").code
-        == 0
-    )
-    (row,) = table()
-    assert (row["method"], row["ni"], row["nj"], row["residual"]) == ("variational", "21", "11", "")
-    assert int(row["cycle"]) > 0
+@pytest.mark.parametrize("words", [(), ("--res", "65")])
+def test_history_of_a_minimisation_has_every_iteration(
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...]
+) -> None:
+    asked = ("solve-pde", duct_h5, "--method", "variational", *words, "-o", "g.vts")
+    told = meshonet(*asked, "--history", "h.csv", "--json").only
+    rows = table()
+    assert {row["method"] for row in rows} == {"variational"}
+    finest = [row for row in rows if (row["ni"], row["nj"]) == (str(told["ni"]), str(told["nj"]))]
+    assert [int(row["cycle"]) for row in finest] == list(range(told["cycles"] + 1))
+    values, slopes = ([float(row[name]) for row in finest] for name in ("functional", "residual"))
+    assert all(after <= before for before, after in pairwise(values))
+    assert 1 < values[-1] < values[0]
+    assert slopes[0] == 1
+    assert slopes[-1] < 0.2
+    (grid,) = read_grids("g.vts")
+    terms = energy(grid.nodes, aspect_of(grid.nodes), Weights())
+    assert values[-1] == pytest.approx(terms, rel=1e-9)  # the last iteration's is that of the grid
+    assert meshonet(*asked).code == 0  # and the grid is the same without
+    (again,) = read_grids("g.vts")
+    np.testing.assert_array_equal(grid.nodes, again.nodes)
+
+
+def test_history_of_other_methods_has_their_result(meshonet: Meshonet, body_h5: Path) -> None:
     words = ("--wall-spacing", "1e-3", "--res", "41x60", "-o", "g.vts", "--history", "h.csv")
     assert meshonet("solve-pde", body_h5, *words).code == 0
     (row,) = table()

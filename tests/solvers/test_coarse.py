@@ -12,7 +12,7 @@ from geometry.corners import find_corners
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import measure
-from solvers.coarse import evaluate, solve_automatic, solve_coarse, thinned
+from solvers.coarse import divided, evaluate, solve_automatic, solve_coarse, thinned
 from solvers.elliptic.solve import solve
 from solvers.solution import Solution
 from solvers.tfi import tfi
@@ -153,6 +153,16 @@ def test_large_quads_take_fewer_nodes_and_more_where_those_fold(make, counts, na
 def test_too_few_coarse_nodes_are_refused() -> None:
     with pytest.raises(InputError, match="8 coarse nodes along a direction are too few; use at least 9"):
         solve_coarse(arch(100, 100), solve, 8, smooth=True)
+
+
+def test_straight_lines_keep_valid_cells_valid() -> None:
+    fine = wrench(97, 65)
+    coarse = variational(thinned(fine, 13, 9)).grid.nodes
+    nodes = divided(coarse, fine)
+    np.testing.assert_allclose(nodes[8:-8:8, 8:-8:8], coarse[1:-1, 1:-1], atol=1e-12)
+    np.testing.assert_array_equal(nodes[:, 0], fine.south)
+    np.testing.assert_array_equal(nodes[-1], fine.east)
+    assert folded(nodes[8:-8, 8:-8]) == 0
 
 
 def test_what_kinks_fold_sweeps_unfold() -> None:

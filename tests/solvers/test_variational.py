@@ -97,6 +97,23 @@ def test_a_minimum_that_folds_on_finer_levels_gives_way_to_the_other() -> None:
     assert folded(found.grid.nodes) == 0
 
 
+def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between walls that nearly meet (random domain 171 on 129 nodes), splines leave what no repair mends."""
+    boundary, smooth = arch(33, 33), module.evaluate
+
+    def swinging(nodes: Floats, boundary: Boundary) -> Floats:
+        found = smooth(nodes, boundary)
+        found[16, 16] += 1.0
+        return found
+
+    goal = solve(boundary, tol=1e-7).grid.nodes
+    monkeypatch.setattr(module, "evaluate", swinging)
+    monkeypatch.setattr(module, "_made_valid", lambda *_: False)
+    found = solve(boundary, tol=1e-7)
+    assert found.notes == ()
+    np.testing.assert_allclose(found.grid.nodes, goal, atol=1e-5)
+
+
 def test_of_several_minima_of_a_hard_domain_the_better_one_counts() -> None:
     boundary = random_quad(22, 17, 17)
     assert boundary is not None

@@ -7,7 +7,7 @@ from solver_shapes import bump, hole, naca, wrench
 
 from geometry.arrays import Floats
 from solvers.tfi import tfi
-from solvers.variational._variational import Minimiser, Stiffness, workspace
+from solvers.variational._variational import Minimiser, Stiffness, Waves, workspace
 from solvers.variational._variational import energy as compiled
 from solvers.variational.functional import Weights, aspect_of, energy, relief_of
 from solvers.variational.preconditioner import minimiser
@@ -139,6 +139,6 @@ def test_transforms_and_splines_of_another_size_are_refused() -> None:
     stiffness = Stiffness(square, 1.0, weights.shape, weights.smoothness)
     with pytest.raises(ValueError, match="splines of another size"):
         minimiser(9, 9, False, 1.0, weights).steer(stiffness, np.ones((7, 3)), np.ones((6, 3)))
-    half = np.ones((1, 1))
+    half = Waves(np.ones((1, 1)))
     with pytest.raises(ValueError, match="transforms of another size"):
         Minimiser(9, 9, False, (half, half), (half, half), np.ones((2, 2, 2)), 0.0)
