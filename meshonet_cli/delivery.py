@@ -21,6 +21,8 @@ T = TypeVar("T", bound=Named)
 S = TypeVar("S", bound=Grid | Boundary)
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Item[T]], tuple[S, R]]
+Todo = Iterator[tuple[Item[T], str]]
+"""Members and the paths of their files."""
 
 
 def prepare(sources: Sequence[str], destination: Destination, session: Session) -> None:
@@ -37,6 +39,7 @@ def deliver(
     tell: Callable[[R, str], None],
     *,
     skip_existing: bool = False,
+    ahead: Callable[[Todo[T]], Todo[T]] | None = None,
     jobs: int = 1,
 ) -> None:
     """Make something of every member of `found`, write it to `destination`, and tell of it.
@@ -49,6 +52,7 @@ def deliver(
         must be something that can be pickled.
     tell : is given the report and the path when the member is written.
     skip_existing : pass over members whose own file is there.
+    ahead : passes on what is to be made, and may look at several members before it does.
     jobs : processes that make, and write when every member has its own file.
     """
     leading = next(found, None)
@@ -60,7 +64,7 @@ def deliver(
     work = _Work(make, destination if each else None)
     with _executor(jobs if session.batch else 1) as pool:
         todo = _paths(found, destination, session, skip_existing) if each else ((item, "") for item in found)
-        done = _ahead(todo, work, pool, jobs)
+        done = _under_way(ahead(todo) if ahead is not None else todo, work, pool, jobs)
         if each:
             for item, path, future in done:
                 with session.member(item.label, item.source):
@@ -90,7 +94,7 @@ class _Work(Generic[T, S, R]):
 
 def _paths(
     found: Iterator[Item[T]], destination: Destination, session: Session, skip_existing: bool
-) -> Iterator[tuple[Item[T], str]]:
+) -> Todo[T]:
     for item in found:
         with session.member(item.label, item.source):
             path = destination.path(item)
@@ -100,8 +104,8 @@ def _paths(
                 yield item, path
 
 
-def _ahead(
-    todo: Iterator[tuple[Item[T], str]], work: _Work[T, S, R], pool: Pool, jobs: int
+def _under_way(
+    todo: Todo[T], work: _Work[T, S, R], pool: Pool, jobs: int
 ) -> Iterator[tuple[Item[Any], str, Promise]]:
     """Yield members in order with their work, of which up to two for each job are under way."""
     waiting: deque[tuple[Item[Any], str, Promise]] = deque()

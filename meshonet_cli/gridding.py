@@ -6,6 +6,7 @@ import contextlib
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from formats.output import whole_file
@@ -150,8 +151,8 @@ def make_grids(
     prepare(sources, destination, session)
     check_file(recipe.history)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
-    if recipe.together is not None and jobs == 1:
-        found = recipe.together.ahead(found, recipe.sampling)
+    together = recipe.together if jobs == 1 else None
+    ahead = partial(together.ahead, sampling=recipe.sampling) if together is not None else None
     members: list[tuple[str, Iterable[Row]]] = []
 
     def tell(report: Report, path: str) -> None:
@@ -159,7 +160,10 @@ def make_grids(
         _tell(recipe, session, report, path)
 
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
-        deliver(found, recipe.grid, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+        deliver(
+            found, recipe.grid, destination, session, tell,
+            skip_existing=skip_existing, ahead=ahead, jobs=jobs,
+        )  # fmt: skip
     if recipe.history and members:
         with whole_file(recipe.history) as file:
             write(file, members)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
@@ -12,7 +12,7 @@ from geometry.boundary import Boundary
 from geometry.errors import MeshonetError
 from geometry.sampling import Sampling
 from geometry.shape import Shape
-from meshonet_cli.member import Item
+from meshonet_cli.delivery import Todo
 from solvers.solution import Solution
 
 AHEAD = 64
@@ -55,18 +55,18 @@ class Together:
         """Return the solution of `boundary`."""
         return self._made.pop(id(boundary), None) or self._alone(boundary)
 
-    def ahead(self, found: Iterator[Item[Shape]], sampling: Sampling) -> Iterator[Item[Shape]]:
-        """Yield the members of `found`, solved `AHEAD` at a time; one that fails does so in its turn."""
-        while group := list(islice(found, AHEAD)):
-            sampled = [_sampled(item.what, sampling) for item in group]
+    def ahead(self, todo: Todo[Shape], sampling: Sampling) -> Todo[Shape]:
+        """Yield what is to be made, solved `AHEAD` members at a time; one that fails does so in its turn."""
+        while group := list(islice(todo, AHEAD)):
+            sampled = [_sampled(item.what, sampling) for item, _ in group]
             alike = [one for one in sampled if isinstance(one, Boundary) and one.topology == self.topology]
             self._made = {}  # what was not asked for goes with its boundary, whose id another may get
             if len(alike) > 1:
                 with suppress(MeshonetError):  # one of them fails: that is told in its turn
                     solutions = self._many(alike)
                     self._made = {id(one): solution for one, solution in zip(alike, solutions, strict=True)}
-            for item, one in zip(group, sampled, strict=True):
-                yield replace(item, what=Sampled(item.what.name, one))
+            for (item, path), one in zip(group, sampled, strict=True):
+                yield replace(item, what=Sampled(item.what.name, one)), path
 
 
 def _sampled(shape: Shape, sampling: Sampling) -> Boundary | Exception:

@@ -9,6 +9,7 @@ import pytest
 from conftest import Meshonet
 
 from formats.registry import read_grids
+from solvers.neural.quads.operator import in_batches
 
 
 @pytest.fixture
@@ -46,3 +47,19 @@ def test_members_of_different_sizes_go_together(meshonet: Meshonet, arches: Path
     done = meshonet("infer", arches, "w.h5", "--model", quad_model, "-o", "{stem}-{index}.vts", "--json")
     assert {(one["ni"], one["nj"]) for one in done.objects} == {(21, 17), (30, 33)}
     assert done.code == 0
+
+
+def test_only_members_without_a_file_are_solved(
+    meshonet: Meshonet, arches: Path, quad_model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved: list[int] = []
+    monkeypatch.setattr(
+        "solvers.neural.quads.inference.in_batches",
+        lambda boundaries: solved.append(len(boundaries)) or in_batches(boundaries),
+    )
+    words = ("infer", arches, "--model", quad_model, "-o", "{index}.vts", "--skip-existing")
+    meshonet(*words)
+    Path("1.vts").unlink()
+    Path("3.vts").unlink()
+    meshonet(*words)
+    assert solved == [5, 2]
