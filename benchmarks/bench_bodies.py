@@ -160,7 +160,7 @@ WAKES = """
 
 A C grid is a four-sided domain whose south side is wake, airfoil and wake. Three sections, far fields of 5
 and 15 chords, 201 x 65. The network for four-sided domains was shown none, and 33 nodes are few for such a
-side: alone it is worse than TFI. No `airfoil-c` is shipped; `infer` makes C grids by the variational method.
+side: alone it is worse than TFI. No `airfoil-c` is shipped; `infer` marches C grids from the wall.
 
 | way | valid % | max / mean angle, averaged | CPU ms, median |
 | --- | --- | --- | --- |"""

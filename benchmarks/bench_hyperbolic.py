@@ -31,7 +31,10 @@ from geometry.families import procedural
 from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from geometry.sampling import Sampling
+from solvers.coarse import solve_automatic
+from solvers.elliptic.solve import solve
 from solvers.hyperbolic import hyperbolic
+from solvers.variational.solve import solve as minimise
 
 SEED = 20_000_003
 REPEAT = 3
@@ -80,6 +83,15 @@ Its growth is 0.10 to 0.18 along and 0.13 away from the wall, its first cell exa
 The procedural shapes have walls spaced by every law, some with neighbours three times as large and cells at
 the edge hardly longer than high.
 """
+UNASKED = """
+## C grids without a first cell
+
+`--topology c` without `--wall-spacing`: marched with a first cell of a twentieth of the smallest one along
+the wall, more where rows are few, or minimised (`--method variational`), which is what `auto` falls back to.
+*first cells*: the lowest and the highest at the wall, in chords; the rest as above.
+
+"""
+SQUARE = (100, 200, 400)
 
 
 @dataclass(frozen=True)
@@ -116,6 +128,8 @@ def main() -> None:
     rows += [procedural_row(options.count, *size) for size in SIZES]
     ours = [angles(groups[name][0]) for name in ("NACA 0012, blunt edge rounded", "NACA 0012, C")]
     page = "\n".join([HEAD.format(machine=machine(), repeat=REPEAT), *rows, CONSTRUCT2D.format(*ours)])
+    most = max((group for name, group in groups.items() if name.endswith(", C")), key=len)
+    page += UNASKED + "\n".join(unasked_rows(most)) + "\n"
     print(page)
     if options.page:
         options.page.write_text(page)
@@ -170,6 +184,35 @@ def procedural_row(count: int, ni: int, nj: int, first: float) -> str:
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
         table.append([*figures(nodes, first * edges.chord, 0), 1e3 * (time.process_time() - begun)])
     return line(f"{count} procedural, any wall spacing law", np.array(table), ni, nj, first)
+
+
+def unasked_rows(cases: list[Case]) -> list[str]:
+    """Return the table of C grids without a first cell."""
+    heads = "way|nodes|folded|off 90|mean|growth xi|growth eta|first cells|CPU ms"
+    rows = [f"| {heads.replace('|', ' | ')} |", "| --- " * 9 + "|"]
+    for n in SQUARE:
+        for name in ("auto", "variational"):
+            table = np.array([unasked(case, name, n) for case in cases])
+            cells = ["marched" if name == "auto" else name, f"{n}x{n}", f"{table[:, 0].sum():.0f}"]
+            for k, digits in ((1, 1), (2, 2), (3, 2), (4, 3)):
+                values = np.median(table[:, k]), np.quantile(table[:, k], 0.9)
+                cells.append(" / ".join(f"{value:.{digits}f}" for value in values))
+            low, high, spent = np.median(table[:, 5:], axis=0)
+            rows.append("| " + " | ".join([*cells, f"{low:.1g} to {high:.1g}", f"{spent:.0f}"]) + " |")
+    return rows
+
+
+def unasked(case: Case, name: str, n: int) -> list[float]:
+    """Return folded cells, two angles, two growths, the least and greatest first cell, and milliseconds."""
+    edges = case.make().boundary(Sampling(n, n, "c", te=case.te))  # type: ignore[arg-type]
+    begun = time.process_time()
+    nodes = solve_automatic(edges, solve if name == "auto" else minimise, name).grid.nodes
+    spent = 1e3 * (time.process_time() - begun)
+    wake = wake_nodes(edges.south)
+    found = figures(nodes, 1.0, wake)
+    wall = nodes[wake - 1 : n - wake + 1, :2]
+    heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T) / edges.chord
+    return [found[0], found[2], *found[4:], heights.min(), heights.max(), spent]
 
 
 def line(name: str, table: Floats, ni: int, nj: int, first: float) -> str:

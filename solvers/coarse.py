@@ -93,8 +93,8 @@ def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], 
     Parameters
     ----------
     boundary : only large quads are solved on fewer nodes; where those fold, on twice as many. C boundaries
-        by ``auto`` are minimised instead, on fewer nodes too: Winslow's lines lean by 70 degrees along the
-        wake, where small cells face large ones of the far field.
+        by ``auto`` are marched (`solvers.unasked`) or else minimised, on fewer nodes too: Winslow's lines
+        lean by 70 degrees along the wake, where small cells face large ones of the far field.
     method : a solver of boundary to solution.
     name : of the method, as in `AUTOMATIC`; others solve in full.
 
@@ -105,8 +105,12 @@ def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], 
     """
     wake = name == "auto" and boundary.topology == "c"
     if wake:
+        from solvers.unasked import march_unasked
         from solvers.variational.solve import solve as minimise  # which evaluates by this module
 
+        marched = march_unasked(boundary)
+        if marched is not None:
+            return marched
         method, name = minimise, "variational"
     above, n = AUTOMATIC.get(name, (0, 0))
     if not n or not (boundary.topology == "quad" or wake) or max(boundary.ni, boundary.nj) <= above:

@@ -29,8 +29,8 @@ Method = Annotated[
         "carry the spacing of the edges inside; steger-sorenson has sources at walls that turn the lines "
         "there to --wall-angle; variational minimises a functional of angles "
         "and edge lengths: better angles, no folds; hyperbolic marches from the wall. auto: hyperbolic "
-        "around bodies when a first cell is given, else variational on C grids unless --coarse, --refine, "
-        "--tol, --max-cycles or --initial is given, else winslow.",
+        "around bodies when a first cell is given, and on C grids, with one of its own choice, unless "
+        "--coarse, --refine, --tol, --max-cycles or --initial is given; else winslow.",
     ),
 ]
 Tolerance = Annotated[

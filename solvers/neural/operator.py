@@ -48,8 +48,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
 
     Parameters
     ----------
-    boundary : ``o`` goes to the operator; others to the variational method, which measures best for a single
-        grid.
+    boundary : ``o`` goes to the operator; ``quad`` to the variational method, which measures best for a
+        single grid; ``c`` is marched where that is possible, and else variational too.
     model : name of a shipped model or path to a ``.safetensors`` file; ``base`` is the harmonic base with no
         network, which None takes with ``auto`` polish, and the shipped model otherwise.
     polish : Picard steps after the network: a number, ``off`` for none, ``auto`` until they change nothing.
@@ -71,10 +71,10 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         if model is not None:
             told = f"model {model} makes o grids, and this boundary is {boundary.topology}"
             raise InputError(told, "use another model, or leave --model out")
-        found = solve_automatic(boundary, solve, "variational")
         if boundary.topology == "quad":
-            return found
-        note = f"no shipped model makes {boundary.topology} grids: made by the variational method"
+            return solve_automatic(boundary, solve, "variational")
+        found = solve_automatic(boundary, solve, "auto")
+        note = f"no shipped model makes {boundary.topology} grids: this one is {found.method}"
         return replace(found, notes=(note, *found.notes))
     alone = model == "base" or (model is None and polish == "auto")
     network = None if alone else load_model(model)

@@ -1,0 +1,61 @@
+"""C grids without a first cell: what the march takes by itself, and when it steps aside."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geometry.naca import naca
+from geometry.parts import wake_nodes
+from geometry.quality import count_folded, measure
+from geometry.sampling import Sampling
+from solvers.coarse import solve_automatic
+from solvers.elliptic.solve import solve
+from solvers.unasked import GROWTH, MOST, PART, first_cell, march_unasked
+
+
+@pytest.mark.parametrize(("section", "te"), [("0012", "wedge"), ("4415", "wedge"), ("23012", "wedge")])
+@pytest.mark.parametrize("res", [(100, 100), (160, 60), (200, 40)])
+def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, res: tuple[int, int]) -> None:
+    boundary = naca(section).boundary(Sampling(*res, "c", te=te))  # type: ignore[arg-type]
+    found = march_unasked(boundary)
+    assert found is not None
+    nodes = found.grid.nodes
+    assert count_folded(nodes) == 0
+    angle = measure(found.grid)["max_angle"]
+    assert angle.max < 125
+    assert angle.mean < 94
+    np.testing.assert_array_equal(nodes[:, 0], boundary.south)
+    behind = wake_nodes(boundary.south) - 1
+    wall = nodes[behind : len(nodes) - behind]
+    heights = np.hypot(*np.diff(wall, axis=1).T).T
+    np.testing.assert_allclose(heights[:, 0], first_cell(boundary), rtol=1e-7)
+    assert (heights[:, 1:] / heights[:, :-1]).max() < 1.32
+
+
+def test_first_cells_are_a_part_of_the_smallest_and_larger_with_few_rows() -> None:
+    def over_the_smallest(nj: int) -> float:
+        boundary = naca("2412").boundary(Sampling(160, nj, "c"))
+        behind = wake_nodes(boundary.south) - 1
+        wall = boundary.south[behind : boundary.ni - behind]
+        return first_cell(boundary) / np.hypot(*np.diff(wall, axis=0).T).min()
+
+    assert over_the_smallest(100) == pytest.approx(PART)
+    assert PART < over_the_smallest(52) < over_the_smallest(48) < MOST
+    assert over_the_smallest(40) == pytest.approx(MOST)
+    boundary = naca("2412").boundary(Sampling(160, 48, "c"))
+    rows = first_cell(boundary) * GROWTH ** np.arange(47)
+    assert rows.sum() == pytest.approx(np.hypot(*(boundary.west[-1] - boundary.west[0])))
+
+
+def test_given_far_fields_and_very_few_rows_are_left_to_the_variational_method() -> None:
+    boundary = naca("0012").boundary(Sampling(100, 50, "c"))
+    given = replace(boundary, wall=None)
+    few = naca("0012").boundary(Sampling(100, 30, "c"))
+    for one in given, few:
+        assert march_unasked(one) is None
+        found = solve_automatic(one, solve, "auto")
+        assert found.method == "variational"
+        np.testing.assert_array_equal(found.grid.nodes[:, -1], one.north)
+    assert solve_automatic(boundary, solve, "auto").method == "hyperbolic"
+    assert solve_automatic(boundary, solve, "winslow").method == "winslow"
