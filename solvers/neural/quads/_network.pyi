@@ -5,6 +5,9 @@ from numpy.typing import NDArray
 
 Real = TypeVar("Real", np.float32, np.float64)
 
+class Program:
+    def run(self, x: NDArray[Real], out: NDArray[Real]) -> None: ...
+
 def convolve(
     x: NDArray[Real],
     w: NDArray[Real],
@@ -13,6 +16,7 @@ def convolve(
     stride: int,
     add: NDArray[Real] | None,
     out: NDArray[Real],
+    later: Program | None = None,
 ) -> None: ...
 def winograd_scratch(inputs: int, wide: int, line: int) -> int: ...
 def winograd(
@@ -22,9 +26,18 @@ def winograd(
     add: NDArray[Real] | None,
     scratch: NDArray[Real],
     out: NDArray[Real],
+    later: Program | None = None,
 ) -> None: ...
-def activate(x: NDArray[Real], out: NDArray[Real], around: bool = False) -> None: ...
-def refine(x: NDArray[Real], add: NDArray[Real], out: NDArray[Real], around: bool = False) -> None: ...
+def activate(
+    x: NDArray[Real], out: NDArray[Real], around: bool = False, later: Program | None = None
+) -> None: ...
+def refine(
+    x: NDArray[Real],
+    add: NDArray[Real],
+    out: NDArray[Real],
+    around: bool = False,
+    later: Program | None = None,
+) -> None: ...
 def look(
     planes: NDArray[np.float64],
     middle: NDArray[np.float64],

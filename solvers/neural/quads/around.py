@@ -59,7 +59,7 @@ def coarse_grids(
     network = model.network(dtype)
     for k in range(0, len(base), CHUNK):
         chunk, unit = base[k : k + CHUNK], factor[k : k + CHUNK]
-        moved = network(features(chunk * unit, np, around=True))[:, head]
+        moved = network(features(chunk * unit, np, around=True), head)
         chunk[:, :-1] += SCALE * moved / unit
         chunk[:, -1] = chunk[:, 0]  # a whole turn on
     grids = rolled(base, centres)

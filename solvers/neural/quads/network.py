@@ -27,7 +27,14 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Complexes, Floats
 from solvers.neural.quads import kernels
-from solvers.neural.quads._network import activate, convolve, refine, winograd, winograd_scratch
+from solvers.neural.quads._network import (
+    Program,
+    activate,
+    convolve,
+    refine,
+    winograd,
+    winograd_scratch,
+)
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
 
@@ -108,21 +115,35 @@ class Network:
                 if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
                     kernel = kernels.at_points(kernel)
                 self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
-        self._rooms = threading.local()  # arrays that later calls in the same thread use again
+        self._made = threading.local()
         self.heads = len(exact["project"])
 
-    def __call__(self, seen: Reals) -> Complexes:
+    def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
         """Return the fields (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
 
-        It is fastest for `CHUNK` domains at a time.
+        Of one `head` alone (batch, m, n).
         """
         batch, m, n = seen.shape[:3]
-        answer = self._forward(np.ascontiguousarray(seen, self.dtype)).reshape(batch, m, n, self.heads, 2)
-        parts = np.moveaxis(answer, 3, 1) * rim_factor(m, n, self.around)[..., None]
-        return np.asarray(parts[..., 0] + 1j * parts[..., 1])
+        seen = np.ascontiguousarray(seen, self.dtype)
+        answer = np.empty((batch, m, n, 2 * self.heads), self.dtype)
+        program = self._program(m, n)
+        for k in range(0, batch, CHUNK):
+            program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
+        pairs = answer.reshape(batch, m, n, self.heads, 2)
+        pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
+        moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
+        return np.asarray(moved.view(np.complex128)[..., 0])
 
-    def _forward(self, h: Reals) -> Reals:
-        work = _Work(self._layers, self._rooms.__dict__, self.around)
+    def _program(self, m: int, n: int) -> Program:
+        """Return the layers for `CHUNK` domains or fewer; every thread has its own."""
+        made: dict[Any, Program] = self._made.__dict__
+        if (m, n) not in made:
+            work = _Work(self._layers, self.around)
+            self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
+            made[m, n] = work.program
+        return made[m, n]
+
+    def _record(self, work: _Work, h: Reals) -> None:
         h = work.layer("lift", h)
         skips: list[Reals] = []
         coarsest = len(self.blocks) - 1
@@ -132,59 +153,56 @@ class Network:
             h = work.layer(f"down.{level}", work.silu(h), stride=2)
         h = work.blocks(f"before.{coarsest}", self.blocks[-1], h)
         for level in range(coarsest - 1, -1, -1):
-            low = work.layer(f"up.{level}", h)
-            h = work.room(f"finer.{level}", skips[level].shape)
-            refine(low, skips[level], h, self.around)
+            h = work.finer(work.layer(f"up.{level}", h), skips[level])
             h = work.blocks(f"after.{level}", self.blocks[level], h)
         h = work.layer("last", work.silu(h))
-        return work.layer("project", np.ascontiguousarray(work.silu(h)[:, 1:-1, 1:-1]))
+        work.layer("project", work.silu(h, pad=0))
 
 
 class _Work:
-    """Layers by name, into arrays that later chunks use again."""
+    """Records layers by name in a program, on arrays of `CHUNK` domains."""
 
-    def __init__(
-        self, layers: Mapping[str, tuple[Reals, Reals, int]], room: dict[Any, Reals], around: bool
-    ) -> None:
-        self._layers, self._room, self._around = layers, room, around
-        self.dtype = layers["lift"][0].dtype
+    def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], around: bool) -> None:
+        self.program = Program()
+        self._layers, self._around = layers, around
+        self._rooms: dict[Any, Reals] = {}
 
-    def room(self, name: str, shape: tuple[int, ...]) -> Reals:
-        key = name, shape
-        if key not in self._room:
-            self._room[key] = np.empty(shape, self.dtype)
-        return self._room[key]
-
-    def scratch(self, count: int) -> Reals:
-        key = "scratch", (count,)
-        if key not in self._room:
-            self._room[key] = _aligned((count,), self.dtype)
-        return self._room[key]
-
-    def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None) -> Reals:
+    def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None, room: str = "") -> Reals:
         weight, bias, outputs = self._layers[name]
         taps = len(weight) // x.shape[3]
         size = 1 if taps == 1 else 3
         m, n = ((count - size) // stride + 1 for count in x.shape[1:3])
-        out = self.room(name, (len(x), m, n, outputs))
-        if taps > 9:
-            scratch = self.scratch(winograd_scratch(x.shape[3], weight.shape[1], LINE // self.dtype.itemsize))
-            winograd(x, weight, bias, add, scratch, out)
+        out = self._room(room or name, (len(x), m, n, outputs), x.dtype)
+        if taps > size * size:
+            count = winograd_scratch(x.shape[3], weight.shape[1], LINE // x.itemsize)
+            scratch = self._room("scratch", (count,), x.dtype)
+            winograd(x, weight, bias, add, scratch, out, self.program)
         else:
-            convolve(x, weight, bias, size, stride, add, out)
+            convolve(x, weight, bias, size, stride, add, out, self.program)
         return out
 
-    def silu(self, x: Reals) -> Reals:
+    def finer(self, low: Reals, skip: Reals) -> Reals:
+        out = self._room("finer", skip.shape, skip.dtype)
+        refine(low, skip, out, self._around, self.program)
+        return out
+
+    def silu(self, x: Reals, pad: int = 1) -> Reals:
         batch, m, n, channels = x.shape
-        out = self.room("active", (batch, m + 2, n + 2, channels))
-        activate(x, out, self._around)
+        out = self._room("active", (batch, m + 2 * pad, n + 2 * pad, channels), x.dtype)
+        activate(x, out, self._around, self.program)
         return out
 
     def blocks(self, part: str, count: int, x: Reals) -> Reals:
         for k in range(count):
-            inner = self.layer(f"{part}.{k}.a", self.silu(x))
-            x = self.layer(f"{part}.{k}.b", self.silu(inner), add=x)
+            inner = self.layer(f"{part}.{k}.a", self.silu(x), room="inner")
+            x = self.layer(f"{part}.{k}.b", self.silu(inner), add=x, room=f"sum {k % 2}")
         return x
+
+    def _room(self, name: str, shape: tuple[int, ...], dtype: Any) -> Reals:
+        """Return an array that later layers use again."""
+        if (name, shape) not in self._rooms:
+            self._rooms[name, shape] = _aligned(shape, dtype)
+        return self._rooms[name, shape]
 
 
 def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[Reals, Reals, int]:

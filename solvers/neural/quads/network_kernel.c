@@ -1,6 +1,7 @@
-/* Argument reduction in the exponentials lives on the order of its operations. */
+/* Argument reduction in the exponentials lives on the order of its operations. Minima and maxima are single
+   instructions when NaN need not come out of them; it comes out of what they are in. */
 #if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-associative-math")
+#pragma GCC optimize("no-associative-math", "finite-math-only")
 #endif
 
 #include "network_kernel.h"
@@ -17,10 +18,13 @@
 extern double log(double) __attribute__((simd("notinbranch")));
 #endif
 
-/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n; arguments beyond what 1/(1 + exp) tells from its limits are clamped. 2 ulp. */
+/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n. 2 ulp, for
+   |x| up to EXP_MOST, beyond which 1/(1 + exp) is told from its limits no more. */
+#define EXP_MOST_double 700.0
+#define EXP_MOST_float 80.0f
+
 MESHONET_INLINE double exp_double(double x)
 {
-    x = x > 700.0 ? 700.0 : x < -700.0 ? -700.0 : x;
     union { double real; unsigned long long bits; } shifted, scale;
     shifted.real = x * 1.4426950408889634 + 6755399441055744.0;
     const double n = shifted.real - 6755399441055744.0;
@@ -29,37 +33,30 @@ MESHONET_INLINE double exp_double(double x)
     return exp_reduced(r) * scale.real;
 }
 
+/* The polynomial of degree 5 has the least relative error, 8e-8. */
 MESHONET_INLINE float exp_float(float x)
 {
-    x = x > 80.0f ? 80.0f : x < -80.0f ? -80.0f : x;
     union { float real; unsigned int bits; } shifted, scale;
     shifted.real = x * 1.44269504f + 12582912.0f;
     const float n = shifted.real - 12582912.0f;
     const float r = (x - n * 0.693145752f) - n * 1.42860677e-6f;
-    float p = 1.0f / 5040.0f;
-    p = p * r + 1.0f / 720.0f;
-    p = p * r + 1.0f / 120.0f;
-    p = p * r + 1.0f / 24.0f;
-    p = p * r + 1.0f / 6.0f;
-    p = p * r + 0.5f;
-    p = p * r + 1.0f;
-    p = p * r + 1.0f;
+    float p = 0.008297619f;
+    p = p * r + 0.04191563f;
+    p = p * r + 0.16667576f;
+    p = p * r + 0.4999889f;
+    p = p * r + 0.9999997f;
+    p = p * r + 1.0000001f;
     scale.bits = (shifted.bits + 127) << 23;
     return p * scale.real;
 }
 
 #define T float
 #define SUFFIX _float
-#define EXP exp_float
-#include "pointwise.h"
 #include "look.h"
 #undef T
 #undef SUFFIX
-#undef EXP
 #define T double
 #define SUFFIX _double
-#define EXP exp_double
-#include "pointwise.h"
 #include "look.h"
 #undef T
 #undef SUFFIX
@@ -69,35 +66,55 @@ MESHONET_INLINE float exp_float(float x)
 #define KERNEL MESHONET_CLONES
 #define T float
 #define SUFFIX _float
+#define EXP exp_float
+#define MOST EXP_MOST_float
+#include "pointwise.h"
 #include "convolve.h"
 #include "winograd.h"
 #undef T
 #undef SUFFIX
+#undef EXP
+#undef MOST
 #define T double
 #define SUFFIX _double
+#define EXP exp_double
+#define MOST EXP_MOST_double
+#include "pointwise.h"
 #include "convolve.h"
 #include "winograd.h"
 #undef T
 #undef SUFFIX
+#undef EXP
+#undef MOST
 #undef VECTOR
 #undef KERNEL
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && __GNUC__ >= 12
 #define MESHONET_WIDE 1
 #define VECTOR 64
-#define KERNEL __attribute__((target("arch=x86-64-v4")))
+#define KERNEL __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 #define T float
 #define SUFFIX _wide_float
+#define EXP exp_float
+#define MOST EXP_MOST_float
+#include "pointwise.h"
 #include "convolve.h"
 #include "winograd.h"
 #undef T
 #undef SUFFIX
+#undef EXP
+#undef MOST
 #define T double
 #define SUFFIX _wide_double
+#define EXP exp_double
+#define MOST EXP_MOST_double
+#include "pointwise.h"
 #include "convolve.h"
 #include "winograd.h"
 #undef T
 #undef SUFFIX
+#undef EXP
+#undef MOST
 #undef VECTOR
 #undef KERNEL
 #endif
@@ -131,4 +148,32 @@ void network_winograd_double(const double *in, const Convolution *c, const doubl
                              const double *add, double *scratch, double *out)
 {
     WIDE(winograd_wide_double(in, c, w, bias, add, scratch, out), winograd_double(in, c, w, bias, add, scratch, out))
+}
+
+void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels,
+                            int around, int pad, float *out)
+{
+    WIDE(activate_wide_float(in, batch, m, n, channels, around, pad, out),
+         activate_float(in, batch, m, n, channels, around, pad, out))
+}
+
+void network_refine_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
+                          const float *add, float *out)
+{
+    WIDE(refine_wide_float(in, batch, m, n, channels, around, add, out),
+         refine_float(in, batch, m, n, channels, around, add, out))
+}
+
+void network_activate_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels,
+                            int around, int pad, double *out)
+{
+    WIDE(activate_wide_double(in, batch, m, n, channels, around, pad, out),
+         activate_double(in, batch, m, n, channels, around, pad, out))
+}
+
+void network_refine_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
+                          const double *add, double *out)
+{
+    WIDE(refine_wide_double(in, batch, m, n, channels, around, add, out),
+         refine_double(in, batch, m, n, channels, around, add, out))
 }

@@ -28,10 +28,10 @@ void network_winograd_float(const float *in, const Convolution *c, const float *
 void network_winograd_double(const double *in, const Convolution *c, const double *w, const double *bias,
                              const double *add, double *scratch, double *out);
 
-void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
-                            float *out);
+void network_activate_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels,
+                            int around, int pad, float *out);
 void network_activate_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels,
-                             int around, double *out);
+                             int around, int pad, double *out);
 void network_refine_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
                           const float *add, float *out);
 void network_refine_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,

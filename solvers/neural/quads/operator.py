@@ -54,7 +54,7 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
         chunk = base[k : k + CHUNK]
         seen = np.empty((len(chunk), LATENT, LATENT, FEATURES), dtype)
         look(chunk, _pairs(middle[k : k + CHUNK]), _pairs(factor[k : k + CHUNK]), scratch, seen)
-        moved = network(seen)[:, head] * (SCALE / factor[k : k + CHUNK, None, None])
+        moved = network(seen, head) * (SCALE / factor[k : k + CHUNK, None, None])
         chunk[:, 0] += moved.real
         chunk[:, 1] += moved.imag
     return base

@@ -79,7 +79,8 @@ static KERNEL __attribute__((noinline)) void NAME(after)(const T *restrict sums,
     }
 }
 
-#define PRODUCT(p, v) case 16 * v + p: NAME(tile)(from, into, 0, 1, into, w, wide, NAME(nothing), to, wide, p, v); break;
+#define PRODUCT(p, v) case 16 * v + p: \
+    NAME(tile)(from, into, 0, 1, into, w, wide, NAME(nothing), to, wide, p, v); break;
 
 /* sums (count, vectors) = v (count, into) times w (into, vectors); a line of w or sums has `wide` numbers. */
 static KERNEL __attribute__((noinline)) void NAME(products)(const T *v, ptrdiff_t into, const T *w, ptrdiff_t wide,
@@ -120,7 +121,8 @@ static KERNEL void NAME(winograd)(const T *in, const Convolution *c, const T *w,
     const ptrdiff_t ci = c->inputs, co = c->outputs, per = 64 / (ptrdiff_t)sizeof(T), wide = (co + per - 1) / per * per;
     const ptrdiff_t blocks = (all + WINOGRAD_TILES - 1) / WINOGRAD_TILES, most = (all + blocks - 1) / blocks;
     const ptrdiff_t plane = WINOGRAD_PLANE(ci, per), sum = WINOGRAD_PLANE(wide, per);
-    const int vectors = (int)((co + LANES - 1) / LANES), some = VECTOR == 64 ? 4 : 2, parts = (vectors + some - 1) / some;
+    const int vectors = (int)((co + LANES - 1) / LANES), some = VECTOR == 64 ? 4 : 2;
+    const int parts = (vectors + some - 1) / some;
     T *v = scratch, *sums = scratch + WINOGRAD_VALUES * plane;
     for (ptrdiff_t first = 0; first < all; first += most) {
         const ptrdiff_t count = first + most > all ? all - first : most;

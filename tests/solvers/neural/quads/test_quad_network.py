@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Complexes, Floats
 from solvers.neural.quads._network import (
+    Program,
     activate,
     convolve,
     look,
@@ -19,7 +20,7 @@ from solvers.neural.quads._network import (
 )
 from solvers.neural.quads.features import FEATURES, features
 from solvers.neural.quads.kernels import at_points
-from solvers.neural.quads.network import Network, shapes
+from solvers.neural.quads.network import CHUNK, Network, shapes
 from solvers.neural.quads.symmetry import ORDER, relabelled
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
@@ -138,6 +139,41 @@ def test_activation_is_accurate_and_padded(dtype: Any, close: float) -> None:
     assert not found.any()
 
 
+def test_activation_without_padding_is_what_stands_inside_it() -> None:
+    x = np.random.default_rng(0).normal(size=(2, 7, 5, 8))
+    padded, bare = np.empty((2, 9, 7, 8)), np.empty_like(x)
+    activate(x, padded)
+    activate(x, bare)
+    np.testing.assert_array_equal(bare, padded[:, 1:-1, 1:-1])
+
+
+def test_recorded_layers_do_what_they_do_at_once_for_fewer_of_a_batch_too() -> None:
+    rng = np.random.default_rng(0)
+    x, active, out = rng.normal(size=(3, 5, 5, 8)), np.empty((3, 7, 7, 8)), np.empty((3, 5, 5, 16))
+    kernel = packed(rng.normal(size=(16, 8, 3, 3)), rng.normal(size=16), np.float64)
+    later = Program()
+    for program in (None, later):
+        activate(x, active, False, program)
+        convolve(active, *kernel, 3, 1, None, out, program)
+    found = np.empty((2, 5, 5, 16))
+    later.run(x[1:], found)
+    np.testing.assert_array_equal(found, out[1:])
+    with pytest.raises(ValueError, match="a batch of another size"):
+        later.run(x, found)
+    with pytest.raises(ValueError, match="arrays of other shapes than the layers"):
+        later.run(x[1:].astype(np.float32), found)
+    with pytest.raises(ValueError, match="arrays of other shapes than the layers"):
+        Program().run(x, found)
+
+
+def test_a_program_holds_so_many_layers() -> None:
+    x, later = np.zeros((1, 3, 3, 8)), Program()
+    for _ in range(256):
+        activate(x, np.empty_like(x), False, later)
+    with pytest.raises(ValueError, match="too many layers"):
+        activate(x, np.empty_like(x), False, later)
+
+
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_finer_copies_are_linear_between_nodes(dtype: Any) -> None:
     rng = np.random.default_rng(0)
@@ -194,10 +230,11 @@ def test_the_answer_vanishes_on_the_rim_alone() -> None:
 
 
 def test_a_batch_is_answered_as_each_of_it() -> None:
-    seen, network = features(grids(17, 5), np), Network(weights(), BLOCKS)
+    seen, network = features(grids(17, CHUNK + 3), np), Network(weights(), BLOCKS)
     together = network(seen)
-    for k in range(5):
+    for k in range(len(seen)):
         np.testing.assert_array_equal(network(seen[k : k + 1])[0], together[k])
+        np.testing.assert_array_equal(network(seen[k : k + 1], head=1)[0], together[k, 1])
 
 
 def test_single_precision_is_close_to_double() -> None:
