@@ -106,7 +106,7 @@ def infer(
     solver = Together(
         partial(operate, model=model, polish=steps, answer=answer, device=device),
         partial(infer_many, model=model, polish=steps, device=device),
-        many_of(model, device),
+        many_of(model, device, steps),
     )
     lengths = {"le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te}
     lengths |= {"wake": wake, "wake_nodes": wake_nodes, "viscous": layers is not None}

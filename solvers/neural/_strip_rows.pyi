@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,3 +20,6 @@ def fill(
     begin: int,
     axis: tuple[complex, complex] | None,
 ) -> bool: ...
+def halve(
+    lift: Lift, lines: Iterable[tuple[complex, complex, complex, complex, float]], limit: float
+) -> list[float]: ...

@@ -48,11 +48,56 @@ cdef extern from "strip_rows_kernel.h":
                       Py_ssize_t nj, double *scratch) noexcept nogil
 
 
+cdef extern from "bisector.h":
+    ctypedef struct LineOff:
+        Cplx corner, ahead, behind, w
+
+    double halve_corner(const LiftMaps *maps, const LineOff *line, double start, double limit) noexcept nogil
+
+
 cdef Cplx _pair(z):
     cdef Cplx c
     c.re = z.real
     c.im = z.imag
     return c
+
+
+cdef CornerMap *_maps(lift, LiftMaps *maps) except NULL:
+    """Fill in the maps of a `geometry.lift.Lift`, and return the corners, to be freed."""
+    cdef Py_ssize_t i
+    cdef CornerMap *corners = <CornerMap *>malloc(max(len(lift.corners), 1) * sizeof(CornerMap))
+    if corners == NULL:
+        raise MemoryError
+    for i, corner in enumerate(reversed(lift.corners)):
+        corners[i].p, corners[i].q = _pair(corner.p), _pair(corner.q)
+        corners[i].P, corners[i].Q, corners[i].k = _pair(corner.P), _pair(corner.Q), corner.k
+        expand_corner(&corners[i])
+    maps.centre, maps.quarter, maps.pole = _pair(lift.centre), _pair(lift.quarter), _pair(lift.pole)
+    maps.phase, maps.n_corners, maps.corners = lift.phase, len(lift.corners), corners
+    return corners
+
+
+def halve(lift, lines, double limit):
+    """Return shifts of phi with which lines leave corners of the wall at equal angles.
+
+    Parameters
+    ----------
+    lift : `geometry.lift.Lift`.
+    lines : corner, the node ahead, the node behind, first point in the strip, shift to start from; the shift is
+        the start where none is found.
+    limit : of the shifts.
+    """
+    cdef LiftMaps maps
+    cdef LineOff one
+    cdef CornerMap *corners = _maps(lift, &maps)
+    found = []
+    try:
+        for corner, ahead, behind, w, start in lines:
+            one.corner, one.ahead, one.behind, one.w = _pair(corner), _pair(ahead), _pair(behind), _pair(w)
+            found.append(halve_corner(&maps, &one, start, limit))
+    finally:
+        free(corners)
+    return found
 
 
 def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, sums, double sharpness,
@@ -95,9 +140,9 @@ def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, 
         return True
     try:
         windows = <WindowSum *>malloc(max(len(sums), 1) * sizeof(WindowSum))
-        corners = <CornerMap *>malloc(max(len(lift.corners), 1) * sizeof(CornerMap))
+        corners = _maps(lift, &s.lift)
         scratch = <double *>malloc(8 * (m + LANES) * sizeof(double))
-        if windows == NULL or corners == NULL or scratch == NULL:
+        if windows == NULL or scratch == NULL:
             raise MemoryError
         s.n_sums = 0
         for start, count, values in sums:
@@ -113,12 +158,6 @@ def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, 
             windows[s.n_sums].m = count
             windows[s.n_sums].from_ = start
             s.n_sums += 1
-        for i, corner in enumerate(reversed(lift.corners)):
-            corners[i].p, corners[i].q = _pair(corner.p), _pair(corner.q)
-            corners[i].P, corners[i].Q, corners[i].k = _pair(corner.P), _pair(corner.Q), corner.k
-            expand_corner(&corners[i])
-        s.lift.centre, s.lift.quarter, s.lift.pole = _pair(lift.centre), _pair(lift.quarter), _pair(lift.pole)
-        s.lift.phase, s.lift.n_corners, s.lift.corners = lift.phase, len(lift.corners), corners
         s.n, s.m, s.sharpness, s.sums, s.begin, s.panels = n, m, sharpness, windows, begin, panels
         s.along, s.across, s.n_nudges = NULL, NULL, along.shape[0]
         if along.shape[0]:

@@ -7,21 +7,17 @@ node gets there at once, and dies out within a few cells.
 
 from __future__ import annotations
 
-from cmath import phase
-from math import isfinite, pi
-
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.arrays import Complexes, Floats
 from geometry.lift import Lift
+from solvers.neural._strip_rows import halve
 from solvers.neural.evaluate import StripGrid
 
 CELLS = 5.0  # reach of a nudge, in cells either way
 LARGEST = 0.4  # of a cell's width in theta: beyond it the neighbours would suffer
 SWEEPS = 3  # over the corners, which feel each other a little
-STEPS = 5  # of the secant method
-HALVED = 1e-12  # what may be left of the difference of the two angles (radians)
 
 
 def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> None:
@@ -52,12 +48,11 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
-        shift = np.array(
-            [
-                _secant(lift, wall, c, complex(w), float(s), LARGEST * step)
-                for c, w, s in zip(corners, moved, shift, strict=True)
-            ]
+        lines = (
+            (wall[c], wall[(c + 1) % n], wall[c - 1], w, s)
+            for c, w, s in zip(corners, moved, shift, strict=True)
         )
+        shift = np.array(halve(lift, lines, LARGEST * step))
     return reach, shift
 
 
@@ -69,27 +64,3 @@ def fading(eta: Floats, first: float) -> Floats:
 
 def _along(offset: NDArray[np.intp], n: int, width: float) -> Floats:
     return np.asarray(np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2)))
-
-
-def _secant(lift: Lift, wall: Complexes, c: int, w: complex, start: float, limit: float) -> float:
-    """Return the shift of phi that makes the angles at corner c equal; `start` when none is found."""
-    corner, ahead, behind = (complex(wall[k % len(wall)]) for k in (c, c + 1, c - 1))
-
-    def unequal(s: float) -> float:
-        line = lift.point(w + 1j * s) - corner
-        return _turn(behind - corner, line) - _turn(line, ahead - corner)
-
-    a, fa = start, unequal(start)
-    b = start - 0.05 * limit if fa > 0.0 else start + 0.05 * limit
-    fb = unequal(b)
-    for _ in range(STEPS):
-        if fa == fb or abs(fb) < HALVED:
-            break
-        a, b, fa = b, max(-limit, min(limit, b - fb * (b - a) / (fb - fa))), fb
-        fb = unequal(b)
-    return b if isfinite(fb) and abs(fb) <= abs(unequal(start)) else start
-
-
-def _turn(a: complex, b: complex) -> float:
-    """Return the angle from b counter-clockwise to a, in [0, 2 pi)."""
-    return phase(a / b) % (2.0 * pi)

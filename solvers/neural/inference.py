@@ -12,7 +12,7 @@ from geometry.arrays import Floats, Topology, as_planar
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
-from solvers.neural.operator import Polish
+from solvers.neural.operator import Polish, infer_strips
 from solvers.neural.operator import infer as infer_strip
 from solvers.neural.quads.encoding import KIND as QUADS
 from solvers.neural.weights import KIND, kind_of, model_path
@@ -71,12 +71,15 @@ def infer(
     return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)
 
 
-def many_of(model: str | None, device: Device | None = None) -> Topology | None:
-    """Return the topology of what `infer_many` makes grids of in one go; None if it does not."""
+def many_of(model: str | None, device: Device | None = None, polish: Polish = "auto") -> Topology | None:
+    """Return the topology of what `infer_many` makes grids of in one go; None if that has no advantage."""
     if device is not None and not _is_quad(model):
         return "o"
-    if model in (None, "base") or kind_of(model_path(model)) != QUADS:
-        return None
+    if model == "base" or (model is None and polish == "auto"):
+        return None  # no network
+    kind = KIND if model is None else kind_of(model_path(model))
+    if kind != QUADS:
+        return "o" if kind == KIND else None
     from solvers.neural.quads.model import load_quads
 
     return load_quads(model_path(model)).topology
@@ -88,7 +91,9 @@ def infer_many(
     polish: Polish = "auto",
     device: Device | None = None,
 ) -> list[Solution]:
-    """Return what `infer` does for each of the boundaries, by one pass of a quad model, or on a device.
+    """Return what `infer` does for each of the boundaries, by one pass of a network, or on a device.
+
+    Boundaries are O for the strip operator, and of the topology of a quad model.
 
     Raises
     ------
@@ -105,8 +110,11 @@ def infer_many(
         return infer_on(device, boundaries, model, polish, quads=quads)
     from solvers.neural.quads.inference import infer_quads
 
-    if model is None or many_of(model) is None:
-        raise InputError(f"model {model} makes one grid at a time", "name a quad model")
+    kind = KIND if _named(model) is None else kind_of(model_path(model))
+    if kind == KIND:
+        return infer_strips(boundaries, model, polish)
+    if kind != QUADS or model is None:
+        raise InputError(f"model {model} makes one grid at a time", "name a shipped model")
     return infer_quads(boundaries, model, polish)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.lift import SECOND_PRONG, Lift, beside, follow, lift_body, removable, trailing_corners
+from geometry.lift import SECOND_PRONG, Lift, beside, follow, lift_body, removable
 from geometry.mirror import farthest, handedness
 
 PI = float(np.pi)
@@ -66,7 +66,8 @@ def lifted(z: Tensor, far: Tensor) -> Lifted:
     hand, _ = handedness(wall, outer)
     known, _, corners = lift_body(wall, swap=hand < 0)
     turn = torch.angle((torch.roll(z, -1) - z) / (z - torch.roll(z, 1)))
-    tail, base = trailing_corners(wall, _numpy(turn))
+    tail = corners == (0,)
+    base = [] if tail else list(corners)
     centre, quarter = _slit(z, tail, base)
     zeta = _joukowski(z, centre, quarter)
     outside = _numpy(zeta)

@@ -11,6 +11,7 @@ the elliptic solver, and the solution says so.
 from __future__ import annotations
 
 import time
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Literal, NamedTuple
@@ -76,30 +77,61 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         found = solve_automatic(boundary, solve, "auto")
         note = f"no shipped model makes {boundary.topology} grids: this one is {found.method}"
         return replace(found, notes=(note, *found.notes))
+    return infer_strips([boundary], model, polish)[0]
+
+
+def infer_strips(
+    boundaries: Sequence[Boundary], model: str | None = None, polish: Polish = "auto"
+) -> list[Solution]:
+    """Return what `infer` does for each of some O boundaries, with one pass of the network for all.
+
+    Raises
+    ------
+    InputError
+        a model that does not exist or cannot be read.
+    """
     alone = model == "base" or (model is None and polish == "auto")
     network = None if alone else load_model(model)
     across()  # like the model, made once a process: neither is part of a grid's time
     begun = time.perf_counter()
-    try:
-        nodes, finite, changes, rough = _operate(boundary, network, polish)
-    except InputError as error:
-        why = f"the operator cannot take this body ({error.problem})"
-        body = _around(boundary, why, begun) if model is None and polish == "auto" else None
-        return body or _elliptic(boundary, why, begun)
+    lifted = [_lifted(boundary) for boundary in boundaries]
+    starts = iter(_starts([found for found, _ in lifted if isinstance(found, Walls)], network))
+    shared = (time.perf_counter() - begun) / max(len(boundaries), 1)
+    named = model is not None or polish != "auto"
+    return [
+        _refused(boundary, found, time.perf_counter() - shared, named=named)
+        if isinstance(found, InputError)
+        else _gridded(boundary, found, rough, next(starts), polish, network, time.perf_counter() - shared)
+        for boundary, (found, rough) in zip(boundaries, lifted, strict=True)
+    ]
+
+
+def _refused(boundary: Boundary, error: InputError, begun: float, *, named: bool) -> Solution:
+    """Return the grid of a body that the operator cannot take; `named`: model or polish were asked for."""
+    why = f"the operator cannot take this body ({error.problem})"
+    return (None if named else _around(boundary, why, begun)) or _elliptic(boundary, why, begun)
+
+
+def _gridded(
+    boundary: Boundary, found: Walls, rough: bool, start: Complexes, polish: Polish, network: Model | None,
+    begun: float,
+) -> Solution:  # fmt: skip
+    c, changes = _polished(start, polish)
     if changes and not changes[-1] < WILD:
         return _elliptic(boundary, "the operator's polish diverged", begun)
+    nodes, finite = _evaluated(boundary, found, c)
     if rough and count_folded(nodes):
         with suppress(SolverError):
-            found = _elliptic(boundary, "the operator folds cells of uneven spacing", begun)
-            if not count_folded(found.grid.nodes):
-                return found
+            other = _elliptic(boundary, "the operator folds cells of uneven spacing", begun)
+            if not count_folded(other.grid.nodes):
+                return other
     spent = time.perf_counter() - begun
-    facts = {"method": "operator", "model": network.name if network else "base", "polish": len(changes)}
-    grid = Grid(nodes, "o", boundary.parts, boundary.name, facts, finite=finite)
+    model = network.name if network else "base"
+    facts = {"method": "operator", "model": model, "polish": len(changes)}
     return Solution(
-        grid,
+        Grid(nodes, "o", boundary.parts, boundary.name, facts, finite=finite),
         "operator",
-        model=network.name if network else "base",
+        model=model,
         residual=changes[-1] if changes else None,
         cycles=len(changes),
         seconds={"grid": spent},
@@ -161,29 +193,44 @@ def _bent(found: Walls) -> bool:
     return bool(turn.max() > BENT)
 
 
-def _operate(
-    boundary: Boundary, network: Model | None, polish: Polish
-) -> tuple[Floats, bool, list[float], bool]:
-    """Return the nodes, whether they are finite, the change in each Picard step, if the wall is rough."""
-    found = walls(boundary)
-    lift, wall, far, z, corners, axis, hand = found
-    rough = _roughness(found)
-    a, b = modes(wall), modes(far)
-    c = harmonic(a, b, across().eta)
-    if network is not None:
-        c = c + network.residual(a[None], b[None], np.array([hand]))[0]
+def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:
+    """Return the walls in the strip, or why there are none, and whether the body's is rough."""
+    try:
+        found = walls(boundary)
+        return found, _roughness(found)
+    except InputError as error:
+        return error, False
+
+
+def _starts(found: Sequence[Walls], network: Model | None) -> list[Complexes]:
+    """Return where Picard's iteration starts for each of some walls: the base, and what the network adds."""
+    ends = [(modes(one.wall), modes(one.far)) for one in found]
+    added: Iterable[Complexes | float] = (0.0 for _ in found)
+    if network is not None and found:
+        a, b = (np.array(side) for side in zip(*ends, strict=True))
+        added = network.residual(a, b, np.array([one.hand for one in found]))
+    return [harmonic(a, b, across().eta) + more for (a, b), more in zip(ends, added, strict=True)]
+
+
+def _polished(c: Complexes, polish: Polish) -> tuple[Complexes, list[float]]:
+    """Return the modes after polish, and the largest change in each Picard step."""
     changes: list[float] = []
     for _ in range(AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish):
         c, change = picard(c, 1)
         changes += change
         if not change[0] < WILD or (polish == "auto" and change[0] < SETTLED):
             break
+    return c, changes
+
+
+def _evaluated(boundary: Boundary, found: Walls, c: Complexes) -> tuple[Floats, bool]:
+    """Return the nodes of a strip solution, and whether they are finite."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
-    grid = StripGrid(c, wall, far, np.linspace(0.0, 1.0, boundary.nj))
-    halve_corners(grid, lift, z, corners)
-    finite = grid.fill(lift, nodes, axis)
+    grid = StripGrid(c, found.wall, found.far, np.linspace(0.0, 1.0, boundary.nj))
+    halve_corners(grid, found.lift, found.z, found.corners)
+    finite = grid.fill(found.lift, nodes, found.axis)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    return nodes, finite, changes, rough
+    return nodes, finite
 
 
 def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:

@@ -117,8 +117,12 @@ def decay(k: Floats, T: float, eta: Floats) -> tuple[Floats, Floats]:
 def harmonic(wall: Complexes, far: Complexes, eta: Floats) -> Complexes:
     """Return modes (2 MODES + 1, len(eta)) of the harmonic function with these modes on the two walls."""
     T = float((far[0] - wall[0]).real)
-    near, away = decay(wavenumbers((len(wall) - 1) // 2), T, eta)
-    return wall[:, None] * near + far[:, None] * away
+    count = (len(wall) - 1) // 2
+    near, away = decay(np.arange(count + 1.0), T, eta)
+    found = np.empty((len(wall), len(eta)), complex)  # k = 0, 1 .. count and -count .. -1 decay alike
+    found[: count + 1] = wall[: count + 1, None] * near + far[: count + 1, None] * away
+    found[count + 1 :] = wall[count + 1 :, None] * near[:0:-1] + far[count + 1 :, None] * away[:0:-1]
+    return found
 
 
 def to_columns(c: Complexes, axis: int = 0) -> Complexes:

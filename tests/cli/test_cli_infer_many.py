@@ -1,4 +1,4 @@
-"""`meshonet infer` on many four-sided domains with a quad model: solved together, told of one by one."""
+"""`meshonet infer` on many boundaries with a network: solved together, told of one by one."""
 
 from __future__ import annotations
 
@@ -63,3 +63,14 @@ def test_only_members_without_a_file_are_solved(
     Path("3.vts").unlink()
     meshonet(*words)
     assert solved == [5, 2]
+
+
+def test_airfoils_go_through_the_network_together(meshonet: Meshonet) -> None:
+    words = ("--family", "airfoil", "--count", "3", "--res", "41x21", "-o", "foils.h5")
+    assert meshonet("sample-boundary", *words).code == 0
+    told = meshonet("infer", "foils.h5", "--polish", "off", "-o", "g.h5", "--json").objects
+    assert [(one["model"], one["folded"]) for one in told] == 3 * [("airfoil-o", 0)]
+    assert meshonet("infer", "foils.h5", "--polish", "off", "--jobs", "2", "-o", "apart.h5").code == 0
+    for one, other in zip(read_grids("g.h5"), read_grids("apart.h5"), strict=True):
+        assert one.name == other.name
+        np.testing.assert_allclose(one.nodes, other.nodes, rtol=0, atol=1e-11)

@@ -19,7 +19,7 @@ from geometry.quality import count_folded, measure
 from geometry.sampling import Sampling
 from geometry.topology import o_boundary
 from solvers.elliptic.solve import solve
-from solvers.neural.operator import infer
+from solvers.neural.operator import Polish, infer, infer_strips
 
 SECTIONS = ("0012", "0012-sharp", "4412", "23012", "6424-sharp")
 
@@ -200,3 +200,19 @@ def test_an_unknown_model_is_refused_with_those_that_exist() -> None:
         InputError, match=r"no model 'nonesuch'; use a \.safetensors file or one of: base, airfoil-o"
     ):
         infer(boundary("0012", 20, 10), model="nonesuch")
+
+
+@pytest.mark.parametrize(("model", "polish"), [(None, "auto"), (None, "off"), ("airfoil-o", 1)])
+def test_many_bodies_get_the_grids_they_get_alone(model: str | None, polish: Polish) -> None:
+    bodies = [boundary(designation, 65, 41) for designation in ("0012", "4415", "23012-sharp")]
+    bodies.insert(1, boundary("2412", 52, 33))
+    bodies.insert(2, family("hole").boundary(0.3, 41, 31))  # refused: it stands between the others
+    for edges, one in zip(bodies, infer_strips(bodies, model, polish), strict=True):
+        alone = infer(edges, model, polish)
+        assert (one.method, one.model, one.cycles) == (alone.method, alone.model, alone.cycles)
+        assert one.notes == alone.notes
+        np.testing.assert_allclose(one.grid.nodes, alone.grid.nodes, rtol=0, atol=2e-12)
+
+
+def test_no_bodies_get_no_grids() -> None:
+    assert infer_strips([], "airfoil-o") == []
