@@ -10,6 +10,7 @@ than the others when the count of cells is odd, so every level carries its own n
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +24,7 @@ class Direction:
 
     Examples
     --------
-    >>> Direction(np.arange(8.0), periodic=False).coarse().positions
+    >>> Direction(np.arange(8.0), periodic=False).coarse.positions
     array([0., 2., 4., 6., 7.])
     """
 
@@ -35,38 +36,43 @@ class Direction:
         """Cells along the direction."""
         return len(self.positions) - 1
 
+    @cached_property
     def kept(self) -> NDArray[np.intp]:
-        """Return the indices of the nodes that the next coarser level keeps."""
+        """Indices of the nodes that the next coarser level keeps."""
         return np.minimum(2 * np.arange((self.cells + 1) // 2 + 1), self.cells)
 
+    @cached_property
     def coarse(self) -> Direction:
-        """Return the next coarser direction."""
-        return Direction(self.positions[self.kept()], self.periodic)
+        """The next coarser direction."""
+        return Direction(self.positions[self.kept], self.periodic)
 
+    @cached_property
     def differences(self) -> tuple[Floats, Floats, Floats]:
-        """Return the weights (forward, backward, centred) at each node, (n,) each.
+        """Weights (forward, backward, centred) at each node, (n,) each.
 
         With steps h₋, h₊ around node k: x″ = 2/(h₋+h₊) [(x₊-x)/h₊ + (x₋-x)/h₋] and x′ = (x₊-x₋)/(h₋+h₊).
         """
-        before, after = self._steps()
+        before, after = self._steps
         both = before + after
         return 2.0 / (both * after), 2.0 / (both * before), 1.0 / both
 
+    @cached_property
     def reach(self) -> Floats:
-        """Return the longer of the two steps at each node, (n,)."""
-        return np.maximum(*self._steps())
+        """The longer of the two steps at each node, (n,)."""
+        return np.maximum(*self._steps)
 
+    @cached_property
     def transfer(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return the weights (right (n,); before, at, after (coarse n,)) of interpolation and restriction.
+        """Weights (right (n,); before, at, after (coarse n,)) of interpolation and restriction.
 
         Interpolation is linear; restriction is its transpose, scaled by the lengths that nodes stand for,
         so that a constant residual stays what it is.
         """
-        before, after = self._steps()
+        before, after = self._steps
         length = (before + after) / 2
-        coarse_before, coarse_after = self.coarse()._steps()
+        coarse_before, coarse_after = self.coarse._steps
         share = 2.0 / (coarse_before + coarse_after)
-        kept, n = self.kept(), self.cells
+        kept, n = self.kept, self.cells
         dropped = np.ones(n + 1, dtype=bool)
         dropped[kept] = False
         right = np.where(dropped, before / (before + after), 0.0)
@@ -78,8 +84,15 @@ class Direction:
             to_west[0] = to_east[-1] = 0.0
         return right, to_west, length[kept] * share, to_east
 
+    @cached_property
     def _steps(self) -> tuple[Floats, Floats]:
-        """Return the steps before and after each node; at the ends, around the seam or mirrored."""
+        """Steps before and after each node; at the ends, around the seam or mirrored."""
         h = np.diff(self.positions)
         first, last = (h[-1], h[0]) if self.periodic else (h[0], h[-1])
         return np.concatenate([[first], h]), np.concatenate([h, [last]])
+
+
+@lru_cache(maxsize=16)
+def uniform(n: int, periodic: bool) -> Direction:
+    """Return the direction of n nodes at equal steps; solves of equal counts share its weights."""
+    return Direction(np.arange(float(n)), periodic)

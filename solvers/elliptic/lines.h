@@ -5,7 +5,7 @@
 #include "stencil.h"
 #include <string.h>
 
-enum { LANES = 8, BLOCK = 128 };
+enum { LANES = 8, BLOCK = 64, AHEAD = 8 }; /* lines along eta, lines along xi that advance together; rows */
 
 /* ---- eta lines: i fixed, unknowns along j; neighbouring lines of one colour are independent ---- */
 
@@ -156,6 +156,21 @@ MESHONET_INLINE XiRow xi_row(const Level *g, const Rows *r, ptrdiff_t i, ptrdiff
     return t;
 }
 
+/* Ask for row i of the nodes of a block before it is needed: it is on a page of its own, and the processor cannot know
+   which comes next. */
+MESHONET_INLINE void expect_row(const Level *g, ptrdiff_t i, ptrdiff_t j0, int n)
+{
+#if defined(__GNUC__)
+    if (i < 0 || i > g->mi)
+        return;
+    const double *x = g->x + i * (g->mj + 1) + j0, *y = g->y + i * (g->mj + 1) + j0;
+    for (int k = 0; k < 2 * n; k += 8) {
+        __builtin_prefetch(x + k);
+        __builtin_prefetch(y + k);
+    }
+#endif
+}
+
 /* Fixed ends: lines j0, j0 + 2, ... (n of them) between rows 0 and mi. */
 MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int mode)
 {
@@ -168,6 +183,7 @@ MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int mod
         const Rows r = rows_at(g, i);
         double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
         const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
+        expect_row(g, i + AHEAD, j0, n);
         if (mode & CONTROLLED)
             control_row(g, i, j0, 2, n, phi, psi);
         MESHONET_INDEPENDENT
@@ -184,6 +200,7 @@ MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int mod
     for (int k = 0; k < n; k++)
         ex[k] = g->x[mi * ld + j0 + 2 * k], ey[k] = g->y[mi * ld + j0 + 2 * k];
     for (ptrdiff_t i = mi - 1; i > 0; i--) {
+        expect_row(g, i - AHEAD, j0, n);
         const double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
         double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
         for (int k = 0; k < n; k++) {
@@ -216,6 +233,7 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
         double *restrict bp = p + i * BLOCK;
         const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
         const double *restrict bp1 = bp - BLOCK;
+        expect_row(g, i + AHEAD, j0, n);
         if (mode & CONTROLLED)
             control_row(g, i, j0, 2, n, phi, psi);
         MESHONET_INDEPENDENT
@@ -249,6 +267,7 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
         g->y[j0 + 2 * k] = g->y[mi * ld + j0 + 2 * k] = y0[k];
     }
     for (ptrdiff_t i = 1; i < mi; i++) {
+        expect_row(g, i + AHEAD, j0, n);
         const double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
         double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
         for (int k = 0; k < n; k++) {

@@ -16,7 +16,7 @@ import numpy as np
 
 from geometry.arrays import Floats, planar_nodes
 from solvers.elliptic._multigrid import Level, scratch_size
-from solvers.elliptic.coarsening import Direction
+from solvers.elliptic.coarsening import Direction, uniform
 from solvers.elliptic.control import Controls
 from solvers.elliptic.patches import Patch, patches, reentrant
 from solvers.tfi import Four, interpolate, parameters
@@ -65,15 +65,15 @@ class Multigrid:
         self._patches: list[list[Patch]] = []
         corners = [] if periodic else reentrant(edges)
         along = parameters(edges, "arclength")
-        xi = Direction(np.arange(float(nodes.shape[0])), periodic)
-        eta = Direction(np.arange(float(nodes.shape[1])), False)
+        xi = uniform(nodes.shape[0], periodic)
+        eta = uniform(nodes.shape[1], False)
         scratch = np.empty(scratch_size(xi.cells, eta.cells))
         while True:
             if self.levels:
                 nodes = planar_nodes(xi.cells + 1, eta.cells + 1)
             planes = nodes[..., 0], nodes[..., 1]
             coarse = bool(self.levels)
-            level = Level(*planes, xi.differences(), eta.differences(), periodic, scratch, coarse)
+            level = Level(*planes, xi.differences, eta.differences, periodic, scratch, coarse)
             self.levels.append(level)
             self._patches.append(patches(level, xi, eta, corners, scratch))
             self._edges.append(edges)
@@ -81,9 +81,9 @@ class Multigrid:
             self._directions.append((xi, eta))
             if min(xi.cells, eta.cells) <= max(self.settings.coarsest, 7):
                 break
-            level.transfer(xi.transfer(), eta.transfer())
+            level.transfer(xi.transfer, eta.transfer)
             edges, along = _thinned(edges, xi, eta), _thinned(along, xi, eta)
-            xi, eta = xi.coarse(), eta.coarse()
+            xi, eta = xi.coarse, eta.coarse
         if controls is not None:
             self.control(controls)
 
@@ -94,9 +94,9 @@ class Multigrid:
         for k, (level, (xi, eta)) in enumerate(zip(self.levels, self._directions, strict=True)):
             if k > 0:
                 finer = self._directions[k - 1]
-                i, j = finer[0].kept(), finer[1].kept()
+                i, j = finer[0].kept, finer[1].kept
                 phi, psi = phi.kept(i, j), psi.kept(i, j)
-            level.control((phi.along, phi.across), (psi.along, psi.across), xi.reach(), eta.reach())
+            level.control((phi.along, phi.across), (psi.along, psi.across), xi.reach, eta.reach)
 
     def interpolate_edges(self, k: int) -> None:
         """Fill level `k` with the transfinite interpolation of its edges."""
@@ -113,7 +113,7 @@ class Multigrid:
         last = len(self.levels) - 1
         self.interpolate_edges(last)
         start = self.residual(last)
-        self._relax_coarsest(False, 1e-8, 100)
+        self._relax_coarsest(False, 1e-4, 100)
         for k in range(last - 1, -1, -1):
             fine, coarse = self.levels[k], self.levels[k + 1]
             interpolate(coarse.x0, coarse.y0, self._edges[k + 1], self._along[k + 1])
@@ -165,5 +165,5 @@ class Multigrid:
 def _thinned(four: Four, xi: Direction, eta: Direction) -> Four:
     """Return what the next coarser level keeps of (south, north, west, east)."""
     south, north, west, east = four
-    i, j = xi.kept(), eta.kept()
+    i, j = xi.kept, eta.kept
     return south[i], north[i], west[j], east[j]

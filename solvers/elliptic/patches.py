@@ -61,7 +61,7 @@ class Patch:
 
 def _part(direction: Direction, nodes: slice) -> tuple[Floats, Floats, Floats]:
     """Return the weights of the differences at some `nodes` of `direction`."""
-    forward, backward, centred = (weights[nodes].copy() for weights in direction.differences())
+    forward, backward, centred = (weights[nodes].copy() for weights in direction.differences)
     return forward, backward, centred
 
 

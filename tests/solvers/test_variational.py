@@ -115,7 +115,7 @@ def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.
 
 
 def test_of_several_minima_of_a_hard_domain_the_better_one_counts() -> None:
-    boundary = random_quad(22, 17, 17)
+    boundary = random_quad(165, 17, 17)
     assert boundary is not None
     start = winslow_start(boundary)
     assert folded(start) > 0
