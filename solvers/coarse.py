@@ -43,8 +43,8 @@ LEAST = 9
 REACH = 3.0
 """Coarse cells to each side of a kink, and inwards, that are relaxed at full resolution.
 
-Half as many where that is more than `NEAR` fine cells and Winslow's equations were solved: what the sweeps change is
-nearer to the kink, and the largest angles are the same to a tenth of a degree.
+Half as many where that is more than `NEAR` fine cells and Winslow's equations were solved: what the
+sweeps change is nearer to the kink, and the largest angles are the same to a tenth of a degree.
 """
 
 NEAR = 40
