@@ -40,5 +40,5 @@ def planar_nodes(ni: int, nj: int) -> Floats:
 
 def as_planar(nodes: Floats) -> Floats:
     """Return `nodes` (ni, nj, 2) as float64 in planar layout, copied only when it is not so already."""
-    planes = np.ascontiguousarray(np.moveaxis(np.asarray(nodes, dtype=np.float64), -1, 0))
-    return np.moveaxis(planes, 0, -1)
+    planes = np.ascontiguousarray(np.asarray(nodes, dtype=np.float64).transpose(2, 0, 1))
+    return planes.transpose(1, 2, 0)

@@ -159,3 +159,14 @@ def test_domains_far_from_any_in_training_give_finite_grids(model: str) -> None:
         segment((0, 0), (0, 1e-3), 30), segment((1e3, 0), (1e3, 1e-3), 30),
     )  # fmt: skip
     assert np.isfinite(nodes(sliver, model)).all()
+
+
+@pytest.mark.parametrize("polish", [0, 2])
+def test_threads_change_nothing(model: str, polish: int) -> None:
+    sizes = [(33, 33), (41, 37), (33, 33), (25, 30)]
+    boundaries = [arch(ni, nj) for ni, nj in sizes] + [hexagon(ni, nj) for ni, nj in sizes]
+    alone = infer_quads(boundaries, model, polish)
+    together = infer_quads(boundaries, model, polish, threads=3)
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(one.grid.nodes, other.grid.nodes)
+        assert one.grid.name == other.grid.name

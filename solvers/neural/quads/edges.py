@@ -76,7 +76,8 @@ def rims(planes: Floats) -> Sides:
 def _fraction(side: Floats) -> Floats:
     steps = np.diff(side)
     along = np.zeros((len(side), side.shape[-1]))
-    np.cumsum(np.hypot(steps[:, 0], steps[:, 1]), axis=-1, out=along[:, 1:])
+    steps *= steps
+    np.cumsum(np.sqrt(steps[:, 0] + steps[:, 1]), axis=-1, out=along[:, 1:])
     along /= along[:, -1:]
     return along
 

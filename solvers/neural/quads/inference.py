@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import chain
 from typing import TypeAlias
 
 import numpy as np
@@ -51,6 +53,7 @@ def infer_quads(
     model: str,
     polish: Polish = "auto",
     dtype: str = "float64",
+    threads: int = 1,
 ) -> list[Solution]:
     """Return a grid inside each of the boundaries by a quad model.
 
@@ -64,6 +67,7 @@ def infer_quads(
         a number, ``off`` or ``auto``.
     dtype : arithmetic of the network: ``float64``, or ``float32``, with which grids differ by 1e-6 of
         their size and invariances hold to that.
+    threads : batches at work at a time. Grids do not depend on it.
 
     Returns
     -------
@@ -81,22 +85,40 @@ def infer_quads(
         if boundary.topology != held.topology:
             told = f"model {model} makes {held.topology} grids, and this boundary is {boundary.topology}"
             raise InputError(told, "use another model", source=boundary.name)
-    answers = ANSWERS if held.topology == "quad" else ANSWERS_AROUND
-    head = answers.index(model) if model in answers else len(answers) - 1
+    known = ANSWERS if held.topology == "quad" else ANSWERS_AROUND
+    head = known.index(model) if model in known else len(known) - 1
     held.network(dtype)  # made once a process: no part of a grid's time
-    name = model if model in answers else held.name
+    name = model if model in known else held.name
     steps = AUTO[head] if polish == "auto" else 0 if polish == "off" else polish
-    found: dict[int, Solution] = {}
-    for group in in_batches(boundaries):
-        begun = time.perf_counter()
-        members = [boundaries[k] for k in group]
-        planes, taken = _polished(members, held, head, steps, dtype)
-        spent = (time.perf_counter() - begun) / len(group)
-        for k, boundary, nodes, cycles in zip(group, members, planes, taken, strict=True):
-            facts = {"method": "operator", "model": name, "polish": cycles}
-            grid = Grid(np.moveaxis(nodes, 0, -1), held.topology, boundary.parts, boundary.name, facts)
-            found[k] = Solution(grid, "operator", model=name, cycles=cycles, seconds={"grid": spent})
+
+    def solve(group: Sequence[int]) -> list[Solution]:
+        return _solved([boundaries[k] for k in group], held, head, steps, dtype, name)
+
+    groups = list(in_batches(boundaries))
+    if threads == 1:
+        answers = [solve(group) for group in groups]
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            answers = list(pool.map(solve, groups))
+    found = dict(zip(chain(*groups), chain(*answers), strict=True))
     return [found[k] for k in range(len(boundaries))]
+
+
+def _solved(
+    boundaries: Sequence[Boundary], model: QuadModel, head: int, steps: int, dtype: str, name: str
+) -> list[Solution]:
+    """Return the solutions of boundaries with equal counts, made together."""
+    begun = time.perf_counter()
+    planes, taken = _polished(boundaries, model, head, steps, dtype)
+    spent = (time.perf_counter() - begun) / len(boundaries)
+    with np.errstate(invalid="ignore"):  # infinity less infinity
+        finite = bool(np.isfinite(planes.sum()))
+    solutions = []
+    for boundary, nodes, cycles in zip(boundaries, planes.transpose(0, 2, 3, 1), taken, strict=True):
+        facts = {"method": "operator", "model": name, "polish": cycles}
+        grid = Grid(nodes, model.topology, boundary.parts, boundary.name, facts, finite=finite)
+        solutions.append(Solution(grid, "operator", model=name, cycles=cycles, seconds={"grid": spent}))
+    return solutions
 
 
 def _polished(

@@ -16,7 +16,6 @@ Ronneberger et al., U-Net, MICCAI 2015.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import pairwise, product
@@ -115,7 +114,7 @@ class Network:
                 if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
                     kernel = kernels.at_points(kernel)
                 self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
-        self._made = threading.local()
+        self._idle: dict[tuple[int, int], list[Program]] = {}  # of no thread at the time
         self.heads = len(exact["project"])
 
     def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
@@ -126,22 +125,24 @@ class Network:
         batch, m, n = seen.shape[:3]
         seen = np.ascontiguousarray(seen, self.dtype)
         answer = np.empty((batch, m, n, 2 * self.heads), self.dtype)
-        program = self._program(m, n)
+        idle = self._idle.setdefault((m, n), [])
+        try:
+            program = idle.pop()
+        except IndexError:
+            program = self._program(m, n)
         for k in range(0, batch, CHUNK):
             program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
+        idle.append(program)
         pairs = answer.reshape(batch, m, n, self.heads, 2)
         pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
         moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
         return np.asarray(moved.view(np.complex128)[..., 0])
 
     def _program(self, m: int, n: int) -> Program:
-        """Return the layers for `CHUNK` domains or fewer; every thread has its own."""
-        made: dict[Any, Program] = self._made.__dict__
-        if (m, n) not in made:
-            work = _Work(self._layers, self.around)
-            self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
-            made[m, n] = work.program
-        return made[m, n]
+        """Return the layers for `CHUNK` domains or fewer, on arrays that no other program has."""
+        work = _Work(self._layers, self.around)
+        self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
+        return work.program
 
     def _record(self, work: _Work, h: Reals) -> None:
         h = work.layer("lift", h)
