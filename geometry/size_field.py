@@ -40,14 +40,15 @@ def arcs_by_curvature(
     chord: float,
     steps: tuple[float, float],
     exact: tuple[bool, bool],
+    hurried: bool = True,
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge round the nose to the other.
 
     The size field h is the smooth least of four terms, 1/h⁴ = Σ 1/hₖ⁴: a step at the trailing and one at the
     leading edge that grow with the distance from it, `TURN` over the curvature limited to the same growth,
     and a largest cell chosen so that the integral of ds/h is the number of cells. With too few cells for
-    the first three, curvature and the leading edge get less, and the growth is up to `HURRY` times as fast;
-    where that is not enough, all are scaled up together.
+    the first three, curvature and the leading edge get less, and the growth is up to `HURRY` times as fast
+    where it is `hurried`; where that is not enough, all are scaled up together.
 
     Parameters
     ----------
@@ -57,11 +58,13 @@ def arcs_by_curvature(
     chord : unit of the averaging window.
     steps : cells at the trailing and at the leading edge.
     exact : whether these are to be met, to 0.5 % where the field can be bent so far.
+    hurried : cells may grow faster where nodes are few, as in C grids, whose wake takes half of them.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
     size = TURN / _bend(curve, s, chord)
-    known = _affordable(cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer))
+    hurry = HURRY if hurried else 1.0
+    known = _affordable(cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer, hurry))
     mend, places = np.zeros(2), np.arange(cells + 1.0)
     away = np.minimum(s - lower, upper - s), np.abs(s - nose)
     for _ in range(12):
@@ -157,14 +160,16 @@ def _known(
     steps: tuple[float, float],
     ramp: bool,
     fewer: float,
+    hurry: float,
 ) -> Floats:
     """Return the sum of 1/h⁴ over the terms of both edges and of curvature, which alone gives `size`.
 
-    `fewer` is the factor by which size and the leading edge's step are larger. With `ramp`, growth sets in
-    slowly behind the trailing edge: the lines that leave there converge, and what is beside them does not.
+    `fewer` is the factor by which size and the leading edge's step are larger, `hurry` that by which growth
+    is faster at the most before they are much larger. With `ramp`, growth sets in slowly behind the trailing
+    edge: the lines that leave there converge, and what is beside them does not.
     """
     lower, nose, upper = stations
-    growth = GROWTH * max(min(fewer, HURRY), fewer / _SCARCE)
+    growth = GROWTH * max(min(fewer, hurry), fewer / _SCARCE)
     away = np.minimum(s - lower, upper - s)
     size = fewer * size
     near = away < _EDGE * (upper - lower)

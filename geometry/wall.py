@@ -29,6 +29,9 @@ from geometry.stretch import on_corners
 _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
 grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
+_EDGE_PART = 0.24
+"""The same cell in mean cells where spacing follows curvature, the law of marched grids: lines beside smaller
+ones open within fewer rows."""
 _BASE_GROWTH = 1.15
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
@@ -119,6 +122,7 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
             chord=stations.chord,
             steps=(plan.te, plan.le),
             exact=(sampling.te_spacing is not None or plan.half > 0, sampling.le_spacing is not None),
+            hurried=sampling.te_spacing is not None,
         )
     else:
         q = np.arange(1, math.ceil(plan.cells)) / plan.cells
@@ -185,7 +189,8 @@ def _natural(stations: Stations, plan: Plan, sampling: Sampling) -> Plan:
     if sampling.spacing == "cosine":
         le = side * math.sin(0.5 * math.pi / n) ** 2
         return replace(plan, te=le if not stations.half_base else mean * min(0.5, _EDGE_STEP / n), le=le)
-    return replace(plan, te=mean * min(0.5, _EDGE_STEP / n), le=min(max(le, 0.05 * mean), 0.7 * mean))
+    edge = _EDGE_PART if sampling.spacing == "curvature" else min(0.5, _EDGE_STEP / n)
+    return replace(plan, te=mean * edge, le=min(max(le, 0.05 * mean), 0.7 * mean))
 
 
 def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:

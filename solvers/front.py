@@ -16,6 +16,7 @@ import numpy as np
 from geometry.arrays import Floats, planar_nodes
 from geometry.boundary import Boundary, polygon_area
 from geometry.parts import wake_nodes
+from solvers.schedule import Edge, sharpest_edge
 
 _OPENING = 5.0
 _NEAR = 0.3
@@ -41,12 +42,16 @@ class Front:
     widening: Floats | None
     """(n,) how much larger than at the wall first steps are, for an open front."""
 
+    edge: Edge | None
+    """The sharpest corner of a closed front."""
+
     def __init__(self, boundary: Boundary) -> None:
         self._south = boundary.south
         self._closed = boundary.topology == "o"
         self.ends = self.widening = None
-        self.slender = 0.0
+        self.slender, self.edge = 0.0, None
         if self._closed:
+            self.edge = sharpest_edge(boundary.south[:-1])
             self.inner, self.outer = _radius(boundary.south[:-1]), _radius(boundary.north[:-1])
             perimeter = float(np.hypot(*np.diff(boundary.south, axis=0).T).sum())
             self.slender = 1.0 - 2.0 * math.pi * self.inner / perimeter

@@ -22,22 +22,20 @@ from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
-from geometry.growth import cells_for_growth, growing_steps, growth_ratio
+from geometry.growth import cells_for_growth, growth_ratio
 from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from solvers._hyperbolic import march, scratch_size
 from solvers._redistribute import redistribute
 from solvers.front import Front
+from solvers.reach import RISING, distance_to_march
+from solvers.schedule import level_steps
 from solvers.solution import Solution
 
 _FADE = 12.0
 """Rows over which the correction of the first cell fades out."""
 _REACHED = 0.025
 """How near, as a part, the far field must come to the distance asked for."""
-_CLOSED_AHEAD, _OPEN_BEHIND = 3.4, 0.26
-"""By how much, as a part, levels around slender bodies come out farther than around a circle, over
-slenderness and the square of the rate at which steps grow; and levels of C grids less far than two straight
-sides and half a circle, over that rate. Measured on airfoils, where it leaves half a percent."""
 _MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
 
@@ -65,7 +63,7 @@ class MarchSettings:
 
 
 ATTEMPTS = (
-    MarchSettings(0.7, 0.5, 20, 0.1, bend=0.03),
+    MarchSettings(0.6, 0.4, 20, 0.1, 0.11, 0.02),
     MarchSettings(0.5, 0.5, 10),
     MarchSettings(0.3, 0.0, 4),
     MarchSettings(1.0, 0.5, 20),
@@ -73,6 +71,8 @@ ATTEMPTS = (
     MarchSettings(2.0, 2.0, 40),
 )
 """Settings tried in turn while cells are folded; the third suits first cells nearly as high as long."""
+SHARP_ATTEMPTS = (replace(ATTEMPTS[0], tolerated=0.19), *ATTEMPTS[1:])
+"""The same around a sharp edge: with less tolerance, more of the lines beside it would lean."""
 OPEN_ATTEMPTS = (
     MarchSettings(0.5, 0.5, 20, 0.02, 0.13, 0.02),
     MarchSettings(0.5, 0.5, 4, 0.15, bend=0.05),
@@ -120,8 +120,9 @@ def hyperbolic(
     front = Front(boundary)
     cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows, constant)
     best, least = None, 0
-    for settings in OPEN_ATTEMPTS if boundary.topology == "c" else ATTEMPTS:
-        nodes = _marched(front, cells, first, settings, constant)
+    closed = SHARP_ATTEMPTS if front.edge else ATTEMPTS
+    for settings in OPEN_ATTEMPTS if boundary.topology == "c" else closed:
+        nodes = _marched(front, cells, first, settings, constant, even=growth is None)
         if nodes is None:
             continue
         folded = count_folded(nodes)
@@ -174,8 +175,12 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
     return cells
 
 
-def _marched(front: Front, cells: int, first: float, settings: MarchSettings, constant: int) -> Floats | None:
+def _marched(
+    front: Front, cells: int, first: float, settings: MarchSettings, constant: int, *, even: bool
+) -> Floats | None:
     """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
+
+    Cells grow evenly along all lines (`solvers.schedule`), or (not `even`) steps by one ratio.
 
     Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
     circle of the body's size, and is corrected by marching again.
@@ -193,11 +198,12 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings, co
         1.0 + settings.theta,
         0.16,
         settings.sweeps,
-        round(0.75 * cells),
+        round(RISING * cells),
     )
-    distance = _distance_to_march(front, first, cells, settings, constant)
+    edge = front.edge if even else None
+    distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
-        steps = growing_steps(first, distance, cells, constant)
+        steps = level_steps(first, distance, cells, constant, edge)
         march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
         reached = front.reach(levels)
         if not math.isfinite(reached):
@@ -210,35 +216,6 @@ def _marched(front: Front, cells: int, first: float, settings: MarchSettings, co
     _equalise(nodes, min(constant, cells - 1), front.heights(1.0))
     front.close(nodes)
     return nodes if np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()) else None
-
-
-def _distance_to_march(
-    front: Front, first: float, cells: int, settings: MarchSettings, constant: int
-) -> float:
-    """Return the sum of the steps that lead from the radius of the body to that of the far field.
-
-    Around a circle of n nodes a step s leads from r to r + s (1 - e)/(1 + f s/r + 2 e s/r): f is the weight
-    of the flux along a level, e = 2π ε/n + b h/r the dissipation. Along the straight sides of a C it leads to
-    r + s. Airfoils are no circles: `_CLOSED_AHEAD`, `_OPEN_BEHIND`.
-    """
-    distance = front.outer - front.inner
-    around = 2.0 * math.pi * settings.dissipation / len(front.start())
-    for _ in range(8):
-        r, height = front.inner, 0.0
-        steps = growing_steps(first, distance, cells, constant).tolist()
-        for step in steps:
-            height += step
-            slow = min(around + settings.bend * height / r, 0.1)
-            part = step * (1.0 - slow) / (1.0 + (1.0 + settings.theta + 2.0 * slow) * step / r)
-            curved = front.curved(r)
-            r += curved * part + (1.0 - curved) * step
-        if abs(r - front.outer) < 3e-3 * front.outer:
-            break
-        distance *= (front.outer - front.inner) / (r - front.inner)
-    rate = math.log(steps[-1] / steps[-2]) if cells > 1 else 0.0
-    if front.ends is not None:
-        return distance * (1.0 + _OPEN_BEHIND * rate)
-    return distance * (1.0 - min(_CLOSED_AHEAD * front.slender * rate**2, 0.1))
 
 
 def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
