@@ -110,8 +110,7 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int]]:
     for block in blocks:
         starts.append(len(rows))
         rows += block
-    rows, starts = _without_heading(rows, starts, usual)
-    return _without_mark(rows), starts
+    return _without_heading(_without_mark(rows), starts, usual)
 
 
 def _far_or_told(blocks: list[list[Line]], lines: list[Line]) -> bool:
@@ -124,9 +123,13 @@ def _far_or_told(blocks: list[list[Line]], lines: list[Line]) -> bool:
 
 
 def _without_mark(rows: list[Line]) -> list[Line]:
-    """Return rows without one behind the data such as 999 999: a number twice, far outside the rest."""
-    values = np.array([line.values[:2] for line in rows])
-    marked = len(rows) > 4 and values[-1, 0] == values[-1, 1] and _outside(values[-1], values[:-1])
+    """Return rows without one behind the data such as 999 999: a number twice, outside all but headings."""
+    if len(rows) < 8:
+        return rows
+    points, (x, y) = np.array([line.values[:2] for line in rows[3:-1]]), rows[-1].values[:2]
+    low, high = points.min(axis=0), points.max(axis=0)
+    apart = 0.5 * float((high - low).max())
+    marked = x == y and bool((x < low - apart).any() or (x > high + apart).any())
     return rows[:-1] if marked else rows
 
 
@@ -232,7 +235,8 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
         )
         k = int(np.argmax(detour))
         others = np.delete(points, k, axis=0)
-        if detour[k] > 0.3 * float(np.hypot(*np.ptp(others, axis=0))):
+        most = 0.6 if k in (0, n - 1) else 0.3  # an edge may lie apart from the last points of both surfaces
+        if detour[k] > most * float(np.hypot(*np.ptp(others, axis=0))):
             x, y = points[k]
             raise InputError(
                 f"({x:g}, {y:g}) lies far from the points before and after it",

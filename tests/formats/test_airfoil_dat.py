@@ -123,6 +123,27 @@ def test_prose_before_and_behind_does_not_matter(head, tail):
     same(head + lines(SELIG) + tail, HEADS[head])
 
 
+@pytest.mark.parametrize("order", ["selig", "lednicer", "labels"])
+@pytest.mark.parametrize("unit", [1.0, 100.0, 1000.0])
+def test_an_end_mark_is_no_point(order, unit):
+    upper, lower = unit * UPPER, unit * LOWER
+    data = {
+        "selig": lines(unit * SELIG),
+        "lednicer": f"15 15\n\n{lines(upper)}\n{lines(lower)}",
+        "labels": f"Upper\n{lines(upper)}Lower\n{lines(lower)}",
+    }[order]
+    got = parse("TEST\n" + data + "999 999\n", "a.dat")
+    np.testing.assert_allclose(got.curve.points, unit * EXPECTED.curve.points, atol=1e-9)
+
+
+def test_an_edge_far_behind_the_last_points_is_no_mistake():
+    few, thin = (X < 0.85) | (X == 1), np.array([1.0, 0.1])
+    upper, lower = thin * UPPER[few], thin * LOWER[few][:-1]
+    got = parse(f"TEST\n{len(upper)} {len(lower)}\n{lines(upper)}{lines(lower)}", "a.dat")
+    np.testing.assert_allclose(got.curve.points[0], [1.0, 0.0], atol=1e-12)
+    assert len(got.curve.points) == len(upper) + len(lower) - 1
+
+
 def test_units_and_position_stay():
     moved = 100 * SELIG @ np.array([[0.96, 0.28], [-0.28, 0.96]]) + [-7, 3]
     got = parse("in percent\n" + lines(moved, "{:.4f} {:.4f}"), "a.dat")
