@@ -41,7 +41,6 @@ class Front:
     """(2, 2) unit directions in which the ends of an open front move."""
     widening: Floats | None
     """(n,) how much larger than at the wall first steps are, for an open front."""
-
     edge: Edge | None
     """The sharpest corner of a closed front."""
 

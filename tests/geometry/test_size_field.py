@@ -34,6 +34,22 @@ def test_with_few_cells_they_grow_faster_up_to_a_limit_and_the_nose_gets_fewer()
     assert np.exp(GROWTH) * 1.02 < max(ratio.max(), 1 / ratio.min()) < np.exp(HURRY * GROWTH) * 1.01
 
 
+def test_unhurried_cells_keep_their_rate_and_the_nose_gets_fewer_still():
+    unhurried = arcs_by_curvature(
+        ELLIPSE,
+        (0.0, HALF, ELLIPSE.length),
+        140,
+        chord=1.0,
+        steps=(1e-3, 1e-3),
+        exact=(False, False),
+        hurried=False,
+    )
+    width, hurried = np.diff(unhurried), np.diff(arcs(140))
+    ratio = width[1:] / width[:-1]
+    assert max(ratio.max(), 1 / ratio.min()) < np.exp(GROWTH) * 1.01
+    assert width[70] > 1.05 * hurried[70]
+
+
 def test_a_step_asked_for_at_the_trailing_edge_is_not_left_in_a_hurry():
     width = np.diff(arcs(150, (2e-3, 1e-3), (True, False)))
     ratio = width[1:12] / width[:11]
