@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Floats
-from solvers.spline import places
+from solvers.spline import places, times
 
 Splined = tuple[Floats, Floats]
 """A field at coarse nodes and its second derivatives along xi."""
@@ -70,10 +70,12 @@ def take_out(values: Floats, second: Floats, coarse: Splined, opened: Floats, be
         if len(some) == 0:
             continue
         part = share[some, :, rows, columns]
-        near = [(field[some, :, rows, columns], field[some, :, rows] @ bends[columns].T) for field in coarse]
+        near = [
+            (field[some, :, rows, columns], times(field[some, :, rows], bends[columns].T)) for field in coarse
+        ]
         flat, bent = straight[columns, places_], curved[columns, places_]
-        values[some, :, rows, places_] -= (part * near[0][1]) @ bent
-        second[some, :, rows, places_] -= (part * near[1][0]) @ flat + (part * near[1][1]) @ bent
+        values[some, :, rows, places_] -= times(part * near[0][1], bent)
+        second[some, :, rows, places_] -= times(part * near[1][0], flat) + times(part * near[1][1], bent)
 
 
 def _blocks(m: int, n: int, count: int) -> Iterator[tuple[slice, slice, slice]]:

@@ -160,6 +160,11 @@ def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
     return _assembled(m, n, bending(m, periodic))
 
 
+def times(tables: Floats, matrix: Floats) -> Floats:
+    """Return `tables` (..., m) times `matrix` (m, n), as one product of two matrices."""
+    return np.asarray((tables.reshape(-1, len(matrix)) @ matrix).reshape(*tables.shape[:-1], -1))
+
+
 def kinked_matrix(m: int, n: int, kinked: Kinks) -> Floats:
     """Return `spline_matrix` of tables with kinks."""
     matrix = _assembled(m, n, kinked.bends)

@@ -21,18 +21,18 @@ from geometry.boundary import Boundary
 from solvers import acute
 from solvers._combine import add_rows
 from solvers.neural.quads._network import look
-from solvers.neural.quads.edges import Edges, rims
+from solvers.neural.quads.edges import Edges, Sides, rims
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
-from solvers.spline import bending, between, places, spline_matrix
+from solvers.spline import bending, between, places, spline_matrix, times
 
 BATCH = 64
 """Domains in memory at a time at the most."""
 
-TOGETHER = 16
+TOGETHER = 32
 """Grids that are evaluated together: what is between stays in the caches."""
 
 
@@ -63,26 +63,27 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
     nodes = np.empty((len(edges), 2, *edges.counts))
+    laws = edges.laws()
+    opened = acute.openings(coarse[:, 0] + 1j * coarse[:, 1], np)
     for k in range(0, len(edges), TOGETHER):
         rows = slice(k, k + TOGETHER)
-        _evaluate(coarse[rows], edges[rows], nodes[rows])
+        south, north, west, east = (law[rows] for law in laws)
+        _evaluate(coarse[rows], opened[rows], edges[rows], (south, north, west, east), nodes[rows])
     return nodes
 
 
-def _evaluate(coarse: Floats, edges: Edges, nodes: Floats) -> None:
+def _evaluate(coarse: Floats, opened: Floats, edges: Edges, laws: Sides, nodes: Floats) -> None:
     """Do what `evaluate` does into `nodes`."""
     m, n = coarse.shape[2:]
     ni, nj = edges.counts
-    laws = edges.laws()
     rim = Edges(*(np.ascontiguousarray(side) for side in rims(coarse)))
     south, north, west, east = laws
     thin = between(south, m), between(north, m), between(west, n), between(east, n)
     difference = coarse - rim.interpolated(thin)
     edges.interpolate(laws, nodes)
     along, across = bending(m, False), bending(n, False)
-    values = difference @ np.ascontiguousarray(spline_matrix(n, nj).T)
+    values = times(difference, spline_matrix(n, nj).T)
     bends = along @ values
-    opened = acute.openings(coarse[:, 0] + 1j * coarse[:, 1], np)
     if opened.any():
         acute.take_out(values, bends, (difference, along @ difference), opened, across)
     first, weights = places(m, ni)
