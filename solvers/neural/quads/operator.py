@@ -50,9 +50,10 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
     middle, factor = (np.asarray(value) for value in frame(z, np))
     network = model.network(dtype)
     scratch = np.empty((2, LATENT, LATENT))
+    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), dtype)
     for k in range(0, len(base), CHUNK):
         chunk = base[k : k + CHUNK]
-        seen = np.empty((len(chunk), LATENT, LATENT, FEATURES), dtype)
+        seen = room[: len(chunk)]
         look(chunk, _pairs(middle[k : k + CHUNK]), _pairs(factor[k : k + CHUNK]), scratch, seen)
         moved = network(seen, head) * (SCALE / factor[k : k + CHUNK, None, None])
         chunk[:, 0] += moved.real
