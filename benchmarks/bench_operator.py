@@ -287,6 +287,11 @@ answers where no iteration is wanted: with `--polish off`, or named with `--mode
 domain gets the variational grid, through fewer nodes where that measures as good, because for one grid no
 network beats that; batches of domains go through `--model quad-general`, where one pass of the network is
 many times faster than any solve ([the operator for four-sided domains](quad-operator.md)).
+
+C grids have no model: the network for four-sided domains is worse there than transfinite interpolation
+([figures](body-operator.md#c-grids-no-model)), so `infer` marches them from wall and wake, and minimises
+where that does not suit. Many airfoils at once gain little: the network takes one pass for 64 of them, but
+lifts, polish and nodes are each body's own.
 """
 
 if __name__ == "__main__":

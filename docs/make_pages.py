@@ -21,6 +21,15 @@ from solvers.neural.weights import SECOND, described, shipped
 DOCS = Path(__file__).parent
 GRIDS = {"o": "O-grids", "quad": "Grids of four-sided domains"}
 
+C_GRIDS = """## C grids: no model
+
+No network serves C grids, since none measures as good as what needs none. The network for four-sided
+domains alone is worse there than transfinite interpolation, and after five steps of descent still behind the
+variational grid ([figures](body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, and a
+wake cuts it open. `infer` marches C grids from wall and wake ([how](viscous.md)), minimises where the march
+does not suit, and its report says which; `--model` with a C boundary is refused.
+"""
+
 
 def main() -> None:
     """Write everything."""
@@ -56,6 +65,7 @@ def models_page() -> str:
             *held_out(facts["figures"], facts["topology"]),
             "",
         ]
+    lines.append(C_GRIDS)
     lines.append("What that means for grids is on [the benchmark page](benchmarks.md).\n")
     return "\n".join(lines)
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -53,7 +54,7 @@ class StripGrid:
     def at(self, rows: Sequence[int], j: int) -> Complexes:
         """Return w at nodes (rows, j) near the wall, nudges left out."""
         theta = self.theta[list(rows)]
-        low = self._c @ interpolation(self.eta[j : j + 1])[:, 0]
+        low = self._c @ _interpolation(self.eta[j : j + 1].tobytes())[:, 0]
         k, high = self._near.at(float(self.eta[j]))
         F = np.exp(1j * np.outer(theta, wavenumbers())) @ low + np.exp(1j * np.outer(theta, k)) @ high
         return np.asarray(F + 1j * theta)
@@ -93,7 +94,7 @@ class StripGrid:
         Those before `last` may feel the high modes of the wall, the others those of the far field.
         """
         base = np.ascontiguousarray(self._c.T)
-        low = (interpolation(eta).T @ base.view(np.float64)).view(np.complex128)
+        low = (_interpolation(eta.tobytes()).T @ base.view(np.float64)).view(np.complex128)
         first = 0
         for where, ahead, behind in self._near.bands(eta[:last]):
             yield where.start, len(ahead), columns(_widened(low[where], ahead, behind))
@@ -104,6 +105,12 @@ class StripGrid:
             yield start, len(ahead), columns(_widened(low[start:stop], ahead[::-1], behind[::-1]))
             beyond = start
         yield first, beyond - first, columns(low[first:beyond])
+
+
+@lru_cache(maxsize=8)
+def _interpolation(eta: bytes) -> Floats:
+    """Return `interpolation`, kept for bodies that follow on the same levels."""
+    return interpolation(np.frombuffer(eta))
 
 
 def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
