@@ -240,7 +240,8 @@ def _edge(side: str, points: Floats) -> Floats:
     edge = np.ascontiguousarray(points, dtype=np.float64)
     if edge.ndim != 2 or edge.shape[1] != 2 or len(edge) < 2:
         raise InputError(f"{side} has shape {edge.shape}", "give (n, 2) with n at least 2")
-    steps = np.abs(edge[1:] - edge[:-1]).sum(axis=1)
+    with np.errstate(invalid="ignore", over="ignore"):  # infinity less infinity
+        steps = np.abs(edge[1:] - edge[:-1]).sum(axis=1)
     if steps.min() > 0 and steps.max() < np.inf:  # neither is so with a node that is not a number
         return edge
     bad = np.flatnonzero(~np.isfinite(edge).all(axis=1))
