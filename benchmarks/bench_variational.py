@@ -234,10 +234,10 @@ leave the solver, before the guard repairs them. The operator for four-sided dom
 [a page of its own](quad-operator.md). Around a notch the full variational solve takes many iterations on
 fine grids; `--coarse auto` goes through fewer nodes there.
 
-How far 33 nodes are from the full solve is the discretisation's error, of second order, not the descent's: solved to
-1e-6 both, the distance on 33 nodes is the same. Extrapolated from 17 and 33 nodes it is half, in the median of 93
-domains, but largest angles are wider and more grids fold, so it is not done; nor does a start extrapolated so save
-iterations.
+How far 33 nodes are from the full solve is the discretisation's error, of second order, not the descent's:
+with both solved to 1e-6 the distance is the same. Extrapolated from 17 and 33 nodes it is half, in the
+median of 93 domains, but largest angles are wider and more grids fold, so it is not done; nor does a start
+extrapolated so save iterations.
 
 ![Grids by five ways, coloured by the largest included angle](img/quad-grids.png)
 """
