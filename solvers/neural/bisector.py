@@ -16,7 +16,7 @@ from solvers.neural._strip_rows import halve
 from solvers.neural.evaluate import StripGrid
 
 CELLS = 5.0  # reach of a nudge, in cells either way
-LARGEST = 0.4  # of a cell's width in theta: beyond it the neighbours would suffer
+LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
 SWEEPS = 3  # over the corners, which feel each other a little
 
 
@@ -38,21 +38,24 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
     """Return how far each corner's shift is felt along the wall (n, corners), and the shifts of phi."""
     n, step = len(wall), 2.0 * np.pi / len(wall)
-    width = CELLS
-    if len(corners) == 2:
-        between = (corners[0] - corners[1]) % n
-        width = min(CELLS, 0.5 * min(between, n - between))
+    between = np.subtract.outer(corners, corners) % n
+    apart = np.minimum(between, n - between) + n * np.eye(len(corners))
+    width = np.minimum(CELLS, 0.5 * apart.min(axis=0))
     first = grid.at(corners, 1)
+    beside = grid.at([(c + d) % n for c in corners for d in (-1, 1)], 1).reshape(-1, 2)
+    cells = np.abs(np.remainder((beside - first[:, None]).imag + np.pi, 2.0 * np.pi) - np.pi).min(axis=1)
+    limit = LARGEST * np.maximum(cells, step)  # evenly spaced walls have wide cells at an edge
     reach = _along(np.subtract.outer(np.arange(n), corners), n, width)
     pull = reach[list(corners)]
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
-        lines = (
-            (wall[c], wall[(c + 1) % n], wall[c - 1], w, s)
-            for c, w, s in zip(corners, moved, shift, strict=True)
+        shift = np.array(
+            [
+                halve(lift, [(wall[c], wall[(c + 1) % n], wall[c - 1], w, s)], most)[0]
+                for c, w, s, most in zip(corners, moved, shift, limit, strict=True)
+            ]
         )
-        shift = np.array(halve(lift, lines, LARGEST * step))
     return reach, shift
 
 
@@ -62,5 +65,5 @@ def fading(eta: Floats, first: float) -> Floats:
     return np.asarray(cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))
 
 
-def _along(offset: NDArray[np.intp], n: int, width: float) -> Floats:
+def _along(offset: NDArray[np.intp], n: int, width: Floats) -> Floats:
     return np.asarray(np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2)))

@@ -41,6 +41,7 @@ SHARPEST = {
     "far field": 1e-3,
 }  # amplitude (radians) that a wall may have beyond half the modes
 ROUGHEST = 0.05  # of an airfoil's wall, when it is spacing that is uneven and not the body
+TURNED = np.radians(25.0)  # a turn at one node of a wall whose spacing is uneven: its line halves the angle
 BENT = np.radians(75.0)  # a turn at one node, trailing corners aside: of a body with other corners
 
 
@@ -121,6 +122,8 @@ def _gridded(
         return _elliptic(boundary, "the operator's polish diverged", begun)
     nodes, finite = _evaluated(boundary, found, c)
     if rough and count_folded(nodes):
+        nodes, finite = _evaluated(boundary, found._replace(corners=_turns(found)), c)
+    if rough and count_folded(nodes):
         with suppress(SolverError):
             other = _elliptic(boundary, "the operator folds cells of uneven spacing", begun)
             if not count_folded(other.grid.nodes):
@@ -187,10 +190,21 @@ def _roughness(found: Walls) -> bool:
 
 def _bent(found: Walls) -> bool:
     """Return whether the body has a corner that is no trailing one."""
-    z = found.z
-    turn = np.abs(np.angle((np.roll(z, -1) - z) / (z - np.roll(z, 1))))
+    turn = np.abs(_turn(found))
     turn[list(found.corners)] = 0.0
     return bool(turn.max() > BENT)
+
+
+def _turns(found: Walls) -> tuple[int, ...]:
+    """Return the trailing corners, and the nodes at which the wall turns so much that lines may cross it."""
+    others = set(np.flatnonzero(_turn(found) > TURNED).tolist()) - set(found.corners)
+    return (*found.corners, *sorted(others))
+
+
+def _turn(found: Walls) -> Floats:
+    """Return the angle (n,) by which the wall turns at every node."""
+    z = found.z
+    return np.asarray(np.angle((np.roll(z, -1) - z) / (z - np.roll(z, 1))))
 
 
 def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:

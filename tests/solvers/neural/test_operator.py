@@ -147,6 +147,12 @@ def test_even_spacing_around_the_leading_edge_stays_with_the_operator() -> None:
     assert count_folded(solution.grid.nodes) == 0
 
 
+@pytest.mark.parametrize("seed", [113, 125, 143, 174, 198, 249])
+def test_lines_off_edges_between_wide_cells_do_not_cross_them(seed: int) -> None:
+    solution = infer(procedural.boundary(np.random.default_rng(seed), 160, 160, "uniform"))
+    assert (solution.method, count_folded(solution.grid.nodes)) == ("operator", 0)
+
+
 @pytest.mark.parametrize("settings", [{"spacing": "uniform"}, {"spacing": "tanh", "te_spacing": 0.012}])
 def test_large_cells_beside_a_blunt_edge_do_not_fold(settings: dict[str, Any]) -> None:
     x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 80)))
