@@ -40,9 +40,9 @@ SHARPEST = {
     "wall": 0.017,
     "far field": 1e-3,
 }  # amplitude (radians) that a wall may have beyond half the modes
-ROUGHEST = 0.05  # of an airfoil's wall, when it is spacing that is uneven and not the body
+ROUGHEST = 0.1  # of an airfoil's wall, when it is spacing that is uneven and not the body
 TURNED = np.radians(25.0)  # a turn at one node of a wall whose spacing is uneven: its line halves the angle
-BENT = np.radians(75.0)  # a turn at one node, trailing corners aside: of a body with other corners
+BENT = np.radians(85.0)  # a turn at one node, trailing corners aside: of a body with other corners
 
 
 def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto") -> Solution:
@@ -173,7 +173,7 @@ def walls(boundary: Boundary) -> Walls:
 def _roughness(found: Walls) -> bool:
     """Return whether uneven spacing outruns the strip's modes a little, so that a grid may fold.
 
-    Airfoils have at most 0.013 in the wall, 0.05 where nodes are evenly spaced around the leading edge;
+    Airfoils have at most 0.013 in the wall, 0.06 where nodes are evenly spaced around the leading edge;
     polygons at least 0.02; a square far field has 0.01. Raises InputError when the strip does not resolve it.
     """
     n = len(found.wall)
