@@ -105,12 +105,12 @@ train/variational.h5: | $(VENV)/.developing
 # the quad network taught on, around bodies; Winslow's grids again with twice the nodes
 train-holes: train/holes/winslow.h5 train/holes/variational.h5
 	$(BIN)/meshonet train train/holes/variational.h5 train/holes/winslow.h5 --model quad --initial quad-general \
-	  -o train/hole-o.safetensors --epochs 40 --batch 16 --rate 0.001 --held-out 48 --seed 0 --resume
+	  -o train/hole-o.safetensors --epochs 14 --batch 16 --rate 0.001 --held-out 60 --seed 0 --resume
 	cp train/hole-o.safetensors $(MODELS)
 
 train/holes/winslow.h5: | $(VENV)/.developing
 	@mkdir -p train/holes
-	$(BIN)/meshonet sample-boundary --family bodies --count 474 --seed 1 --res 129x65 -q -o train/holes/bodies.h5
+	$(BIN)/meshonet sample-boundary --family bodies --count 3000 --seed 1 --res 129x65 -q -o train/holes/bodies.h5
 	$(BIN)/meshonet solve-pde train/holes/bodies.h5 -q -o train/holes/fine.h5 || test $$? -eq 3
 	$(BIN)/meshonet convert train/holes/fine.h5 --coarsen 2 -q -o $@
 	rm train/holes/bodies.h5 train/holes/fine.h5

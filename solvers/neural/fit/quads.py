@@ -36,7 +36,7 @@ from solvers.neural.samples import Samples
 from solvers.variational import functional as measured
 
 PLAN = Plan(
-    epochs=64, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
+    epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
 )
 """The shipped model's."""
 
