@@ -187,8 +187,7 @@ along xi. So walls are bitwise those given, a body moved, turned or scaled has t
 mirrored one the mirrored, and one whose nodes begin an eighth of the way further round the same one from
 there, all to rounding.
 
-The training set is small: 448 random bodies, 40 times over, about four minutes of one core. Its variational
-grids are older than the solver's last change; `make train-holes` makes them with the present one. Grids may
+It was taught on 2,799 random bodies, 14 times over, about eight minutes of one core; that is little. Grids may
 fold before the guard; its repairs are not in these tables. Angles are the largest included angle of each
 cell, in degrees. The gain is what a way improves on Winslow's figure, over what the variational grid does,
 summed over bodies where Winslow's is valid. Bodies where Winslow's equations have no discrete solution, a
