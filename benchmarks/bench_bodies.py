@@ -187,8 +187,8 @@ along xi. So walls are bitwise those given, a body moved, turned or scaled has t
 mirrored one the mirrored, and one whose nodes begin an eighth of the way further round the same one from
 there, all to rounding.
 
-It was taught on 2,799 random bodies, 14 times over, about eight minutes of one core; that is little. Grids may
-fold before the guard; its repairs are not in these tables. Angles are the largest included angle of each
+It was taught on 2,799 random bodies, 14 times over, about eight minutes of one core; that is little. Grids
+may fold before the guard; its repairs are not in these tables. Angles are the largest included angle of each
 cell, in degrees. The gain is what a way improves on Winslow's figure, over what the variational grid does,
 summed over bodies where Winslow's is valid. Bodies where Winslow's equations have no discrete solution, a
 few in a hundred, are left out. Processor time of one thread of a shared, busy machine.
