@@ -262,7 +262,8 @@ distance says little. Angles are ratios to the multigrid solution at residual 1e
 is better than the PDE. The multigrid solver stops at discretisation level, its default.
 Bodies that the airfoil operator refuses, for spacing that it does not resolve, are solved by multigrid or
 meshed by `hole-o`, and these decide the worst distances of `infer`. Boundaries of the tables of distances
-are every fourth node of finer ones (at 800x800 every second); folds are counted on boundaries sampled so.
+are every fourth node of finer ones (at 800x800 every second), which may leave out corners of a blunt edge
+and so moves the largest angles there by some percent; folds are counted on boundaries sampled so.
 """
 DOMAINS_TOLD = """`quad-winslow` and Winslow's ways are measured against Winslow's solution, `quad-general`
 and variational ways against the variational optimum."""
