@@ -126,17 +126,15 @@ def _without_mark(rows: list[Line]) -> list[Line]:
     """Return rows without one behind the data such as 999 999: a number twice, outside all but headings."""
     if len(rows) < 8:
         return rows
-    points, (x, y) = np.array([line.values[:2] for line in rows[3:-1]]), rows[-1].values[:2]
-    low, high = points.min(axis=0), points.max(axis=0)
-    apart = 0.5 * float((high - low).max())
-    marked = x == y and bool((x < low - apart).any() or (x > high + apart).any())
+    points, last = (np.array([line.values[:2] for line in part]) for part in (rows[3:-1], rows[-1:]))
+    marked = last[0, 0] == last[0, 1] and _outside(last[0], points, by=0.5)
     return rows[:-1] if marked else rows
 
 
-def _outside(point: Floats, points: Floats) -> bool:
-    """Say whether a point (2,) lies more than the extent of the others outside their box."""
+def _outside(point: Floats, points: Floats, by: float = 1.0) -> bool:
+    """Say whether a point (2,) lies more than the extent of the others, times `by`, outside their box."""
     low, high = points.min(axis=0), points.max(axis=0)
-    reach = float((high - low).max())
+    reach = by * float((high - low).max())
     return bool((point < low - reach).any() or (point > high + reach).any())
 
 

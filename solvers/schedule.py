@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from geometry.arrays import Floats
+from geometry.corners import turning
 from geometry.growth import growing_steps
 
 _LESS = 0.24
@@ -39,13 +40,11 @@ def sharpest_edge(ring: Floats) -> Edge | None:
 
     None where no corner turns by 60 degrees.
     """
-    step = np.roll(ring, -1, axis=0) - ring
-    before = np.roll(step, 1, axis=0)
-    turn = np.arctan2(before[:, 1] * step[:, 0] - before[:, 0] * step[:, 1], (before * step).sum(axis=1))
+    turn = -turning(ring, closed=True)
     k = int(np.argmax(turn))
     if turn[k] < _LEAST_TURN:
         return None
-    size = 0.5 * float(np.hypot(*step[k]) + np.hypot(*before[k]))
+    size = 0.5 * float(np.hypot(*(ring[(k + 1) % len(ring)] - ring[k])) + np.hypot(*(ring[k] - ring[k - 1])))
     return Edge(size, 1.0 - math.cos(0.5 * turn[k]))
 
 

@@ -20,6 +20,7 @@ import numpy as np
 
 from geometry.arrays import Complexes, Floats, planar_nodes
 from geometry.boundary import Boundary
+from geometry.corners import turning
 from geometry.errors import InputError, SolverError
 from geometry.grid import Grid
 from geometry.lift import Lift, lift_body, mirrored
@@ -203,8 +204,7 @@ def _turns(found: Walls) -> tuple[int, ...]:
 
 def _turn(found: Walls) -> Floats:
     """Return the angle (n,) by which the wall turns at every node."""
-    z = found.z
-    return np.asarray(np.angle((np.roll(z, -1) - z) / (z - np.roll(z, 1))))
+    return turning(np.stack([found.z.real, found.z.imag], axis=1), closed=True)
 
 
 def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:

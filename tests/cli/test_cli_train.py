@@ -1,6 +1,7 @@
 """`meshonet train`: what it refuses, and with torch a run of seconds that is cut and goes on."""
 
 import importlib.util
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -41,8 +42,8 @@ def test_mistakes_get_a_line(meshonet: Meshonet, words: tuple[str, ...], told: s
     assert done.err.count("\n") == 1
 
 
-@pytest.mark.skipif(TORCH, reason="torch is here")
-def test_without_torch_it_says_what_to_install(meshonet: Meshonet) -> None:
+def test_without_torch_it_says_what_to_install(meshonet: Meshonet, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "torch", None)
     done = meshonet("train", "strips.h5", "-o", "m.safetensors")
     assert done.code == 2
     assert done.err == "error: training needs torch; install it: pip install 'meshonet[train]'\n"
