@@ -19,21 +19,21 @@ import numpy as np
 from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from solvers import acute
-from solvers._combine import add_rows
+from solvers._evaluate import evaluate_all
 from solvers.neural.quads._network import look
-from solvers.neural.quads.edges import Edges, Sides, rims
+from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
-from solvers.spline import bending, between, places, spline_matrix, times
+from solvers.spline import places
 
 BATCH = 64
 """Domains in memory at a time at the most."""
 
-TOGETHER = 32
-"""Grids that are evaluated together: what is between stays in the caches."""
+CORNERS = [0, 1, -2, -1]
+"""Rows and columns of a grid that tell how wide its corners open."""
 
 
 def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float64") -> Floats:
@@ -63,33 +63,13 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
 
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
-    nodes = np.empty((len(edges), 2, *edges.counts))
-    laws = edges.laws()
-    opened = acute.openings(coarse[:, 0] + 1j * coarse[:, 1], np)
-    for k in range(0, len(edges), TOGETHER):
-        rows = slice(k, k + TOGETHER)
-        south, north, west, east = (law[rows] for law in laws)
-        _evaluate(coarse[rows], opened[rows], edges[rows], (south, north, west, east), nodes[rows])
+    (m, n), (ni, nj) = coarse.shape[2:], edges.counts
+    corners = coarse[:, :, CORNERS][..., CORNERS]
+    opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
+    nodes = np.empty((len(edges), 2, ni, nj))
+    fine, thin = (places(m, ni), places(n, nj)), (places(ni, m), places(nj, n))
+    evaluate_all(coarse, edges.sides, fine, thin, opened, acute.NEAR, acute.FAR, nodes)
     return nodes
-
-
-def _evaluate(coarse: Floats, opened: Floats, edges: Edges, laws: Sides, nodes: Floats) -> None:
-    """Do what `evaluate` does into `nodes`."""
-    m, n = coarse.shape[2:]
-    ni, nj = edges.counts
-    rim = Edges(*(np.ascontiguousarray(side) for side in rims(coarse)))
-    south, north, west, east = laws
-    thin = between(south, m), between(north, m), between(west, n), between(east, n)
-    difference = coarse - rim.interpolated(thin)
-    edges.interpolate(laws, nodes)
-    along, across = bending(m, False), bending(n, False)
-    values = times(difference, spline_matrix(n, nj).T)
-    bends = along @ values
-    if opened.any():
-        acute.take_out(values, bends, (difference, along @ difference), opened, across)
-    first, weights = places(m, ni)
-    for plane, value, bend in zip(_flat(nodes), _flat(values), _flat(bends), strict=True):
-        add_rows(plane, first, weights, value, bend, False)
 
 
 def in_batches(boundaries: Sequence[Boundary]) -> Iterator[list[int]]:
@@ -100,10 +80,6 @@ def in_batches(boundaries: Sequence[Boundary]) -> Iterator[list[int]]:
     for group in groups.values():
         for k in range(0, len(group), BATCH):
             yield group[k : k + BATCH]
-
-
-def _flat(planes: Floats) -> Floats:
-    return planes.reshape(-1, *planes.shape[2:])
 
 
 def _pairs(values: Complexes) -> Floats:

@@ -1,0 +1,17 @@
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Floats
+
+Placed = tuple[NDArray[np.intp], Floats]
+
+def evaluate_all(
+    coarse: Floats,
+    sides: tuple[Floats, ...],
+    fine: tuple[Placed, Placed],
+    thin: tuple[Placed, Placed],
+    opened: Floats,
+    near: float,
+    far: float,
+    nodes: Floats,
+) -> None: ...

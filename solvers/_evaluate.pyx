@@ -1,0 +1,72 @@
+"""Compiled evaluation of grids on few nodes at many; the formula stands in ``evaluate_kernel.c``."""
+
+from libc.stdlib cimport free, malloc
+
+cdef extern from "evaluate_kernel.h":
+    ctypedef struct Places:
+        const Py_ssize_t *first
+        const double *weights
+    ctypedef struct Evaluation:
+        Py_ssize_t m
+        Py_ssize_t n
+        Py_ssize_t ni
+        Py_ssize_t nj
+        Places fine[2]
+        Places thin[2]
+        double near
+        double far
+    ctypedef struct Corners:
+        const double *south
+        const double *north
+        const double *west
+        const double *east
+        const double *opened
+    Py_ssize_t evaluate_scratch(const Evaluation *e) nogil
+    void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes) nogil
+
+
+cdef int place(Places *p, tuple found, Py_ssize_t count, Py_ssize_t knots) except -1:
+    """Point into an answer of `spline.places`, which the caller keeps alive."""
+    cdef const Py_ssize_t[::1] first = found[0]
+    cdef const double[:, ::1] weights = found[1]
+    cdef Py_ssize_t k
+    if first.shape[0] != count or weights.shape[0] != count or weights.shape[1] != 4 or count < 2:
+        raise ValueError("places for another number of nodes")
+    for k in range(count):
+        if first[k] < 0 or first[k] > knots - 2:
+            raise ValueError("a place beyond the knots")
+    p.first, p.weights = &first[0], &weights[0, 0]
+    return 0
+
+
+def evaluate_all(const double[:, :, :, ::1] coarse, tuple sides, tuple fine, tuple thin,
+                 const double[:, ::1] opened, double near, double far, double[:, :, :, ::1] nodes):
+    """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n).
+
+    `sides` are south, north (batch, 2, ni), west and east (batch, 2, nj); `fine` the `places` of ni nodes in m and of
+    nj in n, `thin` those of m in ni and of n in nj. `opened` (batch, 4) is the share that is taken out of second
+    derivatives at corners, up to `near` coarse cells from them and none from `far` on.
+    """
+    cdef const double[:, :, ::1] south = sides[0], north = sides[1], west = sides[2], east = sides[3]
+    cdef Py_ssize_t batch = nodes.shape[0], b
+    cdef Evaluation e
+    cdef Corners edges
+    e.m, e.n, e.ni, e.nj, e.near, e.far = coarse.shape[2], coarse.shape[3], nodes.shape[2], nodes.shape[3], near, far
+    if coarse.shape[0] != batch or coarse.shape[1] != 2 or nodes.shape[1] != 2 or opened.shape[0] != batch or opened.shape[1] != 4:
+        raise ValueError("another number of grids")
+    for side, count in zip(sides, (e.ni, e.ni, e.nj, e.nj)):
+        if side.shape != (batch, 2, count):
+            raise ValueError(f"edges of shape {side.shape} for {batch} grids of {e.ni} x {e.nj}")
+    place(&e.fine[0], fine[0], e.ni, e.m)
+    place(&e.fine[1], fine[1], e.nj, e.n)
+    place(&e.thin[0], thin[0], e.m, e.ni)
+    place(&e.thin[1], thin[1], e.n, e.nj)
+    cdef double *scratch = <double *>malloc(evaluate_scratch(&e) * sizeof(double))
+    if scratch == NULL:
+        raise MemoryError
+    with nogil:
+        for b in range(batch):
+            edges.south, edges.north = &south[b, 0, 0], &north[b, 0, 0]
+            edges.west, edges.east, edges.opened = &west[b, 0, 0], &east[b, 0, 0], &opened[b, 0]
+            evaluate_grid(&e, &coarse[b, 0, 0, 0], &edges, scratch, &nodes[b, 0, 0, 0])
+    free(scratch)

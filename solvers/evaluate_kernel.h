@@ -1,0 +1,32 @@
+/* A grid on few nodes evaluated on many; see evaluate_kernel.c. */
+#ifndef MESHONET_EVALUATE_KERNEL_H
+#define MESHONET_EVALUATE_KERNEL_H
+#include <stddef.h>
+
+/* For each of some uniform places the knot before it and the weights (4) of the values there and at the next, and of
+   the second derivatives at both: `places` of spline.py. */
+typedef struct {
+    const ptrdiff_t *first;
+    const double *weights;
+} Places;
+
+/* Grids (m, n) and (ni, nj), the places of each axis of the second in the first, and the other way round; shares of
+   second derivatives are taken out up to `near` coarse cells from a corner, none from `far` on. */
+typedef struct {
+    ptrdiff_t m, n, ni, nj;
+    Places fine[2], thin[2];
+    double near, far;
+} Evaluation;
+
+/* Edges of one grid, planes (2, ni) and (2, nj), and the share (4) taken out at its corners: those of west first, of
+   each that of south first. */
+typedef struct {
+    const double *south, *north, *west, *east, *opened;
+} Corners;
+
+/* How many numbers evaluate_grid needs as scratch. */
+ptrdiff_t evaluate_scratch(const Evaluation *e);
+
+/* Fill the planes nodes (2, ni, nj) from the planes coarse (2, m, n). */
+void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes);
+#endif

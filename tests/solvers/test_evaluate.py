@@ -1,0 +1,74 @@
+"""A grid on few nodes evaluated on many is the sum of matrices that `solvers.acute` writes down."""
+
+import numpy as np
+import pytest
+
+from geometry.arrays import Floats
+from solvers import acute
+from solvers._evaluate import evaluate_all
+from solvers.neural.quads.edges import Edges, rims
+from solvers.spline import bending, between, places
+
+RNG = np.random.default_rng(5)
+
+
+def wavy(ni: int, nj: int) -> Floats:
+    """Return two planes (2, 2, ni, nj) of skewed, wavy grids."""
+    xi, eta = np.meshgrid(np.linspace(0, 1, ni), np.linspace(0, 1, nj), indexing="ij")
+    first = [xi + 0.3 * eta**2 + 0.05 * np.sin(5 * xi * eta), eta - 0.1 * np.cos(4 * xi) + 0.4 * xi * eta]
+    return np.array([first, [3.0 - 2.0 * first[1], 1.0 + first[0] * (1.0 + 0.2 * xi)]])
+
+
+def placed(m: int, n: int, ni: int, nj: int) -> tuple:
+    """Return the places of either grid in the other."""
+    return (places(m, ni), places(n, nj)), (places(ni, m), places(nj, n))
+
+
+def matrices(m: int, count: int) -> tuple[Floats, Floats]:
+    """Return (count, m): linear interpolation, and what second derivatives add."""
+    off = np.clip(np.linspace(0, m - 1, count)[:, None] - np.arange(m), -1.0, 1.0)
+    off = np.abs(off)
+    return 1.0 - off, -off * (1.0 - off) * (2.0 - off) / 6.0
+
+
+@pytest.mark.parametrize(
+    ("m", "n", "ni", "nj"),
+    [(33, 33, 65, 65), (9, 12, 40, 23), (5, 4, 17, 8), (3, 2, 7, 6), (2, 3, 2, 9), (33, 21, 12, 33)],
+)
+def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int) -> None:
+    edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
+    coarse = wavy(m, n) + 0.02 * RNG.normal(size=(2, 2, m, n))
+    opened = np.array([[[0.7, 0.0], [1.0, 0.2]], [[0.0, 0.0], [0.0, 0.0]]])
+    nodes = np.empty((2, 2, ni, nj))
+    fine, thin = placed(m, n, ni, nj)
+    evaluate_all(coarse, edges.sides, fine, thin, opened.reshape(2, 4), acute.NEAR, acute.FAR, nodes)
+
+    south, north, west, east = edges.laws()
+    laws = between(south, m), between(north, m), between(west, n), between(east, n)
+    rim = Edges(*(np.ascontiguousarray(side) for side in rims(coarse)))
+    d = coarse - rim.interpolated(laws)
+    left = 1.0 - acute.taken_out(opened, m, n)[:, None]
+    (low, high), (line, curve) = matrices(m, ni), matrices(n, nj)
+    along, across = bending(m, False), bending(n, False).T
+    values = d @ line.T + (left * (d @ across)) @ curve.T
+    bends = (left * (along @ d)) @ line.T + (left * (along @ d @ across)) @ curve.T
+    expected = edges.interpolated(edges.laws())
+    expected[..., 1:-1, 1:-1] += (low @ values + high @ bends)[..., 1:-1, 1:-1]
+    np.testing.assert_allclose(nodes, expected, atol=1e-13)
+    for side, given in zip(rims(nodes), edges.sides, strict=True):
+        assert np.array_equal(side, given)
+
+
+def test_arrays_that_do_not_fit_are_refused() -> None:
+    edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(9, 7))))
+    fine, thin = placed(5, 5, 9, 7)
+    coarse, opened, nodes = wavy(5, 5), np.zeros((2, 4)), np.empty((2, 2, 9, 7))
+    near = acute.NEAR, acute.FAR
+    for given, told in (
+        ((coarse[:1], edges.sides, fine, thin, opened, *near, nodes), "another number of grids"),
+        ((coarse, edges[:1].sides, fine, thin, opened, *near, nodes), "edges of shape"),
+        ((coarse, edges.sides, fine[::-1], thin, opened, *near, nodes), "another number of nodes"),
+        ((coarse, edges.sides, placed(8, 8, 9, 7)[0], thin, opened, *near, nodes), "beyond the knots"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            evaluate_all(*given)
