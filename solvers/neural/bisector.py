@@ -15,7 +15,7 @@ from geometry.lift import Lift
 from solvers.neural._strip_rows import halve
 from solvers.neural.evaluate import StripGrid
 
-CELLS = 5.0  # reach of a nudge, in cells either way
+CELLS = 4.0  # reach of a nudge, in cells either way; with 3 some cells fold
 LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
 SWEEPS = 3  # over the corners, which feel each other a little
 

@@ -16,7 +16,7 @@ from solvers.neural.encoding import DEPTHS, SLOPE
 from solvers.neural.evaluate import StripGrid
 from solvers.neural.lifted import Lifted, lifted
 from solvers.neural.models.strip_fno import StripFNO
-from solvers.neural.strip import COLUMNS, MODES, across, interpolation, wavenumbers
+from solvers.neural.strip import COLUMNS, MODES, across, interpolation, smoothing, wavenumbers
 from solvers.neural.weights import load_model
 
 CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
@@ -110,7 +110,8 @@ class _Answer:
         inner = (kept.mT @ self._basis.to(kept.dtype)) * (self._scale * size**2)[:, None, None]
         answer = torch.nn.functional.pad(inner, (1, 1))
         answer = torch.where(flip[..., None], answer.conj(), answer)
-        return torch.where((hand == 0)[:, None, None], answer.real.to(answer.dtype), answer)
+        answer = torch.where((hand == 0)[:, None, None], answer.real.to(answer.dtype), answer)
+        return answer * torch.as_tensor(smoothing(), device=answer.device)[:, None]
 
 
 def _modes(F: Tensor) -> Tensor:
@@ -147,7 +148,7 @@ def _picard(c: Tensor) -> Tensor:
     levels, k = c.mT, _wavenumbers(c)
     T = (levels[:, -1, 0] - levels[:, 0, 0]).real[:, None, None]
     stiffness = torch.as_tensor(grid.eigenvalues, device=c.device)[:, None] - (k * T) ** 2
-    smooth = torch.exp(-36.0 * (torch.abs(k) / (MODES + 1)) ** 12) / stiffness
+    smooth = torch.as_tensor(smoothing(), device=c.device) / stiffness
     ce = d1 @ levels
     parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
     Wt, Wtt, We, Wte, Wee = (_columns(part)[:, 1:-1] for part in parts)

@@ -114,6 +114,11 @@ def decay(k: Floats, T: float, eta: Floats) -> tuple[Floats, Floats]:
     return wall, far
 
 
+def smoothing() -> Floats:
+    """Return what is taken of a change of each mode: those near `MODES` are aliases of others."""
+    return np.asarray(np.exp(-36.0 * (np.abs(wavenumbers()) / (MODES + 1)) ** 12))
+
+
 def harmonic(wall: Complexes, far: Complexes, eta: Floats) -> Complexes:
     """Return modes (2 MODES + 1, len(eta)) of the harmonic function with these modes on the two walls."""
     T = float((far[0] - wall[0]).real)
@@ -158,5 +163,4 @@ def _kernels() -> tuple[Floats, Floats, Floats]:
     inner = np.zeros((2, LEVELS, LEVELS))
     inner[:, 1:-1, 1:-1] = grid.inverse, grid.vectors
     matrices = np.concatenate([[grid.d1, grid.d2], inner]).swapaxes(1, 2).copy()
-    smooth = np.exp(-36.0 * (np.abs(wavenumbers()) / (MODES + 1)) ** 12)
-    return matrices, np.pad(grid.eigenvalues, 1, constant_values=-1.0), smooth
+    return matrices, np.pad(grid.eigenvalues, 1, constant_values=-1.0), smoothing()

@@ -16,7 +16,7 @@ from geometry.arrays import Complexes, Floats
 from geometry.errors import InputError
 from solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
 from solvers.neural.network import Reals, StripNetwork, misfit
-from solvers.neural.strip import LEVELS
+from solvers.neural.strip import LEVELS, smoothing
 
 DEFAULT = "airfoil-o"
 FOLDER = Path(__file__).parent / "pretrained"
@@ -46,6 +46,7 @@ class Model:
 
         `hand` (batch,) is that of `geometry.mirror.handedness`: of a strip and its mirror image, whose modes
         are conjugate, the network sees the same one, and the answer for a symmetric strip is made symmetric.
+        Modes that Picard's steps would not correct are left out.
         """
         flip = np.zeros((len(wall), 1), bool) if hand is None else hand[:, None] < 0
         channels, scalars, size = encode(np.where(flip, wall.conj(), wall), np.where(flip, far.conj(), far))
@@ -53,7 +54,7 @@ class Model:
         answer.imag[flip[:, 0]] *= -1.0
         if hand is not None:
             answer.imag[hand == 0] = 0.0
-        return answer
+        return answer * smoothing()[:, None]
 
 
 SECOND = {"quad-winslow": "quad-general", "hole-winslow": "hole-o"}
