@@ -20,7 +20,7 @@ curve is a domain (its corners are those of the quadrilaterals, or the four plac
 body; two, one in the other, are a body in its far field; several beside each other are a shape each. Names
 of physical groups, markers and layers become names of parts. A mesh of quadrilaterals that is structured
 gives back its nodes bit for bit. Meshes of three dimensions are refused. DXF needs `pip install
-'meshonet[dxf]'`.
+'meshonet[dxf]'`. Of WKT and GeoJSON, a polygon with one hole is a body in its far field.
 
 **Plot3D** is told apart by its length and its cells: count or none, two or three dimensions, iblank,
 records, byte order, float32 or float64, planes along any index, `r*v`, commas and D exponents. Where two

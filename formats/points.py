@@ -25,6 +25,7 @@ from geometry.corners import find_corners, turning
 from geometry.errors import InputError
 from geometry.outline import Outline
 from geometry.shape import Shape
+from geometry.simple import check_outline
 
 MOST_POINTS = 100_000
 _JOIN = 1e-6
@@ -134,38 +135,57 @@ def _ends_in_one_edge(points: Floats) -> bool:
 
 def _four_edges(blocks: list[list[Line]], name: str) -> Shape:
     """Return the domain of four edges, chained end to end from the first."""
-    edges = [np.array([line.values[:2] for line in block]) for block in blocks]
-    every = np.concatenate(edges)
-    reach = _JOIN * float(np.hypot(*np.ptp(every, axis=0)))
+    chain = _chained([_edge(block) for block in blocks])
+    ring = np.concatenate([edge[:-1] for edge in chain])
+    check_outline(ring[:, :2], [f"line {number:.0f}" for number in ring[:, 2]])
+    if polygon_area(ring[:, :2]) < 0:  # the first edge stays south, so it is walked the other way
+        chain = [chain[0][::-1], *(edge[::-1] for edge in chain[:0:-1])]
+        ring = np.concatenate([edge[:-1] for edge in chain])
+    counts = [len(edge) for edge in chain]
+    if counts[0] == counts[2] and counts[1] == counts[3]:
+        south, east, north, west = (edge[:, :2] for edge in chain)
+        return Boundary(south, north[::-1], west[::-1], east, name=name)
+    a, b, c, d = (int(k) for k in np.concatenate([[0], np.cumsum(np.array(counts[:3]) - 1)]))
+    return Outline(ring[:, :2], name, corners=(a, b, c, d))
+
+
+def _edge(block: list[Line]) -> Floats:
+    """Return the points of a block and the number of each one's line (n, 3)."""
+    edge = np.array([[*line.values[:2], line.number] for line in block])
+    same = np.flatnonzero((np.diff(edge[:, :2], axis=0) == 0).all(axis=1))
+    if len(same) == len(edge) - 1:
+        place = f"line {block[0].number}"
+        raise InputError("an edge is one point", "give two or more points of every edge", place=place)
+    if same.size:
+        x, y, _ = edge[same[0]]
+        place = f"line {block[same[0] + 1].number}"
+        raise InputError(f"repeats the point ({x:.6g}, {y:.6g}) of the line before", "remove it", place=place)
+    return edge
+
+
+def _chained(edges: list[Floats]) -> list[Floats]:
+    """Return four edges (n, 3) in an order and directions in which each begins where the last one ends."""
+    reach = _JOIN * float(np.hypot(*np.ptp(np.concatenate(edges)[:, :2], axis=0)))
     chain, left = [edges[0]], {1, 2, 3}
     while left:
-        end = chain[-1][-1]
-        gaps = {(k, way): float(np.hypot(*(edges[k][::way][0] - end))) for k in left for way in (1, -1)}
+        end = chain[-1][-1, :2]
+        gaps = {(k, way): float(np.hypot(*(edges[k][::way][0, :2] - end))) for k in left for way in (1, -1)}
         (k, way), gap = min(gaps.items(), key=lambda item: item[1])
         if gap > reach:
             x, y = end
             raise InputError(
                 f"no other edge starts or ends at ({x:g}, {y:g}); the nearest is {gap:.3g} away",
                 "make the four edges meet",
-                place=f"line {blocks[k][0 if way == 1 else -1].number}",
+                place=f"line {edges[k][0 if way == 1 else -1, 2]:.0f}",
             )
         chain.append(edges[k][::way].copy())
-        chain[-1][0] = end
+        chain[-1][0, :2] = end
         left.remove(k)
-    gap = float(np.hypot(*(chain[3][-1] - chain[0][0])))
+    gap = float(np.hypot(*(chain[3][-1, :2] - chain[0][0, :2])))
     if gap > reach:
         raise InputError(f"the four edges do not close: {gap:.3g} are left open", "make the four edges meet")
-    chain[3][-1] = chain[0][0]
-    ring = np.concatenate([edge[:-1] for edge in chain])
-    if polygon_area(ring) < 0:  # the first edge stays south, so it is walked the other way
-        chain = [chain[0][::-1], *(edge[::-1] for edge in chain[:0:-1])]
-        ring = np.concatenate([edge[:-1] for edge in chain])
-    counts = [len(edge) for edge in chain]
-    if counts[0] == counts[2] and counts[1] == counts[3]:
-        south, east, north, west = chain
-        return Boundary(south, north[::-1], west[::-1], east, name=name)
-    a, b, c, d = (int(k) for k in np.concatenate([[0], np.cumsum(np.array(counts[:3]) - 1)]))
-    return Outline(ring, name, corners=(a, b, c, d))
+    chain[3][-1, :2] = chain[0][0, :2]
+    return chain
 
 
 FORMAT = Format(

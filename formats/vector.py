@@ -1,6 +1,7 @@
 """Outlines from vector geometry: WKT (one geometry a file or a line) and GeoJSON.
 
-Polygons and closed lines are outlines; collections hold several. A third coordinate is dropped.
+Polygons and closed lines are outlines, a polygon with one hole is a body in its far field; collections hold
+several. A third coordinate is dropped.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 
@@ -15,9 +16,14 @@ import numpy as np
 
 from formats.edges import LARGEST
 from formats.format import Format
+from formats.points import one_curve
 from formats.source import Source, printable
+from geometry.annulus import Annulus
+from geometry.arrays import Floats
+from geometry.boundary import polygon_area
 from geometry.errors import InputError
 from geometry.outline import Outline
+from geometry.shape import Shape
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
@@ -26,7 +32,7 @@ _WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLEC
 _ASK = "give a POLYGON or a closed LINESTRING"
 
 
-def read_wkt(source: Source) -> Iterator[Outline]:
+def read_wkt(source: Source) -> Iterator[Shape]:
     """Yield the outlines of a WKT file.
 
     Raises
@@ -37,7 +43,7 @@ def read_wkt(source: Source) -> Iterator[Outline]:
     yield from _named([(source.stem, place, geometry) for place, geometry in _geometries(_text(source))])
 
 
-def read_geojson(source: Source) -> Iterator[Outline]:
+def read_geojson(source: Source) -> Iterator[Shape]:
     """Yield the outlines of a GeoJSON file, called by the property ``name`` of their features.
 
     Raises
@@ -102,25 +108,38 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
     return found
 
 
-def _named(found: list[tuple[str, str, BaseGeometry]]) -> Iterator[Outline]:
+def _named(found: list[tuple[str, str, BaseGeometry]]) -> Iterator[Shape]:
     """Yield the outlines of (name, place, geometry), numbered where several share a name."""
-    rings = [(name, place, ring) for name, place, geometry in found for ring in _rings(geometry, place)]
-    if not rings:
+    shapes = [(name, place, rings) for name, place, geometry in found for rings in _rings(geometry, place)]
+    if not shapes:
         raise InputError("holds no geometry", _ASK)
-    names = [name for name, _, _ in rings]
-    for number, (name, place, ring) in enumerate(rings, start=1):
-        points = np.array([point[:2] for point in ring.coords], dtype=np.float64)
-        if not (np.abs(points) < LARGEST).all():
-            raise InputError("a coordinate is not finite or far too large", "check its numbers", place=place)
+    names = [name for name, _, _ in shapes]
+    for number, (name, place, rings) in enumerate(shapes, start=1):
         try:
-            yield Outline(points[:-1], name if names.count(name) == 1 else f"{name}-{number}")
+            yield _shape(*map(_points, rings), name=name if names.count(name) == 1 else f"{name}-{number}")
         except InputError as error:
             error.place = error.place or place
             raise
 
 
-def _rings(geometry: BaseGeometry, place: str) -> Iterator[Any]:
-    """Yield the closed lines of a geometry and of its members."""
+def _shape(outer: Floats, hole: Floats | None = None, *, name: str) -> Shape:
+    """Return the outline of a ring (n, 2), or the body that is the hole (m, 2) in it."""
+    if hole is None:
+        return Outline(outer, name)
+    clockwise = outer[::-1] if polygon_area(outer) > 0 else outer
+    return Annulus(one_curve(hole, name), Outline(clockwise, name).curve, name)
+
+
+def _points(ring: Any) -> Floats:
+    """Return the points (n, 2) of a closed line, the first not repeated."""
+    points = np.array([point[:2] for point in ring.coords], dtype=np.float64)
+    if not (np.abs(points) < LARGEST).all():
+        raise InputError("a coordinate is not finite or far too large", "check its numbers")
+    return points[:-1]
+
+
+def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
+    """Yield the closed line, and that of the hole in it, of a geometry and of its members."""
     if hasattr(geometry, "geoms"):
         for member in geometry.geoms:
             yield from _rings(member, place)
@@ -128,16 +147,17 @@ def _rings(geometry: BaseGeometry, place: str) -> Iterator[Any]:
     kind = geometry.geom_type
     if geometry.is_empty or kind not in ("Polygon", "LineString", "LinearRing"):
         raise InputError(f"has an empty {kind} or a {kind}, which is no outline", _ASK, place=place)
-    if kind == "Polygon" and len(geometry.interiors):
+    holes = list(geometry.interiors) if kind == "Polygon" else []
+    if len(holes) > 1:
         raise InputError(
-            f"polygon has {len(geometry.interiors)} holes",
-            "give the outer ring and each hole by itself",
+            f"polygon has {len(holes)} holes",
+            "give one hole, which is a body in its far field, or each ring by itself",
             place=place,
         )
     ring = geometry.exterior if kind == "Polygon" else geometry
     if ring.coords[0] != ring.coords[-1]:
         raise InputError("line is not closed", "repeat its first point at its end", place=place)
-    yield ring
+    yield [ring, *holes]
 
 
 def _features(data: Any) -> list[tuple[str, Any]]:

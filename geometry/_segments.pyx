@@ -35,32 +35,35 @@ cdef bint _turns_back(const double[:, ::1] p, Py_ssize_t i, Py_ssize_t ii, Py_ss
 
 
 def crossing_pairs(
-    const double[:, ::1] points, bint closed, const Py_ssize_t[::1] order, int axis, Py_ssize_t limit, long long budget
+    const double[:, ::1] points, bint closed, const Py_ssize_t[::1] order, const double[::1] low, const double[::1] top,
+    Py_ssize_t limit, long long budget
 ):
     """Return pairs of segments of a polygon that meet though they are not neighbours, and whether all were compared.
 
-    Segment k runs from point k to the next. `order` sorts the segments by their least coordinate along
-    `axis`. At most `limit` pairs are returned, after at most `budget` comparisons.
+    Segment k runs from point k to the next, and from low[k] to top[k] along the direction of the sweep; `order`
+    sorts the segments by `low`. At most `limit` pairs are returned, after at most `budget` comparisons.
     """
     cdef Py_ssize_t n = points.shape[0], m = order.shape[0], a, b, i, j, ii, jj
-    cdef double top, low, high
-    cdef int across = 1 - axis
+    cdef double left, right, bottom, high
     found = []
     for a in range(m):
         i = order[a]
         ii = (i + 1) % n
-        top = max(points[i, axis], points[ii, axis])
-        low = min(points[i, across], points[ii, across])
-        high = max(points[i, across], points[ii, across])
+        left, right = min(points[i, 0], points[ii, 0]), max(points[i, 0], points[ii, 0])
+        bottom, high = min(points[i, 1], points[ii, 1]), max(points[i, 1], points[ii, 1])
         for b in range(a + 1, m):
             j = order[b]
-            jj = (j + 1) % n
-            if min(points[j, axis], points[jj, axis]) > top:
+            if low[j] > top[i]:
                 break
+            jj = (j + 1) % n
             budget -= 1
-            if points[j, across] > high and points[jj, across] > high:
+            if points[j, 1] > high and points[jj, 1] > high:
                 continue
-            if points[j, across] < low and points[jj, across] < low:
+            if points[j, 1] < bottom and points[jj, 1] < bottom:
+                continue
+            if points[j, 0] > right and points[jj, 0] > right:
+                continue
+            if points[j, 0] < left and points[jj, 0] < left:
                 continue
             if ii == j or jj == i:
                 if not (_turns_back(points, i, ii, jj) if ii == j else _turns_back(points, j, jj, ii)):

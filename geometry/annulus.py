@@ -12,6 +12,7 @@ from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.sampling import Sampling
 from geometry.shape import Shape
+from geometry.stretch import stretch_arcs
 from geometry.topology import straight
 
 
@@ -46,13 +47,16 @@ class Annulus:
         return replace(found, north=north, west=cut, east=cut)
 
     def _around(self, circle: Floats) -> Floats:
-        """Return nodes (n, 2) of the outer curve in equal steps, beginning where the circle does."""
+        """Return nodes (n, 2) of the outer curve in about equal steps, its corners among them.
+
+        They begin where the circle does, seen from its middle.
+        """
         middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
         arcs = np.linspace(0.0, self._outer.length, 2049)[:-1]
         off = self._outer.at(arcs) - middle
-        first = arcs[int(np.argmax(off @ wanted / np.hypot(*off.T)))]
-        steps = first + np.linspace(0.0, self._outer.length, len(circle))
+        first = float(arcs[int(np.argmax(off @ wanted / np.hypot(*off.T)))])
+        steps = stretch_arcs(self._outer, first, first, len(circle) - 1, "uniform")
         nodes = self._outer.at(steps % self._outer.length)
         nodes[-1] = nodes[0]
         return nodes

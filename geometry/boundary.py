@@ -154,6 +154,8 @@ class Boundary:
 
             return resampled(self, ni, nj)
         periodic = self.topology == "o"
+        if periodic and ni < 4:
+            raise InputError(f"{ni} nodes around a body", "use at least 4")
         edges: dict[str, Any] = {
             side: resample_like(getattr(self, side), n, closed=periodic and side in ("south", "north"))
             for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
@@ -210,18 +212,30 @@ class Boundary:
                     raise InputError(f"{side} of an O grid is not closed", "repeat its first node at the end")
 
     def _check_orientation(self) -> None:
-        if self.topology != "o":
-            if polygon_area(self.outline()) <= 0:
-                raise InputError(
-                    "the outline south, east, north, west runs clockwise or has no area",
-                    "swap south and north or reverse the edges",
-                )
-        else:
+        with np.errstate(over="ignore", invalid="ignore"):  # told of in `_check_outline`
+            if self.topology != "o":
+                if not 0.0 < polygon_area(self.outline()) < np.inf:
+                    self._check_outline()
+                    raise InputError(
+                        "the outline south, east, north, west runs clockwise or has no area",
+                        "swap south and north or reverse the edges",
+                    )
+                return
             inner, outer = polygon_area(self.south[:-1]), polygon_area(self.north[:-1])
-            if inner >= 0 or outer >= 0:
-                raise InputError("an O grid's edges must run clockwise", "reverse south and north")
-            if abs(inner) >= abs(outer):
-                raise InputError("the far field does not enclose the body", "use a larger far field")
+        if not (-np.inf < inner < 0 and -np.inf < outer < 0):
+            self._check_outline()
+            raise InputError("an O grid's edges must run clockwise", "reverse south and north")
+        if abs(inner) >= abs(outer):
+            self._check_outline()
+            raise InputError("the far field does not enclose the body", "use a larger far field")
+
+    def _check_outline(self) -> None:
+        """Raise InputError for what makes the sign of an area say nothing: its size, edges that cross."""
+        from geometry.crossed import check_edges  # which looks at boundaries
+        from geometry.section import check_extent
+
+        check_extent(float(np.hypot(*np.ptp(self.outline(), axis=0))))
+        check_edges(self)
 
 
 def polygon_area(points: Floats) -> float:

@@ -22,7 +22,7 @@ from geometry.curves import Curve
 from geometry.errors import InputError
 from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 from geometry.section import check_extent
-from geometry.simple import find_crossing
+from geometry.simple import check_outline
 from geometry.stretch import stretch_arcs
 from geometry.topology import o_boundary
 
@@ -60,14 +60,7 @@ class Outline:
         if corners is not None:
             self.curve = Curve(p, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
         area, extent = polygon_area(p), float(np.ptp(p, axis=0).max())
-        crossing = find_crossing(p)
-        if crossing is not None:
-            told = [places[k % len(p)] if places else f"point {k}" for k in (crossing.first, crossing.second)]
-            raise InputError(
-                f"the outline crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
-                f"behind {told[0]} and behind {told[1]}",
-                "correct these points or their order",
-            )
+        check_outline(p, places)
         if abs(area) < 1e-9 * extent**2:
             raise InputError("the outline has no area", "give the points around a domain or a body")
         self._left = area > 0  # counter-clockwise

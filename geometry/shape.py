@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from geometry.boundary import Boundary
+from geometry.crossed import check_edges
 from geometry.sampling import Sampling
 
 
@@ -19,3 +20,19 @@ class Shape(Protocol):
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the four edges with the node counts and spacing of `sampling`."""
         ...
+
+
+def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
+    """Return the boundary of `shape`, looked through before anything is made of it.
+
+    Raises
+    ------
+    InputError
+        what `shape` raises; edges that cross or touch, a body outside its far field.
+    """
+    if isinstance(shape, Boundary):
+        check_edges(shape)  # first as given, for the numbers of the user's own nodes
+    boundary = shape.boundary(sampling)
+    if boundary is not shape:
+        check_edges(boundary)
+    return boundary

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from geometry._segments import crossing_pairs
 from geometry.arrays import Floats
+from geometry.errors import InputError
 
 _BUDGET = 50_000_000
 """Comparisons before the sweep gives way to an index tree: a quarter of a second."""
+_SWEEP = np.array([0.846, 0.533])
+"""Direction of the sweep. Along an axis, every segment of a straight side across it would meet all others."""
+_ROUNDING = 1e-15
 _CHUNK = 256
 """Segments asked about at once, so that a tangle does not fill the memory with its crossings."""
 
@@ -37,11 +42,30 @@ def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
     return min(pairs, key=lambda c: (c.first, c.second), default=None)
 
 
+def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
+    """Raise InputError when a closed polygon (n, 2) crosses itself, with the place.
+
+    Parameters
+    ----------
+    places : (n,) where each point stands in its source, for the message.
+    """
+    crossing = find_crossing(points)
+    if crossing is not None:
+        first, second = (
+            places[k % len(points)] if places else f"point {k}" for k in (crossing.first, crossing.second)
+        )
+        raise InputError(
+            f"the outline crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
+            f"behind {first} and behind {second}",
+            "correct these points or their order",
+        )
+
+
 def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
     """Return places where segments of a polygon (n, 2) that are not neighbours meet, `limit` at the most.
 
-    A segment that runs back along its neighbour counts too. The segments are sorted along the longer
-    extent and only those that overlap along it are compared, so that a body of n segments takes about n
+    A segment that runs back along its neighbour counts too. The segments are sorted along a
+    direction and only those that overlap along it are compared, so that a body of n segments takes about n
     comparisons; a shape made to defeat this is searched with shapely's tree.
 
     Parameters
@@ -52,10 +76,11 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
-    low = np.minimum(p[: len(end)], end)
-    axis = int(np.ptp(p[:, 1]) > np.ptp(p[:, 0]))
-    order = np.argsort(low[:, axis], kind="stable")
-    pairs, complete = crossing_pairs(p, closed, order, axis, limit, _BUDGET)
+    along = p @ _SWEEP
+    other = np.roll(along, -1) if closed else along[1:]
+    low, top = np.minimum(along[: len(end)], other), np.maximum(along[: len(end)], other)
+    top += _ROUNDING * np.abs(along).max(initial=0.0)  # of the products
+    pairs, complete = crossing_pairs(p, closed, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
     if not complete:
         pairs = _pairs_by_tree(p, end, closed, limit)
     return [Crossing(i, j, *_shared_point(p, end, i, j)) for i, j in pairs]

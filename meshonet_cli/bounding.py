@@ -11,7 +11,7 @@ from formats.registry import read_shapes
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.sampling import Sampling
-from geometry.shape import Shape
+from geometry.shape import Shape, edges_of
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item
@@ -53,7 +53,7 @@ class Sampler:
     def boundary(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
         """Return the boundary of one shape and what there is to tell of it."""
         begun = time.perf_counter()
-        boundary = item.what.boundary(self.sampling)
+        boundary = edges_of(item.what, self.sampling)
         if self.sensors is not None:
             boundary = boundary.with_sensors(self.sensors)
         report = Sampled(item, boundary)

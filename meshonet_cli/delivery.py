@@ -83,7 +83,12 @@ class _Work(Generic[T, S, R]):
         self.make, self.destination = make, destination
 
     def __call__(self, item: Item[T], path: str) -> tuple[S | None, R]:
-        what, report = self.make(item)
+        try:
+            what, report = self.make(item)
+        except InputError as error:
+            if error.source == item.what.name:  # all that the library knows; the member's label says more
+                error.source = ""
+            raise
         report.item = item.without_content()
         if self.destination is None:
             return what, report

@@ -16,7 +16,7 @@ from geometry.errors import NoValidGridError
 from geometry.grid import Grid
 from geometry.quality import count_folded, measure, worst_cells
 from geometry.sampling import Sampling
-from geometry.shape import Shape
+from geometry.shape import Shape, edges_of
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.gates import Gate, need_percentiles
@@ -71,9 +71,9 @@ class Recipe:
             cells are folded, and that was not allowed.
         """
         clock = Clock()
-        boundary = item.what.boundary(self.sampling)
+        boundary = edges_of(item.what, self.sampling)
         if self.refine:
-            boundary = item.what.boundary(finer(self.sampling, item.what, boundary, 2**self.refine))
+            boundary = edges_of(item.what, finer(self.sampling, item.what, boundary, 2**self.refine))
         clock.lap("boundary")
         recorder = Recorder()
         with listening(recorder) if self.history else contextlib.nullcontext():

@@ -11,7 +11,7 @@ from geometry.arrays import Topology
 from geometry.boundary import Boundary
 from geometry.errors import MeshonetError
 from geometry.sampling import Sampling
-from geometry.shape import Shape
+from geometry.shape import Shape, edges_of
 from meshonet_cli.delivery import Todo
 from solvers.solution import Solution
 
@@ -71,6 +71,6 @@ class Together:
 
 def _sampled(shape: Shape, sampling: Sampling) -> Boundary | Exception:
     try:
-        return shape.boundary(sampling)
+        return edges_of(shape, sampling)
     except (MeshonetError, ArithmeticError, ValueError, OSError) as error:
         return error

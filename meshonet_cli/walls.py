@@ -114,12 +114,10 @@ def read_edges(
                 f"a first cell of {height:g}", "give a positive height", source=f"--spacing-{side}"
             )
     if not heights and layers is None:
+        others = ", --y-plus or --spacing-south" if asked else " or --y-plus"
         for option, value in (("--constant-layers", constant), ("--growth", growth)):
             if value is not None:
-                raise InputError(
-                    f"{option} without a first cell",
-                    "give --wall-spacing, --y-plus or --spacing-south as well",
-                )
+                raise InputError(f"{option} without a first cell", f"give --wall-spacing{others} as well")
     return Edges(heights, constant or 1, growth, growth is not None and res is None, slide, angle)
 
 

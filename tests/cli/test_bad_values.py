@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from conftest import Meshonet, dataset, duct
+from command_line import Meshonet, dataset, duct
 
 from meshonet_cli.app import application
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet, Process
+from command_line import Meshonet, Process
 
 from formats.registry import TABLE, format_for_output, read_grids, read_shapes
 from geometry.grid import Grid

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet
+from command_line import Meshonet
 
 from formats.registry import read_grids
 

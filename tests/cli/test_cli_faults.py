@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, Process
+from command_line import ROOT, Process
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 MESHONET = [sys.executable, "-m", "meshonet_cli"]

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet, ellipse, wave
+from command_line import Meshonet, ellipse, wave
 
 from formats.registry import read_grids
 

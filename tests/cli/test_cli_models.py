@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from conftest import Meshonet
+from command_line import Meshonet
 
 from solvers.neural.weights import shipped
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from conftest import Meshonet, Process
+from command_line import Meshonet, Process
 
 from meshonet_cli.drawing import Picture, picture_file
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT, Process, dataset, ellipse
+from command_line import ROOT, Process, dataset, ellipse
 
 
 def command(*words: str) -> list[str]:

@@ -5,7 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import Meshonet, duct
+from command_line import Meshonet, duct
 
 
 def test_a_shape_becomes_a_boundary_dataset(meshonet: Meshonet) -> None:

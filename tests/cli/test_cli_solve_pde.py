@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet, dataset, duct, wave
+from command_line import Meshonet, dataset, duct, wave
 
 from formats.registry import read_grids
 from solvers.elliptic.winslow import residual

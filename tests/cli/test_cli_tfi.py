@@ -6,7 +6,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import Meshonet, dataset, duct, ellipse
+from command_line import Meshonet, dataset, duct, ellipse
 
 from formats.registry import read_grids
 

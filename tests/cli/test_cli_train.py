@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet
+from command_line import Meshonet
 
 TORCH = importlib.util.find_spec("torch") is not None
 SMALL = ("--epochs", "2", "--batch", "4", "--held-out", "4", "--rate", "0.001", "--threads", "1")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import Meshonet, dataset, duct
+from command_line import Meshonet, dataset, wave
 
 from formats.registry import read_grids
 from geometry.profiles import PROFILES
@@ -48,9 +48,7 @@ def test_each_threshold_is_told_with_its_figure(meshonet: Meshonet, grid_vts: Pa
 
 
 def test_a_failed_profile_exits_with_one(meshonet: Meshonet, tmp_path: Path) -> None:
-    edges = duct()
-    edges["north"][1:-1, 0] += 1.1
-    meshonet("tfi", dataset(tmp_path / "leaning.h5", "quad", edges), "-o", "l.vts", "--allow-invalid", "-q")
+    meshonet("tfi", dataset(tmp_path / "wave.h5", "quad", wave()), "-o", "l.vts", "--allow-invalid", "-q")
     done = meshonet("quality", "l.vts", "--profile", "pointwise", "--fail-on", "max_angle>100")
     assert done.code == 1
     assert "gate not met: l.vts: max_angle.max is" in done.err

@@ -5,7 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from conftest import Meshonet, dataset, duct
+from command_line import Meshonet, dataset, duct
 
 from formats.registry import read_grids
 from meshonet_cli.app import application
@@ -134,12 +134,11 @@ def test_gates_decide_the_exit_code(meshonet: Meshonet, duct_h5: Path, command: 
 @pytest.mark.parametrize("command", GRID_COMMANDS)
 def test_no_grid_is_folded_in_silence(meshonet: Meshonet, tmp_path: Path, command: str) -> None:
     edges = duct()
-    for side in ("south", "north"):  # a boundary that crosses itself has no valid grid
-        edges[side][6:15, 1] = 0.5 + (1 if side == "south" else -1) * 0.3
-    source = dataset(tmp_path / "crossed.h5", "quad", edges)
+    edges["south"][1] = [-0.05, -0.05]  # the corner opens by 225 degrees: the cell in it has no valid shape
+    source = dataset(tmp_path / "open.h5", "quad", edges)
     done = meshonet(command, source, "-o", "g.vts")
     assert done.code == 3
-    assert "folded" in done.err
+    assert ("cells are folded" if command == "tfi" else "(0, 0) opens by 180 degrees") in done.err
     assert not Path("g.vts").exists()
     allowed = meshonet(command, source, "-o", "g.vts", "--allow-invalid", "-q")
     assert allowed.code == 0

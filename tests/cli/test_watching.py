@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT, Meshonet, dataset, ellipse
+from command_line import ROOT, Meshonet, dataset, ellipse
 
 from formats.registry import read_grids
 from geometry.quality import count_folded

@@ -105,6 +105,18 @@ def test_a_round_body_is_no_airfoil():
             r"no other edge starts or ends at \(0, 1\); the nearest is 0.1",
         ),
         ("0,0\n1,0\n\n1,0\n1,1\n\n1,1\n0,1\n\n0,1\n0,0.1\n", "do not close: 0.1 are left open"),
+        (
+            "0,0\n1,2\n2,0\n\n2,0\n2,1\n\n2,1\n1,1\n0,1\n\n0,1\n0,0\n",
+            r"crosses itself at \(0.5, 1\), behind line 1 and behind line 9; correct these points",
+        ),
+        (
+            "0,0\n1,0\n\n1,0\n1,.5\n1,.5\n1,1\n\n1,1\n0,1\n\n0,1\n0,0\n",
+            r"line 6: repeats the point \(1, 0.5\) of the line before; remove it",
+        ),
+        (
+            "0,0\n1,0\n\n1,0\n1,0\n\n1,0\n0,1\n\n0,1\n0,0\n",
+            "line 4: an edge is one point; give two or more points of every edge",
+        ),
     ],
 )
 def test_what_is_no_shape_is_refused_with_the_line(text, message):

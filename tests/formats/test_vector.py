@@ -54,6 +54,17 @@ def test_several_outlines_are_numbered(text: str) -> None:
     assert np.allclose(outlines[1].curve.points[0], [2, 0])
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_polygon_with_a_hole_is_a_body_in_its_far_field(way: int) -> None:
+    hole = [[0.5, 0.3], [1.0, 0.3], [1.0, 0.6], [0.5, 0.6], [0.5, 0.3]]
+    text = f"POLYGON (({wkt(SQUARE[::way])}), ({wkt(hole)}))"
+    (body,) = read_wkt(memory(text.encode(), "body.wkt"))
+    found = body.boundary(Sampling(ni=33, nj=9))
+    assert (found.topology, found.name) == ("o", "body")
+    for corner, side in [(p, found.south) for p in hole] + [(p, found.north) for p in SQUARE]:
+        assert np.hypot(*(side - corner).T).min() < 1e-12
+
+
 def test_geojson_features_are_called_by_their_name() -> None:
     polygon = {"type": "Polygon", "coordinates": [SQUARE]}
     (outline,) = read_geojson(memory(geojson(polygon, name="duct\x1b")))
@@ -82,9 +93,9 @@ WKT = {
     "empty": ("POLYGON EMPTY", "has an empty Polygon"),
     "nothing": ("# only a comment", f"holds no geometry; {ASK}"),
     "open": ("LINESTRING (0 0, 1 0, 1 1)", "line is not closed; repeat its first point at its end"),
-    "hole": (
-        f"POLYGON (({wkt(SQUARE)}), (0.5 0.2, 1 0.2, 1 0.5, 0.5 0.2))",
-        "polygon has 1 holes; give the outer ring",
+    "holes": (
+        f"POLYGON (({wkt(SQUARE)}), (0.5 0.2, 1 0.2, 1 0.5, 0.5 0.2), (1.5 0.2, 1.8 0.2, 1.8 0.5, 1.5 0.2))",
+        "polygon has 2 holes; give one hole, which is a body in its far field",
     ),
     "crossing": ("POLYGON ((0 0, 1 1, 1 0, 0 1, 0 0))", "crosses itself at"),
     "nan": ("POLYGON ((0 0, nan 1, 1 0, 0 0))", "is not finite or far too large; check its numbers"),

@@ -1,0 +1,30 @@
+"""A body in a far field that the input draws: both curves are met, corners and all."""
+
+import numpy as np
+import pytest
+
+from geometry.annulus import Annulus
+from geometry.curves import Curve
+from geometry.errors import InputError
+from geometry.outline import Outline
+from geometry.sampling import Sampling
+
+T = np.linspace(0, -2 * np.pi, 80, endpoint=False)
+DISC = Outline(0.4 * np.stack([np.cos(T), np.sin(T)], axis=1))
+SQUARE = 2.0 * np.array([[-1.0, -1], [-1, 1], [1, 1], [1, -1]])
+
+
+@pytest.mark.parametrize("ni", [33, 50, 64])
+def test_corners_of_the_far_field_are_nodes(ni: int) -> None:
+    found = Annulus(DISC, Curve(SQUARE, closed=True)).boundary(Sampling(ni, 9))
+    for corner in SQUARE:
+        assert np.hypot(*(found.north - corner).T).min() < 1e-12
+    assert np.abs(found.north).max(axis=1) == pytest.approx(2.0, abs=1e-12)
+    np.testing.assert_array_equal(found.north[0], found.north[-1])
+
+
+def test_fewer_nodes_than_corners_are_refused() -> None:
+    star = np.stack([(2.0 + np.cos(20 * T)) * np.cos(T), (2.0 + np.cos(20 * T)) * np.sin(T)], axis=1)
+    outer = Curve(star, closed=True, corners=np.arange(0, 80, 4))
+    with pytest.raises(InputError, match="corners do not fit on 9 nodes"):
+        Annulus(DISC, outer).boundary(Sampling(9, 9))
