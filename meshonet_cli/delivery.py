@@ -5,7 +5,8 @@ from __future__ import annotations
 import contextlib
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from itertools import chain
+from functools import partial
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -40,11 +41,12 @@ def deliver(
     *,
     skip_existing: bool = False,
     ahead: Callable[[Todo[T]], Todo[T]] | None = None,
+    together: int = 1,
     jobs: int = 1,
 ) -> None:
     """Make something of every member of `found`, write it to `destination`, and tell of it.
 
-    A member that fails is told of and left out. Memory holds one member, or a few for each job.
+    A member that fails is told of and left out. Memory holds one member, or a few (groups) for each job.
 
     Parameters
     ----------
@@ -52,7 +54,9 @@ def deliver(
         must be something that can be pickled.
     tell : is given the report and the path when the member is written.
     skip_existing : pass over members whose own file is there.
-    ahead : passes on what is to be made, and may look at several members before it does.
+    ahead : passes on what is to be made, and may look at several members before it does; with several jobs
+        it must be something that can be pickled.
+    together : members that go to one of several jobs at a time, for `ahead` to look at.
     jobs : processes that make, and write when every member has its own file.
     """
     leading = next(found, None)
@@ -62,9 +66,13 @@ def deliver(
     found = chain([leading], found)
     each = destination.each or not session.batch
     work = _Work(make, destination if each else None)
-    with _executor(jobs if session.batch else 1) as pool:
+    jobs = jobs if session.batch else 1
+    with _executor(jobs) as pool:
         todo = _paths(found, destination, session, skip_existing) if each else ((item, "") for item in found)
-        done = _under_way(ahead(todo) if ahead is not None else todo, work, pool, jobs)
+        if ahead is not None and jobs > 1:
+            done = _in_groups(todo, partial(_each, work, ahead), pool, jobs, together)
+        else:
+            done = _under_way(ahead(todo) if ahead is not None else todo, work, pool, jobs)
         if each:
             for item, path, future in done:
                 with session.member(item.label, item.source):
@@ -122,6 +130,34 @@ def _under_way(
         yield waiting.popleft()
 
 
+def _in_groups(
+    todo: Todo[T], work: Callable[[list[tuple[Item[T], str]]], list[Any]], pool: Pool, jobs: int, most: int
+) -> Iterator[tuple[Item[Any], str, Promise]]:
+    """Do as `_under_way`, `most` members at a time in one job; one group more than jobs is under way."""
+    waiting: deque[list[tuple[Item[Any], str, Promise]]] = deque()
+    while group := list(islice(todo, most)):
+        promise = pool.submit(work, group)
+        waiting.append(
+            [(item.without_content(), path, _Share(promise, k)) for k, (item, path) in enumerate(group)]
+        )
+        if len(waiting) > jobs:
+            yield from waiting.popleft()
+    yield from chain.from_iterable(waiting)
+
+
+def _each(
+    work: _Work[T, S, R], ahead: Callable[[Todo[T]], Todo[T]], group: list[tuple[Item[T], str]]
+) -> list[tuple[S | None, R] | Exception]:
+    """Return what `work` makes of each member of a group, or what went wrong with it."""
+    made: list[tuple[S | None, R] | Exception] = []
+    for item, path in ahead(iter(group)):
+        try:
+            made.append(work(item, path))
+        except Exception as error:  # raised where the member is told of
+            made.append(error)
+    return made
+
+
 def _streamed(
     done: Iterator[tuple[Item[Any], str, Promise]],
     destination: Destination,
@@ -161,6 +197,19 @@ class Promise(Protocol):
     def result(self) -> Any:
         """Return what came of it; raise what went wrong."""
         ...
+
+
+class _Share:
+    """One of the things that a promise holds."""
+
+    def __init__(self, promise: Promise, k: int) -> None:
+        self._promise, self._k = promise, k
+
+    def result(self) -> Any:
+        found = self._promise.result()[self._k]
+        if isinstance(found, Exception):
+            raise found
+        return found
 
 
 class Pool(Protocol):

@@ -24,7 +24,7 @@ from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
-from meshonet_cli.together import Together
+from meshonet_cli.together import Together, shared
 from meshonet_cli.watching import Live, Recorder, Row, check_file, write
 from solvers.guard import guard
 from solvers.progress import listening
@@ -151,7 +151,7 @@ def make_grids(
     prepare(sources, destination, session)
     check_file(recipe.history)
     found = items(sources, lambda source: read_shapes(source, fmt), session)
-    together = recipe.together if jobs == 1 else None
+    together = recipe.together
     ahead = partial(together.ahead, sampling=recipe.sampling) if together is not None else None
     members: list[tuple[str, Iterable[Row]]] = []
 
@@ -162,7 +162,7 @@ def make_grids(
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
         deliver(
             found, recipe.grid, destination, session, tell,
-            skip_existing=skip_existing, ahead=ahead, jobs=jobs,
+            skip_existing=skip_existing, ahead=ahead, together=shared(recipe.sampling), jobs=jobs,
         )  # fmt: skip
     if recipe.history and members:
         with whole_file(recipe.history) as file:

@@ -13,10 +13,17 @@ from geometry.errors import MeshonetError
 from geometry.sampling import Sampling
 from geometry.shape import Shape, edges_of
 from meshonet_cli.delivery import Todo
+from meshonet_cli.member import Item
 from solvers.solution import Solution
 
 AHEAD = 64
-"""Members that are read and solved together."""
+"""Members that are read and solved together at the most."""
+
+SHARED = 16
+"""Members that one of several processes gets at a time at the most."""
+
+NODES = 1 << 22
+"""Nodes of grids from which no more members are taken together: some hundred MB."""
 
 
 class Sampled:
@@ -57,16 +64,35 @@ class Together:
 
     def ahead(self, todo: Todo[Shape], sampling: Sampling) -> Todo[Shape]:
         """Yield what is to be made, solved `AHEAD` members at a time; one that fails does so in its turn."""
-        while group := list(islice(todo, AHEAD)):
-            sampled = [_sampled(item.what, sampling) for item, _ in group]
-            alike = [one for one in sampled if isinstance(one, Boundary) and one.topology == self.topology]
+        while group := _group(todo, sampling):
+            alike = [
+                one for _, _, one in group if isinstance(one, Boundary) and one.topology == self.topology
+            ]
             self._made = {}  # what was not asked for goes with its boundary, whose id another may get
             if len(alike) > 1:
                 with suppress(MeshonetError):  # one of them fails: that is told in its turn
                     solutions = self._many(alike)
                     self._made = {id(one): solution for one, solution in zip(alike, solutions, strict=True)}
-            for (item, path), one in zip(group, sampled, strict=True):
+            for item, path, one in group:
                 yield replace(item, what=Sampled(item.what.name, one)), path
+
+
+def shared(sampling: Sampling) -> int:
+    """Return how many members go to another process together: fewer when grids are large."""
+    nodes = (sampling.ni or 1) * (sampling.nj or 1)
+    return max(1, min(SHARED, NODES // nodes))
+
+
+def _group(todo: Todo[Shape], sampling: Sampling) -> list[tuple[Item[Shape], str, Boundary | Exception]]:
+    """Return the next members with their boundaries, as many as are solved together."""
+    group, nodes = [], 0
+    for item, path in islice(todo, AHEAD):
+        one = _sampled(item.what, sampling)
+        group.append((item, path, one))
+        nodes += one.ni * one.nj if isinstance(one, Boundary) else 0
+        if nodes >= NODES:
+            break
+    return group
 
 
 def _sampled(shape: Shape, sampling: Sampling) -> Boundary | Exception:

@@ -5,6 +5,7 @@ from geometry.arrays import Floats
 
 Placed = tuple[NDArray[np.intp], Floats]
 
+def begin_all(sides: tuple[Floats, ...], thin: tuple[Placed, ...], nodes: Floats) -> None: ...
 def evaluate_all(
     coarse: Floats,
     sides: tuple[Floats, ...],

@@ -1,4 +1,4 @@
-"""Compiled evaluation of grids on few nodes at many; the formula stands in ``evaluate_kernel.c``."""
+"""Compiled transfinite grids on few nodes, and the evaluation of grids on few nodes at many; the formula stands in ``evaluate_kernel.c``."""
 
 from libc.stdlib cimport free, malloc
 
@@ -21,6 +21,7 @@ cdef extern from "evaluate_kernel.h":
         const double *west
         const double *east
         const double *opened
+    void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes) nogil
     Py_ssize_t evaluate_scratch(const Evaluation *e) nogil
     void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes) nogil
 
@@ -39,6 +40,41 @@ cdef int place(Places *p, tuple found, Py_ssize_t count, Py_ssize_t knots) excep
     return 0
 
 
+cdef int check(tuple sides, Py_ssize_t batch, Py_ssize_t ni, Py_ssize_t nj) except -1:
+    """Refuse edges of another number of grids or nodes."""
+    for side, count in zip(sides, (ni, ni, nj, nj)):
+        if side.shape != (batch, 2, count):
+            raise ValueError(f"edges of shape {side.shape} for {batch} grids of {ni} x {nj}")
+    return 0
+
+
+def begin_all(tuple sides, tuple thin, double[:, :, :, ::1] nodes):
+    """Fill the planes `nodes` (batch, 2, m, n) by transfinite interpolation of edges, by their own arc lengths.
+
+    `sides` are south, north (batch, 2, ni), west and east (batch, 2, nj), `thin` the `places` of m nodes in ni and of
+    n in nj.
+    """
+    cdef const double[:, :, ::1] south = sides[0], north = sides[1], west = sides[2], east = sides[3]
+    cdef Py_ssize_t batch = nodes.shape[0], b
+    cdef Evaluation e
+    cdef Corners edges
+    e.m, e.n, e.ni, e.nj = nodes.shape[2], nodes.shape[3], south.shape[2], west.shape[2]
+    if nodes.shape[1] != 2:
+        raise ValueError("another number of grids")
+    check(sides, batch, e.ni, e.nj)
+    place(&e.thin[0], thin[0], e.m, e.ni)
+    place(&e.thin[1], thin[1], e.n, e.nj)
+    cdef double *scratch = <double *>malloc(6 * (e.m + e.n) * sizeof(double))
+    if scratch == NULL:
+        raise MemoryError
+    with nogil:
+        for b in range(batch):
+            edges.south, edges.north = &south[b, 0, 0], &north[b, 0, 0]
+            edges.west, edges.east = &west[b, 0, 0], &east[b, 0, 0]
+            evaluate_begin(&e, &edges, scratch, &nodes[b, 0, 0, 0])
+    free(scratch)
+
+
 def evaluate_all(const double[:, :, :, ::1] coarse, tuple sides, tuple fine, tuple thin,
                  const double[:, ::1] opened, double near, double far, double[:, :, :, ::1] nodes):
     """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n).
@@ -54,9 +90,7 @@ def evaluate_all(const double[:, :, :, ::1] coarse, tuple sides, tuple fine, tup
     e.m, e.n, e.ni, e.nj, e.near, e.far = coarse.shape[2], coarse.shape[3], nodes.shape[2], nodes.shape[3], near, far
     if coarse.shape[0] != batch or coarse.shape[1] != 2 or nodes.shape[1] != 2 or opened.shape[0] != batch or opened.shape[1] != 4:
         raise ValueError("another number of grids")
-    for side, count in zip(sides, (e.ni, e.ni, e.nj, e.nj)):
-        if side.shape != (batch, 2, count):
-            raise ValueError(f"edges of shape {side.shape} for {batch} grids of {e.ni} x {e.nj}")
+    check(sides, batch, e.ni, e.nj)
     place(&e.fine[0], fine[0], e.ni, e.m)
     place(&e.fine[1], fine[1], e.nj, e.n)
     place(&e.thin[0], thin[0], e.m, e.ni)

@@ -150,6 +150,35 @@ MESHONET_INLINE void add(double *restrict x, const double *w, const double *rest
         x[j] += (w0 * v0[j] + w1 * v1[j]) + (w2 * m0[j] + w3 * m1[j]);
 }
 
+MESHONET_CLONES
+void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes)
+{
+    const ptrdiff_t m = e->m, n = e->n, half = m + n;
+    const double *given[4] = {edges->south, edges->north, edges->west, edges->east};
+    double *at[3][4]; /* x, y and laws of the four sides */
+    for (int k = 0; k < 3; k++) {
+        double *first = scratch + 2 * k * half;
+        at[k][0] = first, at[k][1] = first + m, at[k][2] = first + 2 * m, at[k][3] = first + 2 * m + n;
+    }
+    for (int side = 0; side < 4; side++) {
+        const int eta = side / 2;
+        const ptrdiff_t count = eta ? n : m, full = eta ? e->nj : e->ni;
+        thinned(given[side], &e->thin[eta], count, at[0][side]);
+        thinned(given[side] + full, &e->thin[eta], count, at[1][side]);
+        law(at[0][side], at[1][side], count, at[2][side]);
+    }
+    TfiEdges three[3];
+    for (int k = 0; k < 3; k++)
+        three[k] = (TfiEdges){at[k][0], at[k][1], at[k][2], at[k][3]};
+    double *x = nodes, *y = nodes + m * n;
+    for (int side = 2; side < 4; side++) {
+        const ptrdiff_t row = side == 2 ? 0 : m - 1;
+        memcpy(x + row * n, at[0][side], (size_t)n * sizeof *x), memcpy(y + row * n, at[1][side], (size_t)n * sizeof *y);
+    }
+    for (ptrdiff_t i = 1; i < m - 1; i++)
+        fill_row(x + i * n, y + i * n, i, m, n, &three[0], &three[1], &three[2]);
+}
+
 ptrdiff_t evaluate_scratch(const Evaluation *e)
 {
     const ptrdiff_t size = e->m * e->n, most = e->m > e->n ? e->m : e->n;

@@ -24,6 +24,10 @@ typedef struct {
     const double *south, *north, *west, *east, *opened;
 } Corners;
 
+/* Fill the planes nodes (2, m, n) by transfinite interpolation of edges with ni and nj nodes, of which `thin` are the
+   places; scratch of 6 (m + n). */
+void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes);
+
 /* How many numbers evaluate_grid needs as scratch. */
 ptrdiff_t evaluate_scratch(const Evaluation *e);
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from command_line import Meshonet
 
-from formats.registry import read_grids
+from formats.registry import read_grids, read_shapes
+from solvers.neural.inference import infer
 from solvers.neural.quads.operator import in_batches
 
 
@@ -19,24 +20,27 @@ def arches(meshonet: Meshonet) -> Path:
     return Path("arches.h5")
 
 
+@pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_dataset_has_the_grids_of_its_members_alone(
-    meshonet: Meshonet, arches: Path, quad_model: str
+    meshonet: Meshonet, arches: Path, quad_model: str, jobs: str
 ) -> None:
-    told = meshonet("infer", arches, "--model", quad_model, "--polish", "1", "-o", "g.h5", "--json").objects
+    words = ("--model", quad_model, "--polish", "1", "--jobs", jobs, "--json")
+    told = meshonet("infer", arches, *words, "-o", "g.h5").objects
     assert [(one["method"], one["model"], one["cycles"], one["folded"]) for one in told] == 5 * [
         ("operator", "random", 1, 0)
     ]
-    together = list(read_grids("g.h5"))
-    meshonet("infer", arches, "--model", quad_model, "--polish", "1", "--jobs", "2", "-o", "apart.h5")
-    for one, other in zip(together, read_grids("apart.h5"), strict=True):
-        assert one.name == other.name
-        np.testing.assert_array_equal(one.nodes, other.nodes)
+    for one, boundary in zip(read_grids("g.h5"), read_shapes(str(arches)), strict=True):
+        alone = infer(boundary, quad_model, 1).grid
+        assert one.name == alone.name
+        np.testing.assert_array_equal(one.nodes, alone.nodes)
 
 
+@pytest.mark.parametrize("jobs", ["1", "2"])
 def test_members_that_fail_leave_the_others_alone(
-    meshonet: Meshonet, arches: Path, quad_model: str, body_h5: Path
+    meshonet: Meshonet, arches: Path, quad_model: str, body_h5: Path, jobs: str
 ) -> None:
-    done = meshonet("infer", arches, body_h5, "--model", quad_model, "-o", "{stem}-{index}.vts")
+    words = ("--model", quad_model, "--jobs", jobs)
+    done = meshonet("infer", body_h5, arches, *words, "-o", "{stem}-{index}.vts")
     assert done.code == 2
     assert "makes quad grids, and this boundary is o; use another model" in done.err
     assert len(list(Path().glob("arches-*.vts"))) == 5
@@ -63,6 +67,19 @@ def test_only_members_without_a_file_are_solved(
     Path("3.vts").unlink()
     meshonet(*words)
     assert solved == [5, 2]
+
+
+def test_large_grids_are_solved_a_few_at_a_time(
+    meshonet: Meshonet, arches: Path, quad_model: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solved: list[int] = []
+    monkeypatch.setattr(
+        "solvers.neural.quads.inference.in_batches",
+        lambda boundaries: solved.append(len(boundaries)) or in_batches(boundaries),
+    )
+    monkeypatch.setattr("meshonet_cli.together.NODES", 2 * 21 * 17)
+    meshonet("infer", arches, "--model", quad_model, "-o", "{index}.vts")
+    assert solved == [2, 2, 1]
 
 
 def test_airfoils_go_through_the_network_together(meshonet: Meshonet) -> None:

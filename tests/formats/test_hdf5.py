@@ -11,6 +11,7 @@ from format_shapes import c_grid, channel, memory, ring
 
 from formats.edges import boundary_of
 from formats.hdf5 import Writer, read_grids, read_parameters, read_shapes, write_boundaries, write_grids
+from formats.hdf5_check import Checked
 from formats.source import open_source
 from geometry.errors import InputError
 from geometry.grid import Grid
@@ -216,6 +217,20 @@ def test_a_damaged_or_hostile_dataset_is_refused(change: str) -> None:
     data = changed(change)
     with pytest.raises(InputError, match=CASES[change]):
         read(data)
+
+
+def test_rows_are_read_alone_where_those_after_them_are_broken() -> None:
+    class Broken:
+        dtype, shape = np.dtype("f8"), (4, 2)
+
+        def __getitem__(self, rows: slice) -> np.ndarray:
+            if rows.stop > 2:
+                raise OSError("cannot read row 2")
+            return np.arange(8.0).reshape(4, 2)[rows]
+
+    np.testing.assert_array_equal(Checked._rows_from(Broken(), 1), [[2.0, 3.0]])
+    with pytest.raises(OSError, match="row 2"):
+        Checked._rows_from(Broken(), 2)
 
 
 def test_a_file_that_is_not_hdf5_is_refused() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from geometry.arrays import Floats
 from solvers import acute
-from solvers._evaluate import evaluate_all
+from solvers._evaluate import begin_all, evaluate_all
 from solvers.neural.quads.edges import Edges, rims
 from solvers.spline import bending, between, places
 
@@ -59,6 +59,15 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int) -> None:
         assert np.array_equal(side, given)
 
 
+@pytest.mark.parametrize(("m", "n", "ni", "nj"), [(33, 33, 65, 65), (9, 5, 40, 23), (4, 6, 3, 2)])
+def test_the_beginning_is_the_interpolation_of_thinned_edges(m: int, n: int, ni: int, nj: int) -> None:
+    edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
+    found = np.empty((2, 2, m, n))
+    begin_all(edges.sides, placed(m, n, ni, nj)[1], found)
+    thin = edges.thinned(m, n)
+    np.testing.assert_allclose(found, thin.interpolated(thin.laws()), rtol=0, atol=1e-14)
+
+
 def test_arrays_that_do_not_fit_are_refused() -> None:
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(9, 7))))
     fine, thin = placed(5, 5, 9, 7)
@@ -72,3 +81,10 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
     ):
         with pytest.raises(ValueError, match=told):
             evaluate_all(*given)
+    for given, told in (
+        ((edges[:1].sides, thin, coarse), "edges of shape"),
+        ((edges.sides, fine, coarse), "another number of nodes"),
+        ((edges.sides, thin, coarse[:, :1].copy()), "another number of grids"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            begin_all(*given)

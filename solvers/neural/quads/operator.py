@@ -19,7 +19,7 @@ import numpy as np
 from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from solvers import acute
-from solvers._evaluate import evaluate_all
+from solvers._evaluate import begin_all, evaluate_all
 from solvers.neural.quads._network import look
 from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import LATENT, SCALE
@@ -44,8 +44,9 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
     head : index into `encoding.HEADS`.
     dtype : of the network's arithmetic, ``float64`` or ``float32``; all else is float64.
     """
-    thin = edges.thinned(LATENT, LATENT)
-    base = thin.interpolated(thin.laws())
+    base = np.empty((len(edges), 2, LATENT, LATENT))
+    ni, nj = edges.counts
+    begin_all(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
     z = base[:, 0] + 1j * base[:, 1]
     middle, factor = (np.asarray(value) for value in frame(z, np))
     network = model.network(dtype)
