@@ -31,7 +31,7 @@ from geometry.families import procedural
 from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from geometry.sampling import Sampling
-from solvers.coarse import solve_automatic
+from solvers.automatic import solve_automatic
 from solvers.elliptic.solve import solve
 from solvers.hyperbolic import hyperbolic
 from solvers.variational.solve import solve as minimise

@@ -34,7 +34,7 @@ def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0
         return partial(solve_refined, method=method, levels=refine)
     settings: dict[str, Any] = method.keywords
     if coarse == "auto" and not settings:
-        from solvers.coarse import solve_automatic
+        from solvers.automatic import solve_automatic
 
         return partial(solve_automatic, method=method, name=name)
     if not isinstance(coarse, int):

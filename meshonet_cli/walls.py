@@ -219,7 +219,7 @@ class WithWalls:
         """Return the method, solving on all nodes whatever their number."""
         from functools import partial
 
-        from solvers.coarse import solve_automatic
+        from solvers.automatic import solve_automatic
 
         automatic = isinstance(self.method, partial) and self.method.func is solve_automatic
         return self.method.keywords["method"] if automatic else self.method  # type: ignore[attr-defined]

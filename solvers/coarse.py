@@ -31,12 +31,6 @@ from solvers.solution import Solution
 from solvers.spline import Kinks, bending, between, kinked_matrix, kinks, places
 from solvers.tfi import Four, interpolate, parameters
 
-AUTOMATIC = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
-"""Nodes along a direction above which a method solves on fewer unless told, and how many.
-
-Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of the full solve's.
-"""
-
 LEAST = 9
 """Fewest coarse nodes along a direction that describe anything."""
 
@@ -91,41 +85,6 @@ def solve_coarse(
     facts = {**solution.grid.provenance, "coarse": counts}
     grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
     return replace(solution, grid=grid, seconds={**solution.seconds, "grid": time.perf_counter() - begun})
-
-
-def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], name: str) -> Solution:
-    """Solve with `method` in full, or through fewer nodes where that measures as good and takes less time.
-
-    Parameters
-    ----------
-    boundary : only large quads are solved on fewer nodes; where those fold, on twice as many. C boundaries
-        by ``auto`` are marched (`solvers.unasked`) or else minimised, on fewer nodes too: Winslow's lines
-        lean by 70 degrees along the wake, where small cells face large ones of the far field.
-    method : a solver of boundary to solution.
-    name : of the method, as in `AUTOMATIC`; others solve in full.
-
-    Returns
-    -------
-    Solution
-        that of `method` or of `solve_coarse`, which the provenance of the grid tells.
-    """
-    wake = name == "auto" and boundary.topology == "c"
-    if wake:
-        from solvers.unasked import march_unasked
-        from solvers.variational.solve import solve as minimise  # which evaluates by this module
-
-        marched = march_unasked(boundary)
-        if marched is not None:
-            return marched
-        method, name = minimise, "variational"
-    above, n = AUTOMATIC.get(name, (0, 0))
-    if not n or not (boundary.topology == "quad" or wake) or max(boundary.ni, boundary.nj) <= above:
-        return method(boundary)
-    solution = solve_coarse(boundary, method, n, smooth=True)
-    if count_folded(solution.grid.nodes) == 0:
-        return solution
-    finer = solve_coarse(boundary, method, 2 * n - 1, smooth=True)
-    return min(finer, solution, key=lambda one: count_folded(one.grid.nodes))
 
 
 def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:

@@ -15,12 +15,15 @@ from geometry.grid import Grid
 from solvers.neural.operator import Polish, infer_strips
 from solvers.neural.operator import infer as infer_strip
 from solvers.neural.quads.encoding import KIND as QUADS
-from solvers.neural.weights import KIND, kind_of, model_path
+from solvers.neural.weights import KIND, kind_of, load_model, model_path
 from solvers.solution import Solution
 
 if TYPE_CHECKING:
     from solvers.neural.devices import Device
     from solvers.neural.trained import Trained
+
+FOUR_SIDED = "quad-general"
+"""Model for four-sided domains when none is named and a network is wanted: steps after it, or a device."""
 
 Answer = Literal["valid", "pasted", "raw"]
 """What becomes of a network's answer: ``raw`` nothing; ``pasted`` the boundary's own nodes are put on its
@@ -38,7 +41,8 @@ def infer(
 
     Parameters
     ----------
-    model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for the shipped one.
+    model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for what measures
+        best: with a given `polish` or `device` the network for the topology, else often no network.
     polish : of the strip operator (`solvers.neural.operator.infer`) or of a quad model
         (`solvers.neural.quads.inference.infer_quads`).
     answer : what becomes of the answer of a model that does not meet the boundary exactly.
@@ -49,10 +53,16 @@ def infer(
     InputError
         a model that does not exist, cannot be read or does not suit the boundary; no such device.
     """
+    if model is None and boundary.topology == "quad" and (device is not None or polish != "auto"):
+        model = FOUR_SIDED
+    kind = KIND if model in (None, "base") else kind_of(model_path(model))
+    if kind == "":
+        load_model(model)  # which says what is wrong with the file
+    if boundary.topology == "c" and kind in (KIND, QUADS):
+        _refuse(model=model, polish=None if polish == "auto" else polish, device=device)
     if device is not None:
         return infer_many([boundary], model, polish, device)[0]
-    kind = KIND if model in (None, "base") else kind_of(model_path(model))
-    if kind in ("", KIND):
+    if kind == KIND:
         return infer_strip(boundary, model, polish)
     if model is not None and kind == QUADS:
         from solvers.neural.quads.inference import infer_quads
@@ -69,6 +79,16 @@ def infer(
     told = f"the network's own boundary was off by {away:.1e} at most, and was {_DONE[answer != 'raw']}"
     notes = (told,) if away > 0.0 else ()
     return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)
+
+
+def _refuse(**asked: object) -> None:
+    """Raise InputError when anything was asked for that C grids, which no network makes, have no use for."""
+    for option, value in asked.items():
+        if value is not None:
+            raise InputError(
+                f"--{option} {value} is of no use to a c grid: it is marched, no model makes it",
+                f"drop --{option}",
+            )
 
 
 def many_of(model: str | None, device: Device | None = None, polish: Polish = "auto") -> Topology | None:

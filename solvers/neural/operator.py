@@ -68,7 +68,7 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         a model that does not exist or cannot be read.
     """
     if boundary.topology != "o":
-        from solvers.coarse import solve_automatic
+        from solvers.automatic import solve_automatic
         from solvers.variational.solve import solve
 
         if model is not None:

@@ -61,6 +61,10 @@ SECOND = {"quad-winslow": "quad-general", "hole-winslow": "hole-o"}
 """Models that are another answer of a network, by the name of its file."""
 
 
+NEVER = {"airfoil-c": "leave --model out: --topology c is marched from wall and wake, better than by a model"}
+"""Models that one may look for and that are not made, and what serves instead."""
+
+
 def shipped() -> tuple[str, ...]:
     """Return the names of the models in the package."""
     files = {path.stem for path in FOLDER.glob("*.safetensors")}
@@ -75,6 +79,8 @@ def model_path(name: str | None) -> Path:
     path = Path(name)
     if path.is_file():
         return path
+    if name in NEVER:
+        raise InputError(f"there is no model {name!r}", NEVER[name])
     raise InputError(f"no model {name!r}", "use a .safetensors file or one of: base, " + ", ".join(shipped()))
 
 

@@ -54,10 +54,16 @@ def test_what_a_device_cannot_do_is_said(meshonet: Meshonet, quad_model: str) ->
     )
     assert done.code == 2
     assert "steps of descent are not taken on a device; leave --polish or --device out" in done.err
-    done = meshonet("infer", "arches.h5", "--device", "cpu", "-o", "g.h5")
+    words = ("--model", "airfoil-o", "--device", "cpu", "-o", "g.h5")
+    done = meshonet("infer", "arches.h5", *words)
     assert done.code == 2
     assert "model airfoil-o makes o grids on a device, and this boundary is quad" in done.err
     assert not Path("g.h5").exists()
+
+
+def test_four_sided_domains_go_to_their_network_when_none_is_named(meshonet: Meshonet, duct_h5: Path) -> None:
+    told = meshonet("infer", duct_h5, "--device", "cpu", "-o", "g.h5", "--json").only
+    assert (told["model"], told["topology"]) == ("quad-general", "quad")
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is a CUDA device")

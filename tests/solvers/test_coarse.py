@@ -12,7 +12,7 @@ from geometry.corners import find_corners
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import measure
-from solvers.coarse import divided, evaluate, solve_automatic, solve_coarse, thinned
+from solvers.coarse import divided, evaluate, solve_coarse, thinned
 from solvers.elliptic.solve import solve
 from solvers.solution import Solution
 from solvers.tfi import tfi
@@ -115,39 +115,6 @@ def test_provenance_name_and_parts_are_kept() -> None:
     assert grid.provenance["method"] == "winslow"
     assert grid.name == "arch"
     assert grid.parts == Grid(grid.nodes).parts
-
-
-def spied(seen: list[tuple[int, int]]) -> Callable[[Boundary], Solution]:
-    """A solver that notes the counts of what it is given, and folds copies of fewer than 200 nodes."""
-
-    def solver(boundary: Boundary) -> Solution:
-        seen.append((boundary.ni, boundary.nj))
-        nodes = tfi(boundary).nodes.copy(order="K")
-        if boundary.ni < 200:
-            nodes[60:64, 5], nodes[70:74, 5] = nodes[70:74, 5].copy(), nodes[60:64, 5].copy()
-        return Solution(Grid(nodes, boundary.topology), "variational")
-
-    return solver
-
-
-@pytest.mark.parametrize(
-    ("make", "counts", "name", "expected"),
-    [
-        (arch, (257, 20), "variational", [(257, 20)]),
-        (arch, (300, 20), "variational", [(129, 20), (257, 20)]),
-        (arch, (512, 20), "winslow", [(512, 20)]),
-        (arch, (513, 20), "winslow", [(257, 20)]),
-        (arch, (600, 20), "thomas-middlecoff", [(600, 20)]),
-        (hole, (600, 20), "variational", [(600, 20)]),
-    ],
-)
-def test_large_quads_take_fewer_nodes_and_more_where_those_fold(make, counts, name, expected) -> None:  # type: ignore[no-untyped-def]
-    seen: list[tuple[int, int]] = []
-    solution = solve_automatic(make(*counts), spied(seen), name)
-    assert seen == expected
-    assert solution.grid.nodes.shape[:2] == counts
-    if len(expected) == 2:
-        assert folded(solution.grid.nodes) == 0
 
 
 def test_too_few_coarse_nodes_are_refused() -> None:

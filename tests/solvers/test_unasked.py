@@ -9,7 +9,7 @@ from geometry.naca import naca
 from geometry.parts import wake_nodes
 from geometry.quality import count_folded, measure
 from geometry.sampling import Sampling
-from solvers.coarse import solve_automatic
+from solvers.automatic import solve_automatic
 from solvers.elliptic.solve import solve
 from solvers.unasked import GROWTH, MOST, PART, first_cell, march_unasked
 
