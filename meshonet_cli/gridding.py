@@ -24,7 +24,7 @@ from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report
 from meshonet_cli.session import Session
-from meshonet_cli.together import Together, shared
+from meshonet_cli.together import Sampled, Together, shared
 from meshonet_cli.watching import Live, Recorder, Row, check_file, write
 from solvers.guard import guard
 from solvers.progress import listening
@@ -71,7 +71,10 @@ class Recipe:
             cells are folded, and that was not allowed.
         """
         clock = Clock()
-        boundary = edges_of(item.what, self.sampling)
+        if isinstance(item.what, Sampled):  # and looked through
+            boundary = item.what.boundary(self.sampling)
+        else:
+            boundary = edges_of(item.what, self.sampling)
         if self.refine:
             boundary = edges_of(item.what, finer(self.sampling, item.what, boundary, 2**self.refine))
         clock.lap("boundary")

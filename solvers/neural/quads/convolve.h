@@ -5,7 +5,7 @@
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)
 #define LANES (VECTOR / (int)sizeof(T))
-#define MOST_PIXELS 11
+#define MOST_PIXELS 12
 #define MOST_VECTORS 4
 
 typedef T NAME(Lanes) __attribute__((vector_size(VECTOR), aligned(sizeof(T)), may_alias));
@@ -70,18 +70,21 @@ static int NAME(pixels_of)(int vectors, ptrdiff_t m)
 }
 
 #define TILE(p, v) case 16 * v + p: \
-    NAME(tile)(from, pixel, line, rows, run, w, wide, bias, sum, v * LANES, p, v); break;
+    NAME(tile)(from, pixel, line, rows, run, w, wide, bias, to, pitch, p, v); break;
 
-/* One row of m outputs; the last tile of a row begins early enough to be whole. */
+/* One row of m outputs; the last tile of a row begins early enough to be whole. Those that go
+   `straight` where they belong may go beyond the last pixel, into the row after. */
 static KERNEL __attribute__((noinline)) void NAME(row)(const T *in, ptrdiff_t pixel, ptrdiff_t line, int rows,
     ptrdiff_t run, const T *w, ptrdiff_t wide, const T *bias, const T *add, T *out, ptrdiff_t stride, int n,
-    int vectors, ptrdiff_t m)
+    int vectors, ptrdiff_t m, int straight)
 {
     T sum[MOST_PIXELS * MOST_VECTORS * LANES] __attribute__((aligned(64)));
     const int pixels = NAME(pixels_of)(vectors, m);
+    const ptrdiff_t pitch = straight ? stride : vectors * LANES;
     for (ptrdiff_t j = 0; j < m; j += pixels) {
         j = j + pixels > m ? m - pixels : j;
         const T *from = in + j * pixel;
+        T *to = straight ? out + j * stride : sum;
         switch (16 * vectors + pixels) {
             TILE(1, 1) TILE(1, 2)
 #if VECTOR == 64
@@ -91,7 +94,8 @@ static KERNEL __attribute__((noinline)) void NAME(row)(const T *in, ptrdiff_t pi
 #endif
             default: return; /* no other number of pixels is ever asked for */
         }
-        NAME(put)(sum, add ? add + j * stride : add, out + j * stride, pixels, n, vectors * LANES, stride);
+        if (!straight)
+            NAME(put)(sum, add ? add + j * stride : add, out + j * stride, pixels, n, vectors * LANES, stride);
     }
 }
 
@@ -105,11 +109,14 @@ static KERNEL void NAME(convolve)(const T *in, const Convolution *c, const T *w,
         const int vectors = (all - v + blocks - block - 1) / (blocks - block);
         const ptrdiff_t at = (ptrdiff_t)v * LANES, left = co - at;
         const int n = left < vectors * LANES ? (int)left : vectors * LANES;
+        const ptrdiff_t past = vectors * LANES - n; /* the end of a pixel; what is there is written later */
         for (ptrdiff_t row = 0; row < c->batch * rows; row++) {
+            const ptrdiff_t after = (c->batch * rows - 1 - row) * m * co;
+            const int straight = !add && (past == 0 || (blocks == 1 && after >= past));
             const T *from = in + (row / rows * c->m + row % rows * c->stride) * line;
             const ptrdiff_t to = row * m * co + at;
             NAME(row)(from, c->inputs * c->stride, line, c->size, c->size * c->inputs, w + at, wide, bias + at,
-                      add ? add + to : add, out + to, co, n, vectors, m);
+                      add ? add + to : add, out + to, co, n, vectors, m, straight);
         }
         v += vectors;
     }

@@ -1,4 +1,4 @@
-/* Features of a grid at every node, those of features.py in its order, into real type T. */
+/* Features of a grid at every node, those of features.py in its order, into real type T with logarithm LOG. */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)
@@ -37,17 +37,18 @@ MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *rest
         row[12][j] = dot * w, row[13][j] = cross * w;
         row[14][j] = size + sqrt(cross * cross + 1.0);
     }
+    T logs[3][LOOK_MOST]; /* the last: of the inverse hyperbolic sine without its sign */
+    const int where[3] = {8, 9, 14};
+    for (int k = 0; k < 3; k++)
+        for (ptrdiff_t j = 0; j < n; j++)
+            logs[k][j] = LOG((T)row[where[k]][j]);
     for (ptrdiff_t j = 0; j < n; j++)
-        row[8][j] = log(row[8][j]);
-    for (ptrdiff_t j = 0; j < n; j++)
-        row[9][j] = log(row[9][j]);
-    for (ptrdiff_t j = 0; j < n; j++)
-        row[14][j] = log(row[14][j]); /* of the inverse hyperbolic sine without its sign */
-    for (ptrdiff_t j = 0; j < n; j++)
-        row[14][j] = row[13][j] < 0.0 ? -row[14][j] : row[14][j];
-    for (ptrdiff_t j = 0; j < n; j++)
+        logs[2][j] = row[13][j] < 0.0 ? -logs[2][j] : logs[2][j];
+    for (ptrdiff_t j = 0; j < n; j++, out += LOOK_FEATURES) {
         for (int k = 0; k < LOOK_FEATURES; k++)
-            out[j * LOOK_FEATURES + k] = (T)row[k][j];
+            out[k] = (T)row[k][j];
+        out[8] = logs[0][j], out[9] = logs[1][j], out[14] = logs[2][j];
+    }
 }
 
 MESHONET_CLONES

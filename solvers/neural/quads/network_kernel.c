@@ -12,10 +12,11 @@
 #include "clones.h"
 #include "exponential.h"
 
-/* glibc's vector version of it; elsewhere it stays a scalar call */
+/* glibc's vector versions of them; elsewhere they stay scalar calls */
 #if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 35)
 extern double log(double) __attribute__((simd("notinbranch")));
+extern float logf(float) __attribute__((simd("notinbranch")));
 #endif
 
 /* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n. 2 ulp, for
@@ -52,14 +53,18 @@ MESHONET_INLINE float exp_float(float x)
 
 #define T float
 #define SUFFIX _float
+#define LOG logf
 #include "look.h"
 #undef T
 #undef SUFFIX
+#undef LOG
 #define T double
 #define SUFFIX _double
+#define LOG log
 #include "look.h"
 #undef T
 #undef SUFFIX
+#undef LOG
 
 /* Vectors of 256 bits everywhere, and where the processor has them, of 512. */
 #define VECTOR 32

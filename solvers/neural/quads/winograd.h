@@ -87,7 +87,7 @@ static KERNEL __attribute__((noinline)) void NAME(products)(const T *v, ptrdiff_
                                                             T *sums, ptrdiff_t count, int vectors)
 {
 #if VECTOR == 64
-    const int best = vectors == 4 ? 4 : vectors == 1 ? 11 : 9;
+    const int best = vectors == 4 ? 4 : vectors == 1 ? 12 : 9;
 #else
     const int best = 5;
 #endif
@@ -99,7 +99,7 @@ static KERNEL __attribute__((noinline)) void NAME(products)(const T *v, ptrdiff_
         switch (16 * vectors + pixels) {
             PRODUCT(1, 1) PRODUCT(1, 2)
 #if VECTOR == 64
-            PRODUCT(11, 1) PRODUCT(9, 2) PRODUCT(9, 3) PRODUCT(4, 4) PRODUCT(1, 3) PRODUCT(1, 4)
+            PRODUCT(12, 1) PRODUCT(9, 2) PRODUCT(9, 3) PRODUCT(4, 4) PRODUCT(1, 3) PRODUCT(1, 4)
 #else
             PRODUCT(5, 1) PRODUCT(5, 2)
 #endif
