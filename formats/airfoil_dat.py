@@ -2,8 +2,9 @@
 
 Selig's order (trailing edge, upper side, leading edge, lower side, trailing edge), Lednicer's (a line with
 two counts, then both surfaces from the leading edge), either of them backwards or without counts, from any
-start; a name line, an MSES line of four numbers, prose before and behind the data or none of these; columns
-x y, n x y, x y z, x upper lower, or both surfaces side by side. The unit and the position stay as they are.
+start; both surfaces from the trailing edge; a name line, an MSES line of four numbers, prose before and
+behind the data or none of these; columns x y, n x y, x y z, x upper lower, or both surfaces side by side. The
+unit and the position stay as they are.
 https://m-selig.ae.illinois.edu/ads/coord_database.html
 """
 
@@ -200,7 +201,8 @@ def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[F
 
     Either they run so already, or they are two surfaces that both start at the same edge, the first of
     which is then to be reversed. The division is where a block starts or at the widest step; what gives
-    the shortest way round is right.
+    the shortest way round is right. It starts at the edge where both end, the trailing one in Lednicer's
+    order; where that lies ahead, at smaller x, at the other: only a sharp edge would tell it without.
     """
     n = len(points)
     steps = np.hypot(*np.diff(points, axis=0).T)
@@ -211,7 +213,8 @@ def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[F
         turned = np.concatenate([np.arange(k)[::-1], np.arange(k, n)])
         length = _way_round(points[turned])
         if length < best:
-            best, order = length, turned
+            ahead = points[turned[[0, -1]], 0].max() < points[[0, k], 0].min()
+            best, order = length, np.roll(turned, -k) if ahead else turned
     return points[order], [index[k] for k in order]
 
 

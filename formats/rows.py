@@ -8,6 +8,7 @@ blanks, tabs, commas, semicolons.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from formats.edges import LARGEST
@@ -20,6 +21,9 @@ MOST_BYTES = 16 * 2**20
 
 MOST_LINES = 300_000
 """Likewise, so that a file of nothing but line ends is refused at once."""
+
+_REMEMBERED = 200_000
+"""Characters of a text whose lines are kept for the next reader."""
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
 _ONE = re.compile(_NUMBER)
@@ -80,6 +84,11 @@ def read_lines(text: str) -> list[Line]:
     >>> [(line.kind, line.values) for line in read_lines("NACA 1\n1.0 0.0\n.5\t(0.1D-1)\n")]
     [('text', ()), ('row', (1.0, 0.0)), ('row', (0.5, 0.01))]
     """
+    return list(_lines(text) if len(text) <= _REMEMBERED else _lines.__wrapped__(text))
+
+
+@lru_cache(maxsize=1)  # what finds out the format reads the same text as the format itself
+def _lines(text: str) -> tuple[Line, ...]:
     found = re.split(r"\r\n|\r|\n", text.replace("\x1a", ""))
     if found and not found[-1]:
         found.pop()
@@ -87,7 +96,7 @@ def read_lines(text: str) -> list[Line]:
         raise InputError(
             f"{len(found)} lines are too many for a file of points", f"give at most {MOST_LINES}"
         )
-    return [_line(number, line) for number, line in enumerate(found, start=1)]
+    return tuple(_line(number, line) for number, line in enumerate(found, start=1))
 
 
 def table(lines: list[Line]) -> list[list[Line]]:

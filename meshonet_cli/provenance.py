@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Sequence
+from functools import lru_cache
 
 from meshonet_cli.version import VERSION
 
@@ -23,12 +24,17 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
     """
-    words = list(sys.argv[1:] if arguments is None else arguments)
-    kept = []
-    while words:
-        word = words.pop(0)
+    given = tuple(sys.argv[1:] if arguments is None else arguments)
+    return {"software": f"meshonet {VERSION}", "command": _command(given)}
+
+
+@lru_cache(maxsize=1)  # every grid of many files has the same, and it names all of them
+def _command(words: tuple[str, ...]) -> str:
+    kept = ["meshonet"]
+    taken = iter(words)
+    for word in taken:
         if word in ("-o", "--output"):
-            words[:1] = []
+            next(taken, None)
         elif not (word.startswith("--output=") or (word.startswith("-o") and len(word) > 2)):
             kept.append(word)
-    return {"software": f"meshonet {VERSION}", "command": shlex.join(["meshonet", *kept])}
+    return shlex.join(kept)

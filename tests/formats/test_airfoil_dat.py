@@ -151,6 +151,25 @@ def test_units_and_position_stay():
     assert got.chord == pytest.approx(100 * EXPECTED.chord, rel=1e-4)
 
 
+@pytest.mark.parametrize("edge", [0.0, 0.002, 0.05, 0.1])
+@pytest.mark.parametrize("between", ["", "\nlower\n"])
+def test_both_surfaces_may_start_at_the_trailing_edge_round_or_not(edge, between):
+    """A round edge is no sharper than the nose: which of the two it is, x tells."""
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 50)))
+    half = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    half += edge * np.sqrt(1 - x) * x
+    upper, lower = (
+        [f"{a:.6f} {b:.6f}\n" for a, b in zip(x, 0.03 * x * (1 - x) + side * half, strict=True)]
+        for side in (1, -1)
+    )
+    selig = parse("".join([*upper[::-1], *lower[1:]]), "selig.dat")
+    lednicer = parse("".join([*upper, "\n", *lower]), "lednicer.dat")
+    both = parse("".join([*upper[::-1], between, *lower[::-1]]), "both.dat")
+    first = parse("".join([*lower[::-1], between, *upper[::-1]]), "lower-first.dat")
+    for found in (lednicer, both, first):
+        np.testing.assert_array_equal(found.curve.points, selig.curve.points)
+
+
 @pytest.mark.parametrize("base", [3e-4, 0.004, 0.1])
 def test_a_blunt_edge_stays_blunt_in_lednicer_s_order(base):
     upper, lower = surfaces(base)

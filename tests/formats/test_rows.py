@@ -112,3 +112,12 @@ def test_any_text_is_decoded(data, text):
 def test_what_is_no_text_is_refused(data, message):
     with pytest.raises(InputError, match=message):
         decode(data)
+
+
+def test_what_a_reader_does_to_its_lines_is_not_seen_by_the_next() -> None:
+    text = "told once\n1 2\n3 4\n"
+    first = read_lines(text)
+    first.clear()
+    one, other = read_lines(text), read_lines(text)
+    assert [line.kind for line in one] == ["text", "row", "row"]
+    assert one[1] is other[1], "lines of a text that is read again are kept"
