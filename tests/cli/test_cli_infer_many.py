@@ -59,7 +59,7 @@ def test_only_members_without_a_file_are_solved(
     solved: list[int] = []
     monkeypatch.setattr(
         "solvers.neural.quads.inference.in_batches",
-        lambda boundaries: solved.append(len(boundaries)) or in_batches(boundaries),
+        lambda boundaries, threads: solved.append(len(boundaries)) or in_batches(boundaries, threads),
     )
     words = ("infer", arches, "--model", quad_model, "-o", "{index}.vts", "--skip-existing")
     meshonet(*words)
@@ -75,7 +75,7 @@ def test_large_grids_are_solved_a_few_at_a_time(
     solved: list[int] = []
     monkeypatch.setattr(
         "solvers.neural.quads.inference.in_batches",
-        lambda boundaries: solved.append(len(boundaries)) or in_batches(boundaries),
+        lambda boundaries, threads: solved.append(len(boundaries)) or in_batches(boundaries, threads),
     )
     monkeypatch.setattr("meshonet_cli.together.NODES", 2 * 21 * 17)
     meshonet("infer", arches, "--model", quad_model, "-o", "{index}.vts")

@@ -161,6 +161,15 @@ def test_domains_far_from_any_in_training_give_finite_grids(model: str) -> None:
     assert np.isfinite(nodes(sliver, model)).all()
 
 
+@pytest.mark.parametrize(
+    ("count", "threads", "sizes"), [(70, 1, [35, 35]), (192, 2, 4 * [48]), (3, 4, [1, 1, 1])]
+)
+def test_batches_keep_every_thread_at_work_to_the_end(count: int, threads: int, sizes: list[int]) -> None:
+    found = list(operator.in_batches(count * [arch(5, 4)], threads))
+    assert [len(batch) for batch in found] == sizes
+    assert [k for batch in found for k in batch] == list(range(count))
+
+
 @pytest.mark.parametrize("polish", [0, 2])
 def test_threads_change_nothing(model: str, polish: int) -> None:
     sizes = [(33, 33), (41, 37), (33, 33), (25, 30)]

@@ -94,7 +94,7 @@ def infer_quads(
     def solve(group: Sequence[int]) -> list[Solution]:
         return _solved([boundaries[k] for k in group], held, head, steps, dtype, name)
 
-    groups = list(in_batches(boundaries))
+    groups = list(in_batches(boundaries, threads))
     if threads == 1:
         answers = [solve(group) for group in groups]
     else:

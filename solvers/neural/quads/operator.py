@@ -73,14 +73,19 @@ def evaluate(coarse: Floats, edges: Edges) -> Floats:
     return nodes
 
 
-def in_batches(boundaries: Sequence[Boundary]) -> Iterator[list[int]]:
-    """Yield indices of boundaries with equal node counts, `BATCH` at the most, each boundary once."""
+def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:
+    """Yield indices of boundaries with equal node counts, `BATCH` at the most, each boundary once.
+
+    Batches of one size are about equally large, and as many as keep all `threads` at work to the end.
+    """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, boundary in enumerate(boundaries):
         groups.setdefault((boundary.ni, boundary.nj), []).append(k)
     for group in groups.values():
-        for k in range(0, len(group), BATCH):
-            yield group[k : k + BATCH]
+        fewest = -(-len(group) // BATCH)
+        count = min(-(-fewest // threads) * threads, len(group))
+        for k in range(count):
+            yield group[k * len(group) // count : (k + 1) * len(group) // count]
 
 
 def _pairs(values: Complexes) -> Floats:
