@@ -6,9 +6,9 @@ describe. So the boundary is thinned to the coarse counts, a solver works there,
     x = TFI + S (x_c - TFI_c) Tᵀ
 
 with S and T the matrices of cubic splines along xi and eta (`solvers.spline`), which may turn at the lines
-that leave kinks of the boundary and are less curved near acute corners (`solvers.acute`). Thinned edges are
-taken between the given nodes at equal steps of their index, so that both interpolations agree at the coarse
-nodes.
+that leave kinks of the boundary and are less curved near acute corners (`solvers.acute`). Around a body lines
+keep their own course instead (`solvers.coarse_around`). Thinned edges are taken between the given nodes at
+equal steps of their index, so that both interpolations agree at the coarse nodes.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from geometry.grid import Grid
 from geometry.quality import angles, count_folded
 from solvers import acute
 from solvers._combine import add_rows
+from solvers.coarse_around import evaluate_around
 from solvers.solution import Solution
 from solvers.spline import Kinks, bending, between, kinked_matrix, kinks, places
 from solvers.tfi import Four, interpolate, parameters
@@ -100,17 +101,15 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 
 def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside `boundary` from a grid (m, n, 2) inside its thinned edges."""
-    periodic = boundary.topology == "o"
+    if boundary.topology == "o":
+        return evaluate_around(coarse, boundary)
     fine = (boundary.south, boundary.north, boundary.west, boundary.east)
     along = parameters(fine, "arclength")
     m, n = coarse.shape[:2]
-    counts = m, m, n, n
     base = planar_nodes(m, n)
     edges: Four = (coarse[:, 0], coarse[:, -1], coarse[0], coarse[-1])
-    if periodic:
-        edges = (*edges[:2], _thinned(boundary.west, n), _thinned(boundary.east, n))
-    thin_along = [between(law, count) for law, count in zip(along, counts, strict=True)]
-    interpolate(base[..., 0], base[..., 1], edges, tuple(thin_along))  # type: ignore[arg-type]
+    south, north, west, east = (between(law, k) for law, k in zip(along, (m, m, n, n), strict=True))
+    interpolate(base[..., 0], base[..., 1], edges, (south, north, west, east))
     nodes = planar_nodes(boundary.ni, boundary.nj)
     interpolate(nodes[..., 0], nodes[..., 1], fine, along)
     first, weights = places(m, boundary.ni)
@@ -121,15 +120,13 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     values = difference @ across
     opened = acute.openings(planes[0] + 1j * planes[1], np)
     bends = xi.bends @ values
-    if not periodic and opened.any():
+    if opened.any():
         both = difference[None], (xi.bends @ difference)[None]
         acute.take_out(values[None], bends[None], both, opened[None], eta.bends)
     for c in (0, 1):
-        add_rows(nodes[..., c], first, weights, values[c], bends[c], periodic)
+        add_rows(nodes[..., c], first, weights, values[c], bends[c], False)
         for rows, ramp, jump in zip(xi.rows, xi.ramps, xi.jumps, strict=True):
             nodes[rows, 1:-1, c] += np.outer(ramp, jump @ values[c, :, 1:-1])
-    if periodic:
-        nodes[-1] = nodes[0]
     return nodes
 
 
@@ -151,12 +148,11 @@ def divided(coarse: Floats, boundary: Boundary) -> Floats:
 def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks:
     """Return how the lines along `axis` bend and turn that have m coarse nodes.
 
-    A kink of an edge reaches inside along the line that leaves it; around a body it is smoothed instead.
+    A kink of an edge reaches inside along the line that leaves it.
     """
     n = (boundary.ni, boundary.nj)[axis]
-    if boundary.topology == "o" or m < 5:
-        periodic = boundary.topology == "o" and axis == 0
-        return Kinks(bending(m, periodic), np.empty((0, m)), (), ())
+    if m < 5:
+        return Kinks(bending(m, False), np.empty((0, m)), (), ())
     sides = (("south", "north"), ("west", "east"))[axis]
     return kinks(m, n, distinct(np.concatenate([boundary.corners[side] for side in sides])))
 

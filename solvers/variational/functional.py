@@ -40,7 +40,7 @@ class Weights:
     smoothness: float = 2.5e-3
 
 
-AROUND = Weights(smoothness=3e-6)
+AROUND = Weights(smoothness=2e-5)
 """Around a body, where cells grow by orders of magnitude: more smoothness would cost angles."""
 
 WAKE = Weights(smoothness=3e-5)

@@ -27,6 +27,7 @@ from solvers.variational._variational import Minimiser, Stiffness, energy, works
 from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.start import winslow_start
+from solvers.variational.windowed import REACH, descend_windows, unfold
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
@@ -50,8 +51,17 @@ They mend what the evaluation of the copy's minimum has bent. From there on the 
 iterations around notches, but the angles hardly change.
 """
 
+FEW_AROUND = 20, 10
+"""The same around a body, with up to `NEXT` nodes and with more, where the value is not `HARD`."""
+
+FIRST_AROUND = 100
+"""The same on a coarser level."""
+
+HARD = 1.1
+"""Value of the functional around a body above which descents go on."""
+
 ROUGH = 3.0
-"""How much further nodes of levels between may move when a quad's descent stops: the next is farther away."""
+"""How much further nodes of levels between may move when descent stops there: the next is farther away."""
 
 MOST = 1000
 """Iterations on a coarser level at the most."""
@@ -64,9 +74,6 @@ WEAKER = 3
 
 EASY = 1.7
 """Value of the functional, 1 on squares, up to which a minimum is the only one."""
-
-REACH = 0.25
-"""Cells that a node moves at the most in a first iteration."""
 
 WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}
 """Of the functional, by topology."""
@@ -110,7 +117,8 @@ def solve(
     if initial is None:
         full = tol is not None or boundary.topology != "quad"
         limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
-        found = _nested(boundary, weights, still, limits)
+        few = FEW_AROUND if tol is None and boundary.topology == "o" else None
+        found = _nested(boundary, weights, still, limits, few=few)
         if not found[-1] and boundary.topology == "quad":  # the other minimum of the coarsest level
             found = _nested(boundary, weights, still, limits, np.inf)
         nodes, weights, iterations, valid = found
@@ -125,12 +133,18 @@ def solve(
 
 
 def _nested(
-    boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int], easy: float = EASY
+    boundary: Boundary,
+    weights: Weights,
+    still: float,
+    limits: tuple[int, int],
+    easy: float = EASY,
+    few: tuple[int, int] | None = None,
 ) -> tuple[Floats, Weights, int, bool]:
     """Return nodes, the weights that made them, iterations on the finest level, whether it is valid.
 
-    The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes. A
-    folded start that unfolds as a whole is not repaired up to the value `easy`.
+    The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes; `few`
+    the same of values that are not `HARD`. A folded start that unfolds as a whole is not repaired up to the
+    value `easy`.
     """
     periodic = boundary.topology == "o"
     coarsest = (COARSEST if boundary.topology == "quad" else COARSEST_AROUND), COARSEST
@@ -141,17 +155,21 @@ def _nested(
         levels.append(thinned(levels[-1], *halves))
     levels = levels[:1] + [level for level in levels[1:] if max(level.ni, level.nj) <= NEXT]
     last = len(levels) - 1
-    most = limits[0] if last == 0 else MOST
-    nodes, weights, iterations, valid = _coarsest(levels[-1], weights, still, most, easy)
+    most, moves = (limits[0], still) if last == 0 else (MOST, ROUGH * still if periodic else still)
+    first = FIRST_AROUND if last > 0 and periodic else None
+    nodes, weights, iterations, valid = _coarsest(levels[-1], weights, moves, most, easy, first)
     stiffness = _stiffness(nodes, weights) if valid and last > 0 and not periodic else None
     counts = nodes.shape[0], nodes.shape[1]
     for k in range(last - 1, -1, -1):
-        coarse, nodes = nodes, _evaluated(nodes, levels[k])
+        coarse, nodes = nodes, evaluate(nodes, levels[k])
         below, large = counts, max(nodes.shape) > NEXT
         counts = nodes.shape[0], nodes.shape[1]
         limit = limits[large] if k == 0 else MOST
-        moves = still if k == 0 or boundary.topology != "quad" else ROUGH * still
-        iterations, valid = descend(nodes, weights, moves, limit, periodic=periodic, stiffness=stiffness)
+        first = first if k > 0 else few[large] if few else None
+        moves = still if k == 0 or boundary.topology == "c" else ROUGH * still
+        iterations, valid = descend(
+            nodes, weights, moves, limit, periodic=periodic, first=first, stiffness=stiffness
+        )
         if not valid and not periodic:  # walls that nearly meet: splines swing by more than the gap
             nodes = divided(coarse, levels[k])
             iterations, valid = descend(nodes, weights, moves, limit, stiffness=stiffness)
@@ -160,19 +178,8 @@ def _nested(
     return nodes, weights, iterations, valid
 
 
-def _evaluated(nodes: Floats, boundary: Boundary) -> Floats:
-    """Return the grid `nodes` at the counts of `boundary`; around a body smooth at lines that leave kinks."""
-    plain = evaluate(nodes, boundary)
-    if boundary.topology != "o":
-        return plain
-    swept = plain.copy(order="K")
-    if not sweep_kinks(swept, boundary, (nodes.shape[0], nodes.shape[1])):
-        return plain
-    return plain if count_folded(swept) else swept
-
-
 def _coarsest(
-    boundary: Boundary, weights: Weights, still: float, most: int, easy: float
+    boundary: Boundary, weights: Weights, still: float, most: int, easy: float, first: int | None
 ) -> tuple[Floats, Weights, int, bool]:
     """Return what `_nested` does, for the coarsest level, from Winslow's solution.
 
@@ -182,20 +189,26 @@ def _coarsest(
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in angles(start)]
     periodic = boundary.topology == "o"
-    nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy)
+    nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy, first)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
         if not valid or all(value <= limit for value, limit in zip(angles(nodes), limits, strict=True)):
             return nodes, weights, iterations, valid
         weights = replace(weights, smoothness=0.25 * weights.smoothness)
         nodes = nodes.copy(order="K")
-        more, valid = descend(nodes, weights, still, most, periodic=periodic)
+        more, valid = descend(nodes, weights, still, most, periodic=periodic, first=first)
         iterations += more
     return best
 
 
 def _descended(
-    start: Floats, weights: Weights, still: float, most: int, periodic: bool, easy: float
+    start: Floats,
+    weights: Weights,
+    still: float,
+    most: int,
+    periodic: bool,
+    easy: float,
+    first: int | None,
 ) -> tuple[Floats, int, bool]:
     """Return the minimum reached from `start` on the coarsest level, iterations, whether it is valid.
 
@@ -204,12 +217,12 @@ def _descended(
     """
     nodes = start.copy(order="K")
     if periodic or count_folded(start) == 0:
-        return nodes, *descend(nodes, weights, still, most, periodic=periodic)
+        return nodes, *descend(nodes, weights, still, most, periodic=periodic, first=first)
     terms = aspect_of(start), weights.shape, weights.smoothness
     ni, nj = start.shape[:2]
     z, descent = np.moveaxis(nodes, -1, 0), minimiser(ni, nj, False, terms[0], weights)
     value, low, iterations = np.inf, 0.0, 0
-    if _unfold(z, descent, terms):
+    if unfold(z, descent, terms):
         told = _teller(nodes)
         value, low, iterations = descent.run(z, *terms, 0.0, None, _moves(still, start), REACH, most, told)
     if value <= easy:
@@ -242,6 +255,7 @@ def descend(
     most: int,
     *,
     periodic: bool = False,
+    first: int | None = None,
     stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
 ) -> tuple[int, bool]:
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
@@ -250,7 +264,9 @@ def descend(
     ----------
     still : as `tol` of `solve`.
     most : iterations at the most.
-    periodic : around a body: the last row of nodes is the first, and its nodes move like any others.
+    periodic : around a body: the last row of nodes is the first, and its nodes move like any others. Before
+        all others those of windows around skewed cells do (`windowed`).
+    first : end after so many iterations where the value is not `HARD` then.
     stiffness : the Hessian on a coarse copy and its counts, which leads smooth moves.
     """
     ni, nj = nodes.shape[:2]
@@ -264,10 +280,16 @@ def descend(
         hessian, (m, n) = stiffness
         descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
     terms = aspect, weights.shape, weights.smoothness
+    if relief is not None:
+        descend_windows(nodes, aspect, weights, relief)
     if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
         return 0, False
     moves, told = _moves(still, nodes), _teller(nodes)
-    return descent.run(z, *terms, 0.0, relief, moves, REACH, most, told)[2], True
+    begin = most if first is None else min(first, most)
+    value, _, done = descent.run(z, *terms, 0.0, relief, moves, REACH, begin, told)
+    if begin <= done < most and value > HARD:
+        done += descent.run(z, *terms, 0.0, relief, moves, REACH, most - done, told)[2]
+    return done, True
 
 
 def _teller(nodes: Floats) -> Callable[[int, float, float], None] | None:
@@ -294,21 +316,7 @@ def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, fl
     if repair(nodes, periodic) == 0:
         return True
     small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
-    return small and _unfold(np.moveaxis(nodes, -1, 0), descent, terms)
-
-
-def _unfold(z: Floats, descent: Minimiser, terms: tuple[float, float, float]) -> bool:
-    """Unfold the planes `z` (2, ni, nj) in place by minimising with regularised Jacobians; return success."""
-    nodes = np.moveaxis(z, 0, -1)
-    ni, nj = nodes.shape[:2]
-    cell = _area(nodes) / ((ni - 1) * (nj - 1))
-    smallest = energy(z, *terms, 0.0, False, None, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
-    epsilon = max(0.05 * cell, -0.5 * smallest)
-    for _ in range(25):
-        if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:
-            return True
-        epsilon *= 0.4
-    return False
+    return small and unfold(np.moveaxis(nodes, -1, 0), descent, terms)
 
 
 def _inside(boundary: Boundary, initial: Grid) -> Floats:
@@ -320,13 +328,6 @@ def _inside(boundary: Boundary, initial: Grid) -> Floats:
     else:
         nodes[0], nodes[-1] = boundary.west, boundary.east
     return nodes
-
-
-def _area(nodes: Floats) -> float:
-    """Return the area inside the rim of `nodes`."""
-    x, y = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]).T
-    x, y = x - x[0], y - y[0]
-    return float(abs(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
 
 
 def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:

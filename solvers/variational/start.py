@@ -6,6 +6,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
+from geometry.errors import SolverError
 from solvers.elliptic.relax import relax
 from solvers.tfi import tfi
 
@@ -17,7 +18,10 @@ SWEEPS = 30
 
 
 def winslow_start(boundary: Boundary) -> Floats:
-    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2)."""
+    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2).
+
+    Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
+    """
     if boundary.topology == "quad" and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes
         relax(nodes, SWEEPS)
@@ -25,4 +29,7 @@ def winslow_start(boundary: Boundary) -> Floats:
             return nodes
     from solvers.elliptic.solve import solve as winslow
 
-    return winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
+    try:
+        return winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
+    except SolverError:
+        return tfi(boundary).nodes
