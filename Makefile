@@ -78,16 +78,19 @@ train-airfoils: $(VENV)/.developing
 	@mkdir -p train
 	test -f train/airfoils.h5 || \
 	  $(BIN)/meshonet sample-boundary --family procedural --count 6000 --seed 1 --res 257x5 -o train/airfoils.h5
-	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume
+	$(BIN)/meshonet train train/airfoils.h5 --model strip -o train/airfoil-o.safetensors --epochs 24 --seed 0 --resume \
+	  --log-csv train/airfoil-o.csv
 	cp train/airfoil-o.safetensors $(MODELS)
+	cp train/airfoil-o.csv docs/curves
 
 # the same domains by both methods; Winslow's with twice the nodes, of which every other one is kept.
 # Exit code 3 tells that a few domains have no valid grid: they are left out
 SEEDED := sample-boundary --family four-sided --count 36000 --seed 1
 train-quads: train/winslow.h5 train/variational.h5
 	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o train/quad-general.safetensors \
-	  --epochs 24 --seed 0 --resume
+	  --epochs 24 --seed 0 --resume --log-csv train/quad-general.csv
 	cp train/quad-general.safetensors $(MODELS)
+	cp train/quad-general.csv docs/curves
 
 train/winslow.h5: | $(VENV)/.developing
 	@mkdir -p train
@@ -105,8 +108,10 @@ train/variational.h5: | $(VENV)/.developing
 # the quad network taught on, around bodies; Winslow's grids again with twice the nodes
 train-holes: train/holes/winslow.h5 train/holes/variational.h5
 	$(BIN)/meshonet train train/holes/variational.h5 train/holes/winslow.h5 --model quad --initial quad-general \
-	  -o train/hole-o.safetensors --epochs 14 --batch 16 --rate 0.001 --held-out 60 --seed 0 --resume
+	  -o train/hole-o.safetensors --epochs 14 --batch 16 --rate 0.001 --held-out 60 --seed 0 --resume \
+	  --log-csv train/hole-o.csv
 	cp train/hole-o.safetensors $(MODELS)
+	cp train/hole-o.csv docs/curves
 
 train/holes/winslow.h5: | $(VENV)/.developing
 	@mkdir -p train/holes

@@ -6,6 +6,7 @@ families.md and the pictures from the commands a user would type.
 
 from __future__ import annotations
 
+import csv
 import json
 import subprocess
 import sys
@@ -27,7 +28,7 @@ No network serves C grids, since none measures as good as what needs none. The n
 domains alone is worse there than transfinite interpolation, and after five steps of descent still behind the
 variational grid ([figures](body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, and a
 wake cuts it open. `infer` marches C grids from wall and wake ([how](viscous.md)), minimises where the march
-does not suit, and its report says which; `--model` with a C boundary is refused.
+does not suit, and its report says which; `--model`, `--polish` and `--device` are refused.
 """
 
 
@@ -47,7 +48,7 @@ def models_page() -> str:
         "# Shipped models\n",
         "<!-- made by python docs/make_pages.py; a test keeps it current -->\n",
         "`meshonet models` lists them. Each is a safetensors file in `solvers/neural/pretrained/` that",
-        "carries its recipe and held-out figures; `make train` makes it again.\n",
+        "carries its recipe and held-out figures; `make train` makes it again, and its curve of losses.\n",
     ]
     for name in shipped():
         if name in SECOND:
@@ -63,11 +64,24 @@ def models_page() -> str:
             json.dumps(facts["recipe"], indent=1),
             "```\n",
             *held_out(facts["figures"], facts["topology"]),
+            *curve(name),
             "",
         ]
     lines.append(C_GRIDS)
     lines.append("What that means for grids is on [the benchmark page](benchmarks.md).\n")
     return "\n".join(lines)
+
+
+def curve(name: str) -> list[str]:
+    """Return what the log of a model's training tells, where it was kept: docs/curves/NAME.csv."""
+    path = DOCS / "curves" / f"{name}.csv"
+    if not path.exists():
+        return []
+    with path.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    told = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
+    losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in told)
+    return [f"\nHeld-out loss by epoch: {losses} ([every epoch](curves/{name}.csv))."]
 
 
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from solvers.neural.weights import described
+
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 
@@ -28,6 +30,16 @@ def pages() -> object:
 
 def test_the_models_page_is_current() -> None:
     assert (ROOT / "docs" / "models.md").read_text() == pages().models_page(), "run make docs"  # type: ignore[attr-defined]
+
+
+def test_curves_have_a_row_for_every_epoch_of_their_model() -> None:
+    found = sorted((ROOT / "docs" / "curves").glob("*.csv"))
+    assert found
+    for path in found:
+        rows = path.read_text(encoding="utf-8").splitlines()
+        assert "held_out_loss" in rows[0].split(",")
+        epochs = described(path.stem)["recipe"]["epochs"]
+        assert [row.split(",")[0] for row in rows[1:]] == [str(k + 1) for k in range(epochs)], path.name
 
 
 def test_the_families_page_is_current() -> None:

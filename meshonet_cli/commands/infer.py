@@ -20,14 +20,16 @@ ModelName = Annotated[
     str | None,
     typer.Option(
         "--model", metavar="NAME|PATH", show_default=False,
-        help="Operator: a shipped one, a .safetensors file, or base for none. "
-        "[default: the one shipped for the topology; see meshonet models]",
+        help="Operator: a shipped one (meshonet models), a .safetensors file, or base for none. C grids are "
+        "marched and take none. [default: what measures best for the topology]",
     ),
 ]
 Polish = Annotated[
     str,
     typer.Option(
-        "--polish", metavar="auto|off|N", help="Steps after the operator: elliptic ones, or of descent."
+        "--polish", metavar="auto|off|N",
+        help="Steps after the operator: elliptic ones, or of descent. With off or N the network of the "
+        "topology answers when no model is named.",
     ),
 ]
 Answer = Annotated[

@@ -11,6 +11,8 @@ import h5py
 import numpy as np
 
 ROOT = Path(__file__).parents[2]
+BOUNDARY_COMMANDS = ("sample-boundary", "tfi", "solve-pde", "infer")
+"""Commands that take boundaries."""
 
 
 @dataclass(frozen=True)

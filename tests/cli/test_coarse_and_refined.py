@@ -1,0 +1,67 @@
+"""`solve-pde --coarse` and `--refine`: fewer nodes first, the same boundary after."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from command_line import Meshonet
+
+from formats.registry import read_grids
+
+
+@pytest.mark.parametrize(
+    ("method", "res", "coarse"), [("variational", "260x40", 129), ("auto", "513x30", 257)]
+)
+def test_large_quads_are_solved_on_fewer_nodes_unless_told(
+    meshonet: Meshonet, duct_h5: Path, method: str, res: str, coarse: int
+) -> None:
+    words = ("solve-pde", duct_h5, "--method", method, "--res", res, "--json")
+    nj = int(res.split("x")[1])
+    for k, more in enumerate(
+        (("--coarse", "auto"), ("--coarse", "off"), ("--coarse", "0"), ("--max-cycles", "20"))
+    ):
+        meshonet(*words, *more, "-o", f"{k}.vts")
+    found = [next(read_grids(f"{k}.vts")).provenance.get("coarse") for k in range(4)]
+    assert [None if one is None else list(one) for one in found] == [[coarse, nj], None, None, None]
+
+
+def test_a_coarse_solve_is_evaluated_at_the_resolution(meshonet: Meshonet, duct_h5: Path) -> None:
+    meshonet("solve-pde", duct_h5, "--res", "80x60", "-o", "full.vts")
+    told = meshonet("solve-pde", duct_h5, "--res", "80x60", "--coarse", "33", "-o", "g.vts", "--json").only
+    assert (told["ni"], told["nj"], told["folded"], told["method"]) == (80, 60, 0, "winslow")
+    (full,), (grid,) = read_grids("full.vts"), read_grids("g.vts")
+    assert np.array_equal(grid.nodes[:, 0], full.nodes[:, 0])
+    distance = np.abs(grid.nodes - full.nodes).max() / np.ptp(full.nodes[..., 0])
+    assert 0 < distance < 2e-3
+
+
+def test_refine_makes_the_finest_grid_of_a_family(meshonet: Meshonet, duct_h5: Path) -> None:
+    done = meshonet("solve-pde", duct_h5, "--refine", "2", "--tol", "1e-9", "-o", "finest.vts")
+    assert done.code == 0
+    assert "refined: 21x11 in " in done.err
+    (finest,) = read_grids("finest.vts")
+    assert (finest.ni, finest.nj) == (81, 41)
+    meshonet("solve-pde", duct_h5, "--res", "81x41", "--tol", "1e-9", "-o", "alone.vts")
+    (alone,) = read_grids("alone.vts")
+    np.testing.assert_allclose(finest.nodes, alone.nodes, atol=1e-7)
+    meshonet("convert", "finest.vts", "coarsest.vts", "--coarsen", "4")
+    (coarsest,) = read_grids("coarsest.vts")
+    np.testing.assert_array_equal(coarsest.nodes, finest.nodes[::4, ::4])
+
+
+@pytest.mark.parametrize("topology", ["o", "c"])
+def test_refine_keeps_the_ends_of_wall_and_wake(meshonet: Meshonet, topology: str) -> None:
+    words = ("solve-pde", "naca:2412", "--topology", topology, "--res", "61x17", "--refine", "1")
+    assert meshonet(*words, "-o", "f.vts").code == 0
+    assert meshonet("convert", "f.vts", "g.vts", "--coarsen", "2").code == 0
+    (grid,) = read_grids("g.vts")
+    assert (grid.ni, grid.nj, grid.topology) == (61, 17, topology)
+
+
+def test_refine_goes_with_a_first_grid_and_not_with_marching(meshonet: Meshonet, body_h5: Path) -> None:
+    meshonet("solve-pde", body_h5, "-o", "start.vts")
+    words = ("solve-pde", body_h5, "--refine", "1", "-o", "g.vts")
+    assert meshonet(*words, "--initial", "start.vts").code == 0
+    done = meshonet(*words, "--wall-spacing", "1e-3")
+    assert done.code == 2
+    assert "--refine is of no use to a grid marched from the wall; drop --refine" in done.err

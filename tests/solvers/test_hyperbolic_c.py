@@ -1,0 +1,79 @@
+"""Marched C grids: wall, wake and outlet."""
+
+import numpy as np
+import pytest
+from march_shapes import deviation, first_cells
+
+from geometry.airfoil import Airfoil
+from geometry.boundary import Boundary, polygon_area
+from geometry.naca import naca
+from geometry.quality import count_folded
+from geometry.sampling import Sampling
+from solvers.hyperbolic import hyperbolic
+
+
+def c_boundary(name: str = "2412", ni: int = 160, nj: int = 80, **settings: object) -> Boundary:
+    return naca(name).boundary(Sampling(ni, nj, "c", **settings))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["0012", "4415", "23024"])
+def test_a_c_grid_keeps_wall_and_wake_and_has_its_first_cells(name: str) -> None:
+    boundary = c_boundary(name)
+    grid = hyperbolic(boundary, wall_spacing=1e-5).grid
+    assert count_folded(grid.nodes) == 0
+    assert (grid.topology, grid.parts) == ("c", boundary.parts)
+    np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
+    wall = next(part for part in grid.parts if part.name == "wall")
+    height = first_cells(grid.nodes)
+    np.testing.assert_allclose(height[wall.start : wall.stop + 1], 1e-5, rtol=1e-8)
+    behind = np.hypot(*(boundary.south[: wall.start] - boundary.south[wall.start]).T)
+    opened = 1e-5 * (1 + 5 * behind**2 / (behind + 0.3))
+    np.testing.assert_allclose(height[: wall.start], opened, rtol=1e-8)
+
+
+def test_the_ends_of_a_c_grid_stay_on_the_outlet_and_its_far_field_is_as_large_as_asked() -> None:
+    boundary = c_boundary(far_field=12.0)
+    nodes = hyperbolic(boundary, wall_spacing=1e-4).grid.nodes
+    for end in (0, -1):
+        np.testing.assert_allclose(nodes[end, :, 0], boundary.south[end, 0], rtol=1e-12)
+    areas = [
+        polygon_area(np.concatenate([boundary.south[[0]], boundary.south[[-1]], north[::-1]]))
+        for north in (boundary.north, nodes[:, -1])
+    ]
+    assert areas[1] == pytest.approx(areas[0], rel=0.02)
+
+
+def test_a_symmetric_section_has_a_symmetric_c_grid() -> None:
+    nodes = hyperbolic(c_boundary("0012", ni=161), wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(nodes, nodes[::-1] * [1.0, -1.0], atol=1e-9)
+
+
+def test_c_grids_are_nearly_orthogonal_where_o_grids_of_sharp_edges_are_not() -> None:
+    sharp = c_boundary("0012", 250, 100, te="wedge")
+    assert deviation(hyperbolic(sharp, wall_spacing=1e-5).grid.nodes).max() < 5.0
+    ring = naca("0012").boundary(Sampling(250, 100, "o", "curvature", te="wedge"))
+    assert deviation(hyperbolic(ring, wall_spacing=1e-5).grid.nodes).max() > 60.0
+
+
+@pytest.mark.parametrize("name", ["0012", "2412", "0012-sharp", "4415", "8412"])
+def test_cells_of_a_c_grid_grow_slowly_along_every_row_and_line(name: str) -> None:
+    nodes = hyperbolic(c_boundary(name, 250, 100, te="wedge"), wall_spacing=1e-5).grid.nodes
+    for axis, most in ((0, 1.146), (1, 1.145)):
+        step = np.diff(nodes, axis=axis)
+        ratio = np.diff(np.log(np.hypot(step[..., 0], step[..., 1])), axis=axis)
+        assert np.exp(np.abs(ratio).max()) < most
+
+
+def test_lines_do_not_run_together_behind_the_edge_of_a_fine_c_grid() -> None:
+    """Without the smoothing that grows with the height they do: cells become 50 degrees skew."""
+    boundary = c_boundary("0012", 600, 150)
+    assert deviation(hyperbolic(boundary, wall_spacing=1e-5).grid.nodes).max() < 10.0
+
+
+def test_a_wake_of_any_direction_ends_on_a_straight_outlet() -> None:
+    body = naca("0012").wedged()
+    turn = np.array([[0.5, np.sqrt(0.75)], [-np.sqrt(0.75), 0.5]])
+    plain = hyperbolic(body.boundary(Sampling(140, 60, "c")), wall_spacing=1e-4).grid.nodes
+    turned = Airfoil(body.curve.points @ turn).boundary(Sampling(140, 60, "c"))
+    found = hyperbolic(turned, wall_spacing=1e-4).grid.nodes
+    np.testing.assert_allclose(found, plain @ turn, atol=1e-6)
