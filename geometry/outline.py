@@ -60,7 +60,8 @@ class Outline:
         if corners is not None:
             self.curve = Curve(p, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
         area, extent = polygon_area(p), float(np.ptp(p, axis=0).max())
-        check_outline(p, places)
+        if not _on_a_line(p, extent):  # such points run back on themselves, which says less
+            check_outline(p, places)
         if abs(area) < 1e-9 * extent**2:
             raise InputError("the outline has no area", "give the points around a domain or a body")
         self._left = area > 0  # counter-clockwise
@@ -222,3 +223,9 @@ class Outline:
                 if sampling.spacing == "conformal":
                     raise
         return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing)
+
+
+def _on_a_line(points: Floats, extent: float) -> bool:
+    away = points - points[0]
+    u, v = away[int(np.argmax(np.abs(away).sum(axis=1)))]
+    return bool(np.abs(away[:, 0] * v - away[:, 1] * u).max() < 1e-12 * extent**2)

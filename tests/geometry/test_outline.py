@@ -114,3 +114,12 @@ def test_refuses_what_is_no_outline(points, message):
 def test_says_what_an_outline_cannot_be(sampling, message):
     with pytest.raises(InputError, match=message):
         Outline(SQUARE).boundary(sampling)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.3])
+def test_points_on_a_line_have_no_area(slope):
+    x = np.array([0.0, 1.0, 2.0, 3.0])
+    with pytest.raises(
+        InputError, match="the outline has no area; give the points around a domain or a body"
+    ):
+        Outline(np.stack([x, slope * x], axis=1))
