@@ -93,7 +93,7 @@ def solve(
     ----------
     boundary : quad, o or c. Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is.
     tol : stop when iterations move no node by more than this part of √cells steps, its own cells' steps; that
-        is about this part of the domain's size. None is 1e-4.
+        is about this part of the domain's size. None is 1e-4, and `FEW` or `FEW_AROUND` iterations suffice.
     max_cycles : iterations on the finest level at the most.
     initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
         nodes are replaced.
@@ -108,7 +108,7 @@ def solve(
     Raises
     ------
     InputError
-        an O or C boundary; `initial` of other node counts; `tol` or `max_cycles` not positive.
+        `initial` of other node counts; `tol` or `max_cycles` not positive.
     """
     _check(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
