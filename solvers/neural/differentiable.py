@@ -11,12 +11,14 @@ import torch
 from torch import Tensor
 
 from geometry.arrays import Floats
+from geometry.errors import InputError
 from solvers.neural.bisector import LARGEST, fading, shifts
 from solvers.neural.encoding import DEPTHS, SLOPE
 from solvers.neural.evaluate import StripGrid
 from solvers.neural.lifted import Lifted, lifted
 from solvers.neural.models.strip_fno import StripFNO
 from solvers.neural.strip import COLUMNS, MODES, across, interpolation, smoothing, wavenumbers
+from solvers.neural.tensors import check_sides
 from solvers.neural.weights import load_model
 
 CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
@@ -54,8 +56,11 @@ class AirfoilGrids:
         Raises
         ------
         InputError
-            a body that cannot be lifted.
+            a body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
         """
+        check_sides(torch.float64, 4, south=south, north=north)
+        if nj < 2:
+            raise InputError(f"nj is {nj} nodes", "use at least 2")
         walls = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
         found = [lifted(z, far) for z, far in zip(*walls, strict=True)]
         wall, far = (torch.stack([getattr(one, name) for one in found]) for name in ("wall", "far"))

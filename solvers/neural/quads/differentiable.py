@@ -12,12 +12,14 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from geometry.errors import InputError
 from solvers import acute
 from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, load_quads
+from solvers.neural.tensors import check_sides
 from solvers.neural.weights import model_path
 from solvers.spline import bending
 
@@ -44,6 +46,9 @@ class QuadGrids:
         self, model: str = ANSWERS[-1], device: str = "cpu", dtype: torch.dtype = torch.float64
     ) -> None:
         held = load_quads(model_path(model))
+        if held.topology != "quad":
+            raise InputError(f"model {model} makes {held.topology} grids", "use one of four-sided domains")
+        self._dtype = dtype
         self._network = QuadUNet(held.widths, held.blocks)
         self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
@@ -56,7 +61,13 @@ class QuadGrids:
         ----------
         south, north : (batch, ni, 2) nodes along xi, from west to east.
         west, east : (batch, nj, 2) nodes along eta, from south to north; corners are shared.
+
+        Raises
+        ------
+        InputError
+            tensors of other shapes, or of another dtype than the network's.
         """
+        check_sides(self._dtype, 2, south=south, north=north, west=west, east=east)
         sides = _planes(south, north, west, east)
         coarse = self._coarse(sides)
         m = coarse.shape[-1]

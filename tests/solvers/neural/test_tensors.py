@@ -1,0 +1,49 @@
+"""Tensors that no operator can take are refused with the side and the remedy."""
+
+from __future__ import annotations
+
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from geometry.errors import InputError  # noqa: E402
+from solvers.neural.differentiable import AirfoilGrids  # noqa: E402
+from solvers.neural.quads.differentiable import QuadGrids  # noqa: E402
+
+
+def sides(*counts: int, dtype: torch.dtype = torch.float64) -> list[torch.Tensor]:
+    return [torch.zeros(1, n, 2, dtype=dtype) for n in counts]
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (sides(9, 9, 5, 4), r"west has shape \(1, 5, 2\) and east \(1, 4, 2\); opposite sides need equal"),
+        (sides(9, 9, 5, 1), r"east has shape \(1, 1, 2\); give \(batch, n, 2\) with n at least 2"),
+        ([side[0] for side in sides(9, 9, 5, 5)], r"south has shape \(9, 2\); give"),
+        (sides(9, 9, 5, 5, dtype=torch.float32), r"south is torch.float32; give torch.float64"),
+        ([torch.cat(2 * sides(9)), torch.cat(2 * sides(9)), *sides(5, 5)], "of different batches"),
+    ],
+)
+def test_four_sides_are_looked_at(given: list[torch.Tensor], told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        QuadGrids()(*given)
+
+
+@pytest.mark.parametrize(
+    ("given", "nj", "told"),
+    [
+        (sides(9, 8), 5, "south has shape .* and north"),
+        (sides(3, 3), 5, "with n at least 4"),
+        (sides(9, 9, dtype=torch.float32), 5, "south is torch.float32"),
+        (sides(9, 9), 1, "nj is 1 nodes; use at least 2"),
+    ],
+)
+def test_bodies_are_looked_at(given: list[torch.Tensor], nj: int, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        AirfoilGrids("base")(*given, nj)
+
+
+def test_a_model_for_bodies_is_no_model_for_four_sides() -> None:
+    with pytest.raises(InputError, match="model hole-o makes o grids; use one of four-sided domains"):
+        QuadGrids("hole-o")
