@@ -69,6 +69,13 @@ Refine = Annotated[
 Initial = Annotated[
     str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
 ]
+Repair = Annotated[
+    bool,
+    typer.Option(
+        "--repair/--no-repair",
+        help="Unfold folded cells; without it a grid is as its equations have it, or refused.",
+    ),
+]
 RepairMargin = Annotated[
     int | None,
     typer.Option(
@@ -120,6 +127,7 @@ def solve_pde(
     wake_nodes: o.WakeNodes = None,
     corners: o.Corners = "auto",
     normalise: o.Normalise = False,
+    repair: Repair = True,
     repair_margin: RepairMargin = None,
     allow_invalid: o.AllowInvalid = False,
     fail_on: o.FailOn = None,
@@ -168,6 +176,7 @@ def solve_pde(
         ),
         allow_invalid,
         parse_gates(fail_on),
+        repair,
         margin=repair_margin,
         refine=refine,
         history=history,

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, duct, wave
 
-from formats.registry import read_grids
+from formats.registry import read_grids, read_shapes
+from solvers.elliptic.solve import solve
 from solvers.elliptic.winslow import residual
 
 
@@ -169,6 +170,21 @@ def test_a_wider_repair_moves_more(meshonet: Meshonet, tmp_path: Path) -> None:
     assert done.code == 2
     assert "repair-margin" in done.err
     assert not Path("no.vts").exists()
+
+
+def test_without_repair_the_grid_is_what_the_equations_have(meshonet: Meshonet, tmp_path: Path) -> None:
+    words = ("--family", "wrench", "--count", "1", "--range", "0.3:0.3", "--res", "41", "--quiet")
+    assert meshonet("sample-boundary", *words, "-o", "wrench.h5").code == 0
+    done = meshonet("solve-pde", "wrench.h5", "--no-repair", "--tol", "1e-6", "-o", "no.vts")
+    assert done.code == 3
+    assert "folded" in done.err
+    assert not Path("no.vts").exists()
+    words = ("--no-repair", "--allow-invalid", "--tol", "1e-6", "--json")
+    told = meshonet("solve-pde", "wrench.h5", *words, "-o", "bare.vts").only
+    assert told["folded"] > 0
+    assert told["path"] == []
+    solved = solve(next(read_shapes("wrench.h5")), tol=1e-6).grid.nodes
+    np.testing.assert_array_equal(next(read_grids("bare.vts")).nodes, solved)
 
 
 @pytest.mark.parametrize("res", ["100x50", "270x60"])
