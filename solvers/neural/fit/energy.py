@@ -13,6 +13,9 @@ from solvers.variational.functional import Weights
 MOST = 1e6
 """What a corner counts at the most: one folded corner must not drown the batch."""
 
+SMALLEST = 1e-12
+"""Area: with less, a folded corner's derivatives would be infinite, and no clamp makes these finite."""
+
 
 def energies(z: Tensor, epsilon: float, weights: Weights | None = None) -> Tensor:
     """Return E (batch,) of quad grids `z` (batch, n, n), complex.
@@ -36,10 +39,12 @@ def energies(z: Tensor, epsilon: float, weights: Weights | None = None) -> Tenso
 
 def _density(u: Tensor, v: Tensor, aspect: Tensor, weights: Weights, epsilon: float) -> Tensor:
     jacobian = (u.conj() * v).imag
-    jacobian = 0.5 * (jacobian + torch.sqrt(jacobian**2 + epsilon**2))
+    reach = jacobian.abs() + torch.sqrt(jacobian**2 + epsilon**2) + 1e-30
+    jacobian = torch.where(jacobian > 0, 0.5 * reach, 0.5 * epsilon**2 / reach)  # no difference of equals
+    jacobian = jacobian.clamp(min=SMALLEST)
     g, h = _squares(u), _squares(v)
     harmonic = (aspect * g + h / aspect) / (2.0 * jacobian)
-    angle = (g * h / jacobian**2) ** 2
+    angle = (g * h / jacobian**2).clamp(max=MOST) ** 2
     return torch.clamp((1.0 - weights.shape) * harmonic + weights.shape * angle, max=MOST)
 
 
