@@ -182,12 +182,12 @@ far field by one pass of a network; `hole-winslow` is its other answer, Winslow'
 steps of descent after it (of multigrid for Winslow's).
 
 It is the network of [four-sided domains](quad-operator.md), taught on: around a body the logarithm of the
-distance from its middle unrolls the domain to a strip, where only one thing is new, that layers go round
-along xi. So walls are bitwise those given, a body moved, turned or scaled has the same grid moved, a
-mirrored one the mirrored, and one whose nodes begin an eighth of the way further round the same one from
-there, all to rounding.
+distance from its middle unrolls the domain to a strip, where Winslow's equations are the same and only one
+thing is new, that steps and layers go round along xi. So walls are bitwise those given, a body moved, turned
+or scaled has the same grid moved, a mirrored one the mirrored, and one whose nodes begin an eighth of the way
+further round the same one from there, all to rounding.
 
-It was taught on 2,799 random bodies, 14 times over, about eight minutes of one core; that is little. Grids
+It was taught on 5,710 random bodies, six times over, about nine minutes of one core; that is little. Grids
 may fold before the guard; its repairs are not in these tables. Angles are the largest included angle of each
 cell, in degrees. The gain is what a way improves on Winslow's figure, over what the variational grid does,
 summed over bodies where Winslow's is valid. Bodies where Winslow's equations have no discrete solution, a

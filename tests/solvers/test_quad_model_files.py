@@ -35,8 +35,8 @@ def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "told"),
     [
-        ({"kind": "meshonet strip operator"}, "it holds 'meshonet strip operator', encoding 1"),
-        ({"encoding": 2}, "encoding 2"),
+        ({"kind": "meshonet strip operator"}, "it holds 'meshonet strip operator', encoding 2"),
+        ({"encoding": 1}, "encoding 1"),
     ],
 )
 def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:

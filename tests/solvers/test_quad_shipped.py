@@ -13,8 +13,8 @@ from solvers.elliptic.solve import solve as winslow
 from solvers.neural.quads.inference import infer_quads
 
 GOLDEN = {
-    "quad-general": [[0.25913659947169515, 0.23353513490102562], [0.5000000000000001, 0.7040275463649439]],
-    "quad-winslow": [[0.2496162103007954, 0.2579937055795075], [0.5, 0.8502900539184646]],
+    "quad-general": [[0.25553334637494635, 0.23122452956376632], [0.5000000000000001, 0.7046136096304436]],
+    "quad-winslow": [[0.25000085025945373, 0.25953964960056314], [0.5, 0.8544736541785776]],
 }
 """Nodes (16, 16) and (32, 48) of the arch on 65 x 65, without polish."""
 
@@ -43,5 +43,5 @@ def test_the_twin_is_near_winslows_grid_and_a_cycle_brings_it_nearer() -> None:
         np.median([compare(s.grid, goal).relative_l2 for s, goal in zip(found, goals, strict=True)])
         for found in (infer_quads(boundaries, "quad-winslow", steps) for steps in (0, 1))
     ]
-    assert medians[0] < 6e-3
+    assert medians[0] < 1e-3
     assert medians[1] < 5e-4

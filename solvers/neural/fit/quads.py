@@ -25,6 +25,7 @@ from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.task import Task
 from solvers.neural.fit.team import Team
 from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.approach import approached
 from solvers.neural.quads.edges import Edges, rims
 from solvers.neural.quads.encoding import LATENT, SCALE
 from solvers.neural.quads.export import held_out_figures, write_model
@@ -45,10 +46,14 @@ HELD_OUT = 600
 AVERAGED = 0.999
 """Of the running mean of the weights, whose answers count, each step keeps so much."""
 
-ENERGY = (0.3, 0.6)
-"""Between these shares of the steps the variational functional comes into the loss."""
+ENERGY = (0.3, 0.6, 0.8)
+"""Between the first two shares of the steps the variational functional comes into the loss; from the third on
+it leaves again: it unfolds grids, and costs the rest of them angles."""
 
 ENERGY_WEIGHT = 1.0
+
+NEAR, CLOSE = 0.1, 3e-4
+"""Weight of the logarithm of the distance from Winslow's grids, and where it sets in."""
 
 STARTS = 8
 """Columns that strips begin at in turn: those that the coarsest of four levels tells apart."""
@@ -64,12 +69,14 @@ class Sizes:
 
 @dataclass(frozen=True)
 class Quads:
-    """m domains of unit size: transfinite `base`, `winslow` and `variational` grids (m, n, n), complex64.
+    """m domains of unit size: `base`, `winslow` and `variational` grids (m, n, n), complex64.
 
-    Those `around` bodies are unrolled, (m, 65, n), and their base has even steps from wall to wall.
+    The base, with the last `step` to it, is what `approach` makes of transfinite grids. Domains `around`
+    bodies are unrolled, (m, 65, n), and theirs begins with even steps from wall to wall.
     """
 
     base: Tensor
+    step: Tensor
     winslow: Tensor
     variational: Tensor
     around: bool = False
@@ -78,7 +85,9 @@ class Quads:
         return len(self.base)
 
     def __getitem__(self, rows: Any) -> Quads:
-        return Quads(self.base[rows], self.winslow[rows], self.variational[rows], self.around)
+        return Quads(
+            self.base[rows], self.step[rows], self.winslow[rows], self.variational[rows], self.around
+        )
 
 
 class QuadTask(Task):
@@ -115,14 +124,17 @@ class QuadTask(Task):
         """Return the parts of the loss over the domains `rows`."""
         self._average(step)
         given = self.training_set[rows.cpu()]
-        grids = [z.to(self.device) for z in (given.base, given.winslow, given.variational)]
+        grids = [z.to(self.device) for z in (given.base, given.step, given.winslow, given.variational)]
         if self.around:
             grids = [_further(z, step % STARTS) for z in grids]
-        base, winslow, variational = grids
-        found = self._found(self.net, base)
+        base, last, winslow, variational = grids
+        found = self._found(self.net, base, last)
         share = step / self.steps
-        weight = float(np.clip((share - ENERGY[0]) / (ENERGY[1] - ENERGY[0]), 0.0, 1.0))
-        parts = [_missed(found[:, 0], winslow), _missed(found[:, 1], variational)]
+        weight = float(np.interp(share, (*ENERGY, 1.0), (0.0, 1.0, 1.0, 0.0)))
+        parts = [
+            _missed(found[:, 0], winslow) + _away(found[:, 0], winslow),
+            _missed(found[:, 1], variational),
+        ]
         if weight > 0:
             cell = 1.0 / (base.shape[-1] - 1) ** 2
             weights = measured.AROUND if self.around else measured.Weights()
@@ -133,9 +145,9 @@ class QuadTask(Task):
             parts.append(torch.zeros_like(parts[0]))
         return torch.stack(parts)
 
-    def _found(self, net: QuadUNet, base: Tensor) -> Tensor:
+    def _found(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
         """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
-        answer = SCALE * net(features(base, torch, self.around))
+        answer = SCALE * net(features(base, step, torch, self.around))
         if self.around:
             answer = torch.cat([answer, answer[:, :, :1]], 2)
         return base[:, None] + answer
@@ -159,10 +171,8 @@ class QuadTask(Task):
     def answers(self) -> Tensor:
         """Return the held-out grids (m, heads, n, n) of the mean weights."""
         with torch.no_grad():
-            parts = [
-                self._found(self.mean, base.to(self.device)).cpu()
-                for base in torch.split(self.held_out.base, 100)
-            ]
+            pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
+            parts = [self._found(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
         return torch.cat(parts)
 
 
@@ -184,6 +194,12 @@ def _missed(found: Tensor, goal: Tensor) -> Tensor:
         off, step = error.diff(dim=axis).abs().square(), goal.diff(dim=axis).abs().square()
         rough = rough + torch.log1p(4.0 * off / (step + 1e-8)).mean((1, 2))
     return total + (rough + 1e-7).sqrt().mean()
+
+
+def _away(found: Tensor, goal: Tensor) -> Tensor:
+    """Return the logarithm of the distance between grids, which counts in near ones too, in the mean."""
+    distance = (found - goal).abs().square().mean((1, 2)).sqrt()
+    return NEAR * torch.log1p(distance / CLOSE).mean()
 
 
 def quads(variational: Samples, winslow: Samples) -> Quads:
@@ -217,10 +233,8 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
     base = transfinite(goal)
     middle, factor = frame(base, np)
 
-    def unit(z: Complexes) -> Tensor:
-        return _single((z - middle[:, None, None]) * factor[:, None, None])
-
-    return Quads(unit(base), unit(other), unit(goal))
+    base, other, goal = ((z - middle[:, None, None]) * factor[:, None, None] for z in (base, other, goal))
+    return _approached(base, other, goal)
 
 
 def _unrolled(goal: Complexes, other: Complexes) -> Quads:
@@ -231,8 +245,13 @@ def _unrolled(goal: Complexes, other: Complexes) -> Quads:
     kept = once & also & alike
     goal, other = goal[kept], other[kept]
     factor = factors(goal)[:, None, None]
-    base, winslow, variational = (_single(z * factor) for z in (even(goal, goal.shape[2]), other, goal))
-    return Quads(base, winslow, variational, around=True)
+    return _approached(even(goal, goal.shape[2]) * factor, other * factor, goal * factor, around=True)
+
+
+def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
+    """Return domains by their grids, the base transfinite."""
+    near, step = (p[:, 0] + 1j * p[:, 1] for p in approached(base, around))
+    return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
 
 
 def _single(z: Complexes) -> Tensor:

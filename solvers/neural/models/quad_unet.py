@@ -89,7 +89,6 @@ class QuadUNet(nn.Module):
         self.up = nn.ModuleList(GroupConvolution(b, a, size=1) for a, b in pairs)
         self.before = nn.ModuleList(_blocks(widths[k], blocks[k], around) for k in range(count))
         self.after = nn.ModuleList(_blocks(widths[k], blocks[k], around) for k in range(count - 1))
-        self.last = GroupConvolution(widths[0], widths[0], around=around)
         self.project = nn.Parameter(0.1 * widths[0] ** -0.5 * torch.randn(len(HEADS), 2, widths[0]))
         self.register_buffer("seen", torch.tensor(SEEN, dtype=torch.float32), persistent=False)
         self.register_buffer("elements", torch.tensor(ELEMENTS, dtype=torch.float32), persistent=False)
@@ -110,9 +109,8 @@ class QuadUNet(nn.Module):
         x = self.before[-1](x)
         for k in range(len(skipped) - 1, -1, -1):
             x = self.after[k](self._finer(self.up[k](x), skipped[k]) + skipped[k])
-        x = functional.silu(self.last(functional.silu(x)))
         project = kernels.projection(self.project, self.elements, torch)
-        answer = functional.conv2d(x, project[:, :, None, None]) * self._bubble(x)
+        answer = functional.conv2d(functional.silu(x), project[:, :, None, None]) * self._bubble(x)
         return torch.complex(answer[:, 0::2].contiguous(), answer[:, 1::2].contiguous())
 
     def _finer(self, x: Tensor, like: Tensor) -> Tensor:

@@ -40,8 +40,6 @@ def refine(
 ) -> None: ...
 def look(
     planes: NDArray[np.float64],
-    middle: NDArray[np.float64],
-    factor: NDArray[np.float64],
-    scratch: NDArray[np.float64],
+    steps: NDArray[np.float64],
     out: NDArray[Real],
 ) -> None: ...

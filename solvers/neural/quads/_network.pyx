@@ -22,8 +22,8 @@ cdef extern from "network_kernel.h":
     void network_activate_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, int pad, double *out) nogil
     void network_refine_float(const float *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, const float *add, float *out) nogil
     void network_refine_double(const double *x, Py_ssize_t batch, Py_ssize_t m, Py_ssize_t n, Py_ssize_t channels, int around, const double *add, double *out) nogil
-    void network_look_float(const double *planes, Py_ssize_t batch, Py_ssize_t n, const double *middle, const double *factor, double *scratch, float *out) nogil
-    void network_look_double(const double *planes, Py_ssize_t batch, Py_ssize_t n, const double *middle, const double *factor, double *scratch, double *out) nogil
+    void network_look_float(const double *planes, const double *steps, Py_ssize_t batch, Py_ssize_t n, float *out) nogil
+    void network_look_double(const double *planes, const double *steps, Py_ssize_t batch, Py_ssize_t n, double *out) nogil
     int LOOK_FEATURES
     int LOOK_MOST
 
@@ -223,25 +223,19 @@ def refine(const real[:, :, :, ::1] x, const real[:, :, :, ::1] add, real[:, :, 
     done(&step, later, (x, add, out))
 
 
-def look(const double[:, :, :, ::1] planes, const double[:, ::1] middle, const double[:, ::1] factor,
-         double[:, :, ::1] scratch, real[:, :, :, ::1] out):
-    """Fill `out` (batch, n, n, features) for grids `planes` (batch, 2, n, n) after z <- (z - middle) factor.
-
-    `middle` and `factor` are (batch, 2), real and imaginary parts; `scratch` is (2, n, n).
-    """
+def look(const double[:, :, :, ::1] planes, const double[:, :, :, ::1] steps, real[:, :, :, ::1] out):
+    """Fill `out` (batch, n, n, features) for grids `planes` and their last `steps`, both (batch, 2, n, n)."""
     cdef Py_ssize_t batch = planes.shape[0], n = planes.shape[2]
     if planes.shape[1] != 2 or planes.shape[3] != n or n < 3 or n > LOOK_MOST:
         raise ValueError("grids that are not square, or too large")
-    if middle.shape[0] != batch or factor.shape[0] != batch or middle.shape[1] != 2 or factor.shape[1] != 2:
-        raise ValueError("frames of other grids")
-    if scratch.shape[0] != 2 or scratch.shape[1] != n or scratch.shape[2] != n:
-        raise ValueError("scratch of another size")
+    if steps.shape[0] != batch or steps.shape[1] != 2 or steps.shape[2] != n or steps.shape[3] != n:
+        raise ValueError("steps of other grids")
     if out.shape[0] != batch or out.shape[1] != n or out.shape[2] != n or out.shape[3] != LOOK_FEATURES:
         raise ValueError("an output of another shape")
     if batch == 0:
         return
     with nogil:
         if real is float:
-            network_look_float(&planes[0, 0, 0, 0], batch, n, &middle[0, 0], &factor[0, 0], &scratch[0, 0, 0], &out[0, 0, 0, 0])
+            network_look_float(&planes[0, 0, 0, 0], &steps[0, 0, 0, 0], batch, n, &out[0, 0, 0, 0])
         else:
-            network_look_double(&planes[0, 0, 0, 0], batch, n, &middle[0, 0], &factor[0, 0], &scratch[0, 0, 0], &out[0, 0, 0, 0])
+            network_look_double(&planes[0, 0, 0, 0], &steps[0, 0, 0, 0], batch, n, &out[0, 0, 0, 0])

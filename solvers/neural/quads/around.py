@@ -2,8 +2,9 @@
 
 ::
 
-    walls -> 65 nodes of them -> strip -> even steps from wall to wall -> size out -> features -> network
-          -> 65 x 33 grid, its walls those nodes -> splines -> grid at the walls' own counts
+    walls -> 65 nodes of them -> strip -> even steps from wall to wall -> size out -> towards Winslow's grid
+          -> features -> network -> 65 x 33 grid, its walls those nodes
+          -> splines -> grid at the walls' own counts
 
 Turning, moving and scaling only move the strip, a mirrored body has the mirrored one, and beginning an eighth
 of the way further round shifts it: the network's answer does the same, to rounding.
@@ -19,11 +20,12 @@ from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from solvers import coarse
-from solvers.neural.quads.encoding import LATENT, SCALE
+from solvers.neural.quads.approach import AFTER, approached
+from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import features
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
-from solvers.neural.quads.unrolled import AROUND, even, factors, middles, rolled, unrolled
+from solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
 from solvers.spline import between
 
 COMPACT = 0.15
@@ -59,8 +61,15 @@ def coarse_grids(
     network = model.network(dtype)
     for k in range(0, len(base), CHUNK):
         chunk, unit = base[k : k + CHUNK], factor[k : k + CHUNK]
-        moved = network(features(chunk * unit, np, around=True), head)
-        chunk[:, :-1] += SCALE * moved / unit
+        even_strip = chunk * unit
+        planes, steps = approached(even_strip, around=True)
+        near, step = (one[:, 0] + 1j * one[:, 1] for one in (planes, steps))
+        near[:, :-1] += SCALE * network(features(near, step, np, around=True), head)
+        if head == WINSLOW:
+            near[:, -1] = near[:, 0] + unit[:, 0] * TURN
+            planes, _ = approached(near, True, AFTER, harmonic=False)
+            near = planes[:, 0] + 1j * planes[:, 1]
+        chunk[:, :-1] += (near - even_strip)[:, :-1] / unit
         chunk[:, -1] = chunk[:, 0]  # a whole turn on
     grids = rolled(base, centres)
     grids[:, :, [0, -1]] = walls

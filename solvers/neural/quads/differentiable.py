@@ -15,7 +15,8 @@ from torch import Tensor
 from geometry.errors import InputError
 from solvers import acute
 from solvers.neural.models.quad_unet import QuadUNet
-from solvers.neural.quads.encoding import LATENT, SCALE
+from solvers.neural.quads.approach import AFTER, approach
+from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, load_quads
@@ -82,7 +83,12 @@ class QuadGrids:
         base = interpolated(thin, _laws(thin))
         z = torch.complex(base[:, 0], base[:, 1])
         middle, factor = (value[:, None, None] for value in frame(z, torch))
-        moved = self._network(features((z - middle) * factor, torch))[:, self._head] * (SCALE / factor)
+        z = (z - middle) * factor
+        near, step = approach(z, torch)
+        found = near + SCALE * self._network(features(near, step, torch))[:, self._head]
+        if self._head == WINSLOW:
+            found, _ = approach(found, torch, steps=AFTER, harmonic=False)
+        moved = (found - z) / factor
         return base + torch.stack([moved.real, moved.imag], 1)
 
 

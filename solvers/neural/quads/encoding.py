@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 KIND = "meshonet quad operator"
-VERSION = 1
+VERSION = 2
 
 LATENT = 33
 """Nodes along xi and eta of the grid the network sees."""
@@ -13,3 +13,6 @@ SCALE = 0.1
 
 HEADS = ("winslow", "variational")
 """The grids a network answers with, in order."""
+
+WINSLOW = 0
+"""The number of the first of these, which takes a few steps of `approach` after the network."""

@@ -1,25 +1,33 @@
-"""What the quad network sees at every node: the transfinite grid, its steps and their changes."""
+"""What the quad network sees at every node: a grid, its steps and their changes, and what last moved it."""
 
 from __future__ import annotations
 
 from typing import Any
 
-FEATURES = 17
+FEATURES = 20
 """Channels a node: first differences (4), second differences (4), log lengths of both steps (2), place (2),
-cosine and sine between the steps (2), the Jacobian's inverse hyperbolic sine (1), xi and eta (2)."""
+cosine and sine between the steps (2), the Jacobian's inverse hyperbolic sine (1), xi and eta (2), the last
+step of `approach` over its size (2), and the logarithm of that size (1)."""
 
 FLOOR = 1e-2
 """Added to lengths before their logarithm."""
 
 TINY = 1e-6
 
+STILL = 1e-3
+"""Added to the size of the last step."""
 
-def features(z: Any, xp: Any, around: bool = False) -> Any:
+STRETCH = 30.0
+"""How far small steps are drawn out, by the inverse hyperbolic sine."""
+
+
+def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return (batch, n, n, FEATURES) of normalised grids `z` (batch, n, n), complex.
 
     Parameters
     ----------
     z : array of numpy or of torch.
+    step : of its shape, what last moved it (`approach`).
     xp : the module, numpy or torch, that `z` is of.
     around : `z` are O grids (batch, m + 1, n) unrolled (`unrolled`), whose last column is the first a turn
         on: differences along xi go round, and places are those less even steps. Returns (batch, m, n, ...).
@@ -29,6 +37,7 @@ def features(z: Any, xp: Any, around: bool = False) -> Any:
     n = z.shape[-1]
     if around:
         u, a, z, where = _round(z, xp)
+        step = step[:, :-1]
     else:
         u, a, where = _slope(z, xp), _bend(z, xp), z
     v, b = _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
@@ -36,10 +45,15 @@ def features(z: Any, xp: Any, around: bool = False) -> Any:
     angle = product / (lengths[0] * lengths[1] + TINY)
     place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype) + 0.0 * z.real
     along = 0.0 * place if around else place.swapaxes(1, 2)
+    squares = step.real**2 + step.imag**2
+    size = xp.sqrt(squares.mean((1, 2)) + TINY**2)[:, None, None] + STILL
+    length = xp.sqrt(squares + TINY**2) / size
+    step = step * (xp.arcsinh(STRETCH * length) / (2.0 * size * length))
     channels = (
         u.real, v.real, u.imag, v.imag, a.real, b.real, a.imag, b.imag,
         xp.log(lengths[0] + FLOOR), xp.log(lengths[1] + FLOOR), where.real, where.imag,
         angle.real, angle.imag, xp.arcsinh(product.imag), along, place,
+        step.real, step.imag, xp.log10(size) + 2.0 + 0.0 * place,
     )  # fmt: skip
     return xp.stack(channels, -1)
 

@@ -18,6 +18,7 @@ from solvers.coarse import thinned
 from solvers.neural.operator import Polish
 from solvers.neural.quads import around
 from solvers.neural.quads.edges import Edges
+from solvers.neural.quads.encoding import WINSLOW
 from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, load_quads
 from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from solvers.neural.weights import model_path
@@ -25,9 +26,6 @@ from solvers.solution import Solution
 
 Counts: TypeAlias = tuple[int, int]
 """Nodes along xi and eta."""
-
-WINSLOW = 0
-"""Number of the answer that is Winslow's grid."""
 
 AUTO = {WINSLOW: 2, 1: 5}
 """Steps of "auto": cycles of multigrid, or of descent."""

@@ -1,15 +1,17 @@
-/* Features of a grid at every node, those of features.py in its order, into real type T with logarithm LOG. */
+/* Features of a grid and its last step at every node, those of features.py in its order, into real type T with
+   logarithm LOG. */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)
 
-MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, ptrdiff_t n, ptrdiff_t i,
+MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, const double *restrict dx,
+                                    const double *restrict dy, double size, ptrdiff_t n, ptrdiff_t i,
                                     double (*restrict row)[LOOK_MOST], T *restrict out)
 {
     const double cells = (double)(n - 1);
     const ptrdiff_t before = i > 0 ? -n : 0, after = i < n - 1 ? n : 0;
     const double steep = before && after ? 0.5 * cells : cells, bend = before && after ? 2.0 * cells : 0.0;
-    x += i * n, y += i * n;
+    x += i * n, y += i * n, dx += i * n, dy += i * n;
     for (ptrdiff_t j = 0; j < n; j++) {
         row[0][j] = steep * (x[j + after] - x[j + before]);
         row[2][j] = steep * (y[j + after] - y[j + before]);
@@ -32,39 +34,45 @@ MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *rest
     for (ptrdiff_t j = 0; j < n; j++) {
         const double ur = row[0][j], vr = row[1][j], ui = row[2][j], vi = row[3][j];
         const double u = sqrt(ur * ur + ui * ui), v = sqrt(vr * vr + vi * vi), w = 1.0 / (u * v + LOOK_TINY);
-        const double dot = ur * vr + ui * vi, cross = ur * vi - ui * vr, size = fabs(cross);
+        const double dot = ur * vr + ui * vi, cross = ur * vi - ui * vr, area = fabs(cross);
         row[8][j] = u + LOOK_FLOOR, row[9][j] = v + LOOK_FLOOR;
         row[12][j] = dot * w, row[13][j] = cross * w;
-        row[14][j] = size + sqrt(cross * cross + 1.0);
+        row[14][j] = area + sqrt(cross * cross + 1.0);
     }
-    T logs[3][LOOK_MOST]; /* the last: of the inverse hyperbolic sine without its sign */
-    const int where[3] = {8, 9, 14};
-    for (int k = 0; k < 3; k++)
+    for (ptrdiff_t j = 0; j < n; j++) {
+        const double length = sqrt(dx[j] * dx[j] + dy[j] * dy[j] + LOOK_TINY * LOOK_TINY) / size;
+        const double drawn = LOOK_STRETCH * length;
+        row[17][j] = dx[j] / (2.0 * size * length), row[18][j] = dy[j] / (2.0 * size * length);
+        row[19][j] = drawn + sqrt(drawn * drawn + 1.0);
+    }
+    T logs[4][LOOK_MOST]; /* the last two: of inverse hyperbolic sines without their signs */
+    const int where[4] = {8, 9, 14, 19};
+    for (int k = 0; k < 4; k++)
         for (ptrdiff_t j = 0; j < n; j++)
             logs[k][j] = LOG((T)row[where[k]][j]);
     for (ptrdiff_t j = 0; j < n; j++)
         logs[2][j] = row[13][j] < 0.0 ? -logs[2][j] : logs[2][j];
+    const T told = (T)(log10(size) + 2.0);
     for (ptrdiff_t j = 0; j < n; j++, out += LOOK_FEATURES) {
         for (int k = 0; k < LOOK_FEATURES; k++)
             out[k] = (T)row[k][j];
         out[8] = logs[0][j], out[9] = logs[1][j], out[14] = logs[2][j];
+        out[17] *= logs[3][j], out[18] *= logs[3][j], out[19] = told;
     }
 }
 
 MESHONET_CLONES
-void NAME(network_look)(const double *planes, ptrdiff_t batch, ptrdiff_t n, const double *middle, const double *factor,
-                        double *restrict scratch, T *out)
+void NAME(network_look)(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, T *out)
 {
     double row[LOOK_FEATURES][LOOK_MOST];
-    double *restrict x = scratch, *restrict y = scratch + n * n;
-    for (ptrdiff_t b = 0; b < batch; b++, planes += 2 * n * n, middle += 2, factor += 2) {
-        for (ptrdiff_t k = 0; k < n * n; k++) {
-            const double p = planes[k] - middle[0], q = planes[n * n + k] - middle[1];
-            x[k] = p * factor[0] - q * factor[1];
-            y[k] = p * factor[1] + q * factor[0];
-        }
+    const ptrdiff_t plane = n * n;
+    for (ptrdiff_t b = 0; b < batch; b++, planes += 2 * plane, steps += 2 * plane) {
+        double square = 0.0;
+        for (ptrdiff_t k = 0; k < 2 * plane; k++)
+            square += steps[k] * steps[k];
+        const double size = sqrt(square / (double)plane + LOOK_TINY * LOOK_TINY) + LOOK_STILL;
         for (ptrdiff_t i = 0; i < n; i++, out += n * LOOK_FEATURES)
-            NAME(look_row)(x, y, n, i, row, out);
+            NAME(look_row)(planes, planes + plane, steps, steps + plane, size, n, i, row, out);
     }
 }
 #undef NAME

@@ -5,9 +5,9 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
     h = lift(features)
     h = blocks(h);  h = down(silu(h))          on each level but the coarsest, whose blocks come once
     h = blocks(skip + finer(up(h)))            back up, finer: linear between nodes
-    d = m · project(silu(last(silu(h))))       two components for each head, m = 0 on the rim
+    d = m · project(silu(h))                   two components for each head, m = 0 on the rim
 
-with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b, down and last. Expanded
+with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
 once, the kernels are those of an ordinary convolutional network, which is compiled, most of it by fewer
 products (`winograd.h`).
 `solvers.neural.models.quad_unet` is the same in torch.
@@ -71,7 +71,6 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
         for part in ("before", "after")[: 1 if level == len(widths) - 1 else 2]:
             for k, half in product(range(blocks[level]), "ab"):
                 layer(f"{part}.{level}.{k}.{half}", width, width)
-    layer("last", widths[0], widths[0])
     found["project"] = (heads, 2, widths[0])
     return found
 
@@ -156,7 +155,6 @@ class Network:
         for level in range(coarsest - 1, -1, -1):
             h = work.finer(work.layer(f"up.{level}", h), skips[level])
             h = work.blocks(f"after.{level}", self.blocks[level], h)
-        h = work.layer("last", work.silu(h))
         work.layer("project", work.silu(h, pad=0))
 
 

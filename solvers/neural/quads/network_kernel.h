@@ -37,15 +37,14 @@ void network_refine_float(const float *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff
 void network_refine_double(const double *in, ptrdiff_t batch, ptrdiff_t m, ptrdiff_t n, ptrdiff_t channels, int around,
                            const double *add, double *out);
 
-#define LOOK_FEATURES 17 /* of features.py, as are the two numbers below */
+#define LOOK_FEATURES 20 /* of features.py, as are the numbers below */
 #define LOOK_FLOOR 1e-2
 #define LOOK_TINY 1e-6
+#define LOOK_STILL 1e-3
+#define LOOK_STRETCH 30.0
 #define LOOK_MOST 129 /* nodes along an axis at the most */
 
-/* out (batch, n, n, LOOK_FEATURES) of grids (batch, 2, n, n) after z <- (z - middle) factor, both (batch, 2);
-   scratch (2, n, n). */
-void network_look_float(const double *planes, ptrdiff_t batch, ptrdiff_t n, const double *middle, const double *factor,
-                        double *scratch, float *out);
-void network_look_double(const double *planes, ptrdiff_t batch, ptrdiff_t n, const double *middle,
-                         const double *factor, double *scratch, double *out);
+/* out (batch, n, n, LOOK_FEATURES) of grids and their last steps, both (batch, 2, n, n). */
+void network_look_float(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, float *out);
+void network_look_double(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, double *out);
 #endif

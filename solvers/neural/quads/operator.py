@@ -2,8 +2,9 @@
 
 ::
 
-    edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> features -> network
-          -> 33 x 33 grid, its rim that of the edges -> splines -> grid at the edges' own counts
+    edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> towards Winslow's grid
+          -> features -> network -> 33 x 33 grid, its rim that of the edges
+          -> splines -> grid at the edges' own counts
 
 The last step is that of `solvers.coarse`: the difference from transfinite interpolation is smooth, but near
 acute corners (`solvers.acute`), so it is evaluated anywhere and added to the interpolation of the full edges,
@@ -21,8 +22,9 @@ from geometry.boundary import Boundary
 from solvers import acute
 from solvers._evaluate import begin_all, evaluate_all
 from solvers.neural.quads._network import look
+from solvers.neural.quads.approach import AFTER, approached
 from solvers.neural.quads.edges import Edges
-from solvers.neural.quads.encoding import LATENT, SCALE
+from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import QuadModel
@@ -44,22 +46,45 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
     head : index into `encoding.HEADS`.
     dtype : of the network's arithmetic, ``float64`` or ``float32``; all else is float64.
     """
+    base, z, factor = _begun(edges)
+    network = model.network(dtype)
+    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), dtype)
+    for k in range(0, len(base), CHUNK):
+        rows = slice(k, k + CHUNK)
+        near, step = approached(z[rows])
+        seen = room[: len(near)]
+        look(near, step, seen)
+        found = near[:, 0] + 1j * near[:, 1] + SCALE * network(seen, head)
+        if head == WINSLOW:
+            after, _ = approached(found, steps=AFTER, harmonic=False)
+            found = after[:, 0] + 1j * after[:, 1]
+        _move(base[rows], found - z[rows], factor[rows])
+    return base
+
+
+def near_grids(edges: Edges) -> Floats:
+    """Return the planes (batch, 2, n, n) that the network goes out from, at n = 33 nodes each."""
+    base, z, factor = _begun(edges)
+    near, _ = approached(z)
+    _move(base, near[:, 0] + 1j * near[:, 1] - z, factor)
+    return base
+
+
+def _begun(edges: Edges) -> tuple[Floats, Complexes, Complexes]:
+    """Return transfinite grids as planes and, of unit size, as z (batch, n, n), and the factors to it."""
     base = np.empty((len(edges), 2, LATENT, LATENT))
     ni, nj = edges.counts
     begin_all(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
     z = base[:, 0] + 1j * base[:, 1]
-    middle, factor = (np.asarray(value) for value in frame(z, np))
-    network = model.network(dtype)
-    scratch = np.empty((2, LATENT, LATENT))
-    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), dtype)
-    for k in range(0, len(base), CHUNK):
-        chunk = base[k : k + CHUNK]
-        seen = room[: len(chunk)]
-        look(chunk, _pairs(middle[k : k + CHUNK]), _pairs(factor[k : k + CHUNK]), scratch, seen)
-        moved = network(seen, head) * (SCALE / factor[k : k + CHUNK, None, None])
-        chunk[:, 0] += moved.real
-        chunk[:, 1] += moved.imag
-    return base
+    middle, factor = (np.asarray(value)[:, None, None] for value in frame(z, np))
+    return base, (z - middle) * factor, factor
+
+
+def _move(planes: Floats, by: Complexes, factor: Complexes) -> None:
+    """Add displacements at unit size to planes (batch, 2, n, n)."""
+    moved = by / factor
+    planes[:, 0] += moved.real
+    planes[:, 1] += moved.imag
 
 
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
@@ -86,7 +111,3 @@ def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[lis
         count = min(-(-fewest // threads) * threads, len(group))
         for k in range(count):
             yield group[k * len(group) // count : (k + 1) * len(group) // count]
-
-
-def _pairs(values: Complexes) -> Floats:
-    return np.ascontiguousarray(values).view(np.float64).reshape(-1, 2)

@@ -81,8 +81,9 @@ def _seen(element: Integers) -> Floats:
     sign = axes[0, 0] * turn[0, 0] * turn[1, 1] + axes[0, 1] * turn[0, 1] * turn[1, 0]
     one = np.ones((1, 1))
     return _sum(
-        np.kron(turn.T, turn.T), np.kron(turn.T, axes.T), axes.T, turn.T, sign * one, one, one, turn.T
-    )
+        np.kron(turn.T, turn.T), np.kron(turn.T, axes.T), axes.T, turn.T, sign * one, one, one, turn.T,
+        turn.T, one,
+    )  # fmt: skip
 
 
 SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])

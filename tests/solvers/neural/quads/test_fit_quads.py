@@ -18,8 +18,9 @@ from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.quads import Quads, Sizes, quads, train_quads
 from solvers.neural.fit.team import Team
 from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.approach import approach
 from solvers.neural.quads.encoding import LATENT
-from solvers.neural.quads.features import features
+from solvers.neural.quads.features import FEATURES, features
 from solvers.neural.quads.symmetry import ORDER, relabelled
 from solvers.neural.samples import Samples, gathered
 from solvers.neural.weights import read_tensors
@@ -63,16 +64,16 @@ def test_the_answer_to_a_relabelled_domain_is_the_relabelled_answer(element: int
     z = t[:, None] + 1j * t + noise[0] + 1j * noise[1]
 
     def answer(z: np.ndarray) -> np.ndarray:
-        return np.asarray(net(torch.from_numpy(features(z, np))).detach().numpy())
+        return np.asarray(net(torch.from_numpy(features(*approach(z, np), np))).detach().numpy())
 
     plain = answer(z)
-    assert np.abs(plain).max() > 1e-3
+    assert np.abs(plain).max() > 1e-4
     np.testing.assert_allclose(answer(relabelled(z, element)), relabelled(plain, element), atol=1e-13)
 
 
 def test_the_answer_vanishes_on_the_rim() -> None:
     net = QuadUNet((1, 2), (1, 1))
-    answer = net(torch.randn(2, LATENT, LATENT, 17))
+    answer = net(torch.randn(2, LATENT, LATENT, FEATURES))
     for side in (answer[..., 0, :], answer[..., -1, :], answer[..., 0], answer[..., -1]):
         assert not side.abs().any()
 
@@ -98,8 +99,7 @@ def test_grids_of_another_size_are_refused(solved: tuple[Samples, Samples]) -> N
 
 def test_the_loss_falls(given: Quads, tmp_path: Path) -> None:
     reports = fit(given, tmp_path / "m.safetensors", replace(SMALL, epochs=40, rate=1e-2))
-    supervised = [sum(report.parts[key] for key in ("winslow", "variational")) for report in reports]
-    assert supervised[-1] < 0.9 * supervised[0]
+    assert reports[-1].parts["winslow"] < 0.85 * reports[0].parts["winslow"]
     assert reports[0].parts["energy"] == 0 < reports[-1].parts["energy"]
     header, tensors = read_tensors(tmp_path / "m.safetensors")
     assert header["kind"] == "meshonet quad operator"

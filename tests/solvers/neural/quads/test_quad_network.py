@@ -18,6 +18,7 @@ from solvers.neural.quads._network import (
     winograd,
     winograd_scratch,
 )
+from solvers.neural.quads.approach import approach
 from solvers.neural.quads.features import FEATURES, features
 from solvers.neural.quads.kernels import at_points
 from solvers.neural.quads.network import CHUNK, Network, shapes
@@ -187,15 +188,13 @@ def test_finer_copies_are_linear_between_nodes(dtype: Any) -> None:
 
 def test_compiled_features_are_those_in_numpy() -> None:
     z = grids(17)
-    middle, factor = np.array([0.3 + 0.2j, -1.0]), np.array([0.7 - 0.4j, 2.0j])
-    planes = np.ascontiguousarray(np.stack([z.real, z.imag], axis=1))
+    near, step = approach(z, np)
     found = np.empty((2, 17, 17, FEATURES))
-    look(planes, pairs(middle), pairs(factor), np.empty((2, 17, 17)), found)
-    expected = features((z - middle[:, None, None]) * factor[:, None, None], np)
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    look(planes(near), planes(step), found)
+    np.testing.assert_allclose(found, features(near, step, np), rtol=0, atol=1e-12)
 
 
-def pairs(values: Complexes) -> Floats:
+def planes(values: Complexes) -> Floats:
     return np.stack([values.real, values.imag], axis=1)
 
 
@@ -204,6 +203,10 @@ def grids(n: int, count: int = 2) -> Complexes:
     t = np.linspace(-0.5, 0.5, n)
     noise = rng.normal(size=(2, count, n, n))
     return np.asarray(t[:, None] + 1j * t + 0.2 / n * (noise[0] + 1j * noise[1]))
+
+
+def seen_of(z: Complexes) -> Floats:
+    return np.asarray(features(*approach(z, np), np))
 
 
 def weights(dtype: Any = np.float64) -> dict[str, NDArray[Any]]:
@@ -217,20 +220,20 @@ def weights(dtype: Any = np.float64) -> dict[str, NDArray[Any]]:
 @pytest.mark.parametrize("element", range(ORDER))
 def test_the_answer_to_a_relabelled_grid_is_the_relabelled_answer(element: int) -> None:
     z, network = grids(17), Network(weights(), BLOCKS)
-    answer = network(features(z, np))
-    moved = network(features(relabelled(z, element), np))
+    answer = network(seen_of(z))
+    moved = network(seen_of(relabelled(z, element)))
     np.testing.assert_allclose(moved, relabelled(answer, element), rtol=0, atol=1e-12 * np.abs(answer).max())
 
 
 def test_the_answer_vanishes_on_the_rim_alone() -> None:
-    answer = Network(weights(), BLOCKS)(features(grids(17), np))
+    answer = Network(weights(), BLOCKS)(seen_of(grids(17)))
     assert not answer[..., [0, -1], :].any()
     assert not answer[..., [0, -1]].any()
     assert (answer[..., 1:-1, 1:-1] != 0).all()
 
 
 def test_a_batch_is_answered_as_each_of_it() -> None:
-    seen, network = features(grids(17, CHUNK + 3), np), Network(weights(), BLOCKS)
+    seen, network = seen_of(grids(17, CHUNK + 3)), Network(weights(), BLOCKS)
     together = network(seen)
     for k in range(len(seen)):
         np.testing.assert_array_equal(network(seen[k : k + 1])[0], together[k])
@@ -238,7 +241,7 @@ def test_a_batch_is_answered_as_each_of_it() -> None:
 
 
 def test_single_precision_is_close_to_double() -> None:
-    seen = features(grids(17), np)
+    seen = seen_of(grids(17))
     double, single = (Network(weights(), BLOCKS, dtype)(seen) for dtype in (np.float64, np.float32))
     np.testing.assert_allclose(single, double, rtol=0, atol=1e-5 * np.abs(double).max())
 
@@ -253,7 +256,7 @@ def test_numpy_equals_torch() -> None:
         WIDTHS, BLOCKS, 2
     )
     model.load_state_dict({name: torch.from_numpy(value) for name, value in held.items()})
-    seen = features(grids(17), np)
+    seen = seen_of(grids(17))
     with torch.no_grad():
         expected = model(torch.from_numpy(seen)).numpy()
     found = Network(held, BLOCKS)(seen)

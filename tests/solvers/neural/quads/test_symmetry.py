@@ -42,13 +42,14 @@ def test_relabelling_by_two_elements_is_relabelling_by_their_product(element: in
 
 @pytest.mark.parametrize("element", ALL)
 def test_features_of_a_relabelled_grid_are_those_seen_from_the_element(element: int) -> None:
-    z = normalised(grids())
+    z, step = normalised(grids()), 0.01 * grids()[::-1]
     n = z.shape[-1]
     places = np.arange(n) - (n - 1) / 2
     at = np.rint(ELEMENTS[element] @ np.stack(np.meshgrid(places, places, indexing="ij")).reshape(2, -1))
     rows = (at + (n - 1) / 2).astype(int)
-    moved = features(z, np)[:, rows[0], rows[1]].reshape(*z.shape, FEATURES)
-    np.testing.assert_allclose(features(relabelled(z, element), np), moved @ SEEN[element].T, atol=1e-12)
+    moved = features(z, step, np)[:, rows[0], rows[1]].reshape(*z.shape, FEATURES)
+    found = features(relabelled(z, element), relabelled(step, element), np)
+    np.testing.assert_allclose(found, moved @ SEEN[element].T, atol=1e-12)
 
 
 @pytest.mark.parametrize("element", ALL)

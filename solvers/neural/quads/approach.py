@@ -1,0 +1,164 @@
+"""From an interpolated grid towards Winslow's: the harmonic grid, then a few Picard steps, for a whole batch.
+
+Winslow's equations with the coefficients of the last grid::
+
+    alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
+    alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
+
+Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
+at their means over the domain. Differences are of nearly fourth order: three quarters of the leading error
+are taken out, which leaves that of a grid with half the steps.
+
+What is left when the steps end is the network's: corners and tails, where this many nodes are too few.
+Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from geometry.arrays import Complexes, Floats
+from solvers.neural.quads._approach import WIDTH, approach_all
+
+STEPS = 4
+"""After the harmonic grid. A fifth takes a tenth of what is left on average."""
+
+AFTER = 2
+"""Once more, after the network's answer for Winslow's grid: a fourth of its error is theirs to take."""
+
+SHARE = 0.75
+"""Of the leading error of differences that is taken out."""
+
+GROWTH = 4.0
+"""A step whose square is so many times the last one's, in the mean, is not taken."""
+
+TINY = 1e-30
+
+
+def approach(
+    z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
+) -> tuple[Any, Any]:
+    """Return grids nearer to Winslow's in the rims of `z`, and the last step, both of the shape of `z`.
+
+    Parameters
+    ----------
+    z : (batch, n, n) grids of unit size, complex, of numpy or of torch.
+    xp : the module, numpy or torch, that `z` is of.
+    around : `z` are strips (batch, m + 1, n), whose last column is the first a turn on.
+    steps : of Picard's iteration.
+    harmonic : they go out from the harmonic grid, else from `z`.
+    """
+    p = xp.stack([z.real, z.imag], 1)
+    turn = p[:, :, -1:] - p[:, :, :1]
+    if around:
+        p = p[:, :, :-1]
+    (left, slow), (right, fast) = (_waves(p, axis, xp, around and axis == 2) for axis in (2, 3))
+    step, size = 0.0 * p, xp.inf + 0.0 * p[:, :1, :1, :1]
+    for k in range(0 if harmonic else 1, steps + 1):
+        ring = xp.concatenate([p[:, :, -2:] - turn, p, p[:, :, :2] + turn], 2) if around else p
+        missed, alpha, gamma = _missed(ring, xp, around, SHARE if k else 0.0, linear=k == 0)
+        inner = left @ ((left @ missed @ right) / (alpha * slow[:, None] + gamma * fast)) @ right
+        square = (inner**2).mean((1, 2, 3))[:, None, None, None]
+        taken = square < GROWTH * size  # and a number
+        step, size = xp.where(taken, _inside(inner, xp, around), 0.0 * step), xp.where(taken, square, size)
+        p = p + step
+    if around:
+        p, step = xp.concatenate([p, p[:, :, :1] + turn], 2), xp.concatenate([step, step[:, :, :1]], 2)
+    return p[:, 0] + 1j * p[:, 1], step[:, 0] + 1j * step[:, 1]
+
+
+def approached(
+    z: Complexes, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
+) -> tuple[Floats, Floats]:
+    """Return what `approach` does, as planes (batch, 2, ...): the same compiled, to rounding."""
+    near = np.stack([z.real, z.imag], axis=1)
+    last, (m, n) = np.empty_like(near), z.shape[1:]
+    turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
+    left, right = _transform(m - 1 if around else m, around), _padded(n)
+    approach_all(near, turns, harmonic, steps, SHARE, GROWTH, *left, *right, around, last)
+    return near, last
+
+
+@lru_cache(maxsize=8)
+def _padded(n: int) -> tuple[Floats, Floats]:
+    """Return the transform along rows of n nodes in the width that the compiled code has."""
+    table, values = _transform(n, around=False)
+    more = -len(values) % WIDTH
+    return np.pad(table, (0, more)), np.pad(values, (0, more), constant_values=1.0)
+
+
+def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
+    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients.
+
+    `linear`: Laplace's along xi and eta instead of Winslow's.
+    """
+    body = p[:, :, 2:-2] if around else p[:, :, 1:-1]
+    bends = _second(p, share, xp, around)[..., 1:-1], _across(_second, body, share, xp)
+    if linear:
+        one = 1.0 + 0.0 * p[:, :1, :1, :1]
+        return bends[0] + bends[1], one, one
+    slopes = _first(p, share, xp, around)
+    u, v = slopes[..., 1:-1], _across(_first, body, share, xp)
+    twist = _across(_first, slopes, share, xp)
+    alpha, gamma, beta = ((a * b).sum(1)[:, None] for a, b in ((v, v), (u, u), (u, v)))
+    total = alpha + gamma + TINY
+    missed = (alpha * bends[0] - 2.0 * beta * twist + gamma * bends[1]) / total
+    return missed, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
+
+
+def _first(p: Any, share: float, xp: Any, around: bool = False) -> Any:
+    """Return half of central differences along axis 2, at nodes off the ends; `around`, two nodes off."""
+    central = 0.5 * (p[:, :, 2:] - p[:, :, :-2])
+    third = 0.5 * (p[:, :, 4:] - p[:, :, :-4]) + p[:, :, 1:-3] - p[:, :, 3:-1]
+    return _corrected(central, third, share / 6.0, xp, around)
+
+
+def _second(p: Any, share: float, xp: Any, around: bool = False) -> Any:
+    """Return second differences along axis 2, where `_first` has differences."""
+    central = p[:, :, 2:] + p[:, :, :-2] - 2.0 * p[:, :, 1:-1]
+    fourth = central[:, :, 2:] + central[:, :, :-2] - 2.0 * central[:, :, 1:-1]
+    return _corrected(central, fourth, share / 12.0, xp, around)
+
+
+def _corrected(central: Any, error: Any, share: float, xp: Any, around: bool) -> Any:
+    """Return differences less a `share` of what is `error` two nodes from the ends and beyond."""
+    if around:
+        return central[:, :, 1:-1] - share * error
+    return central - share * xp.concatenate([error[:, :, :1], error, error[:, :, -1:]], 2)
+
+
+def _across(difference: Any, p: Any, share: float, xp: Any) -> Any:
+    return difference(p.swapaxes(2, 3), share, xp).swapaxes(2, 3)
+
+
+def _inside(inner: Any, xp: Any, around: bool) -> Any:
+    """Return planes with zeros for the rim around `inner`; `around`, for the walls."""
+    side = 0.0 * inner[..., :1]
+    rows = xp.concatenate([side, inner, side], 3)
+    end = 0.0 * rows[:, :, :1]
+    return rows if around else xp.concatenate([end, rows, end], 2)
+
+
+def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:
+    """Return an axis' transform and minus the eigenvalues of second differences, as arrays like `p`."""
+    return tuple(
+        xp.asarray(table, dtype=p.dtype, device=p.device) for table in _transform(p.shape[axis], around)
+    )
+
+
+@lru_cache(maxsize=8)
+def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
+    """Return a symmetric matrix that is its own inverse and makes second differences of n nodes diagonal.
+
+    `around`, Hartley's; else of sines, for the nodes between the ends.
+    """
+    if around:
+        k = np.arange(n)
+        angle = 2.0 * np.pi * (np.outer(k, k) % n) / n
+        return (np.cos(angle) + np.sin(angle)) / np.sqrt(n), 4.0 * np.sin(np.pi * k / n) ** 2
+    k = np.arange(1, n - 1)
+    angle = np.pi * (np.outer(k, k) % (2 * (n - 1))) / (n - 1)
+    return np.sqrt(2.0 / (n - 1)) * np.sin(angle), 4.0 * np.sin(0.5 * np.pi * k / (n - 1)) ** 2
