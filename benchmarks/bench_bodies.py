@@ -198,12 +198,11 @@ TAIL = """
 
 `infer` without a model gives `hole-o` the compact bodies that the airfoil operator refuses, unless its
 answer on 65 x 33 nodes has folds; then the elliptic solver makes the grid. With its five steps it is valid
-where a quarter of Winslow's grids are folded before the guard, and nearer to right angles on most bodies,
-for up to twice the time; alone it folds about as often as Winslow's. On one body in five the largest angle
-stays above Winslow's: `solve-pde --method variational` has the best of all, in more time. What both pay is
-evenness: they draw lines together where a body stands near its far field. Smooth bodies in round far fields
-stay with `airfoil-o`, as do thin ones; a body whose middle lies outside itself (a clip, a crescent) is
-refused.
+where a quarter of Winslow's grids are folded before the guard, and nearer to right angles, in up to four
+times the time; alone, one in forty folds. `solve-pde --method variational` has the best of all, in four times
+the time again. What both pay is evenness: they draw lines together where a body stands near its far field.
+Smooth bodies in round far fields stay with `airfoil-o`, as do thin ones; a body whose middle lies outside
+itself (a clip, a crescent) is refused.
 """
 
 if __name__ == "__main__":
