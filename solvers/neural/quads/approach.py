@@ -110,7 +110,7 @@ def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tup
 
 
 def _first(p: Any, share: float, xp: Any, around: bool = False) -> Any:
-    """Return half of central differences along axis 2, at nodes off the ends; `around`, two nodes off."""
+    """Return central differences a step along axis 2, at nodes off the ends; `around`, two nodes off."""
     central = 0.5 * (p[:, :, 2:] - p[:, :, :-2])
     third = 0.5 * (p[:, :, 4:] - p[:, :, :-4]) + p[:, :, 1:-3] - p[:, :, 3:-1]
     return _corrected(central, third, share / 6.0, xp, around)
