@@ -183,6 +183,8 @@ def test_without_repair_the_grid_is_what_the_equations_have(meshonet: Meshonet, 
     told = meshonet("solve-pde", "wrench.h5", *words, "-o", "bare.vts").only
     assert told["folded"] > 0
     assert told["path"] == []
+    repaired = meshonet("solve-pde", "wrench.h5", "--repair", *words[1:], "-o", "whole.vts").only
+    assert (repaired["folded"], repaired["path"]) == (0, ["repair"])
     solved = solve(next(read_shapes("wrench.h5")), tol=1e-6).grid.nodes
     np.testing.assert_array_equal(next(read_grids("bare.vts")).nodes, solved)
 
