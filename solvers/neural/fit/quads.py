@@ -14,12 +14,11 @@ from typing import Any, ClassVar
 import numpy as np
 import torch
 from torch import Tensor
-from torch.nn import functional
 
 from geometry.arrays import Complexes, Floats, Topology
 from geometry.errors import InputError
+from solvers.neural.fit.angles import excess
 from solvers.neural.fit.checkpoint import beside
-from solvers.neural.fit.energy import energies
 from solvers.neural.fit.loop import Progress, fit
 from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.task import Task
@@ -34,7 +33,6 @@ from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
 from solvers.neural.samples import Samples
-from solvers.variational import functional as measured
 
 PLAN = Plan(
     epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
@@ -46,11 +44,11 @@ HELD_OUT = 600
 AVERAGED = 0.999
 """Of the running mean of the weights, whose answers count, each step keeps so much."""
 
-ENERGY = (0.3, 0.6, 0.8)
-"""Between the first two shares of the steps the variational functional comes into the loss; from the third on
-it leaves again: it unfolds grids, and costs the rest of them angles."""
+PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
+"""Weights of the loss's parts. Picard steps are all but Winslow's grids: there little is left to learn."""
 
-ENERGY_WEIGHT = 1.0
+COMES = (0.1, 0.3)
+"""Between these shares of the steps angles and folds come into the loss."""
 
 NEAR, CLOSE = 0.1, 3e-4
 """Weight of the logarithm of the distance from Winslow's grids, and where it sets in."""
@@ -91,7 +89,7 @@ class Quads:
 
 
 class QuadTask(Task):
-    """The quad network: distances of steps to both targets' steps, then the functional of its answer as well.
+    """The quad network: distances of steps to both targets' steps, then the angles of its answer as well.
 
     Parameters
     ----------
@@ -101,7 +99,7 @@ class QuadTask(Task):
     device : to compute on.
     """
 
-    parts: ClassVar[tuple[str, ...]] = ("winslow", "variational", "energy")
+    parts: ClassVar[tuple[str, ...]] = tuple(PARTS)
 
     def __init__(
         self, training: Quads, held_out: Quads, sizes: Sizes, steps: int, device: torch.device
@@ -129,21 +127,14 @@ class QuadTask(Task):
             grids = [_further(z, step % STARTS) for z in grids]
         base, last, winslow, variational = grids
         found = self._found(self.net, base, last)
-        share = step / self.steps
-        weight = float(np.interp(share, (*ENERGY, 1.0), (0.0, 1.0, 1.0, 0.0)))
-        parts = [
+        comes = float(np.interp(step / self.steps, COMES, (0.0, 1.0)))
+        angles = excess(found[:, 1], variational)
+        parts = (
             _missed(found[:, 0], winslow) + _away(found[:, 0], winslow),
             _missed(found[:, 1], variational),
-        ]
-        if weight > 0:
-            cell = 1.0 / (base.shape[-1] - 1) ** 2
-            weights = measured.AROUND if self.around else measured.Weights()
-            energy = energies(found[:, 1], 0.05 * cell * (1.0 - 0.9 * share), weights)
-            excess = energy / energies(variational, 0.0, weights) - 1
-            parts.append(ENERGY_WEIGHT * weight * torch.log1p(functional.relu(excess)).mean())
-        else:
-            parts.append(torch.zeros_like(parts[0]))
-        return torch.stack(parts)
+            *(comes * angle.mean() for angle in angles),
+        )
+        return torch.stack([weight * part for weight, part in zip(PARTS.values(), parts, strict=True)])
 
     def _found(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
         """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
