@@ -44,8 +44,8 @@ DeviceName = Annotated[
     Literal["cpu", "cuda"] | None,
     typer.Option(
         "--device", metavar="cpu|cuda", show_default=False,
-        help="Compute grids of networks with torch there, members of a batch together; needs torch. "
-        "[default: here, without torch]",
+        help="Compute grids of networks with torch there, members of a batch together: airfoil-o with 3 "
+        "steps after it unless told otherwise, others with none. Needs torch. [default: here, without torch]",
     ),
 ]
 # fmt: on

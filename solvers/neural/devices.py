@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats
+from geometry.arrays import Floats, Topology
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
@@ -26,18 +26,22 @@ STEPS = 3
 
 
 def infer_on(
-    device: Device, boundaries: Sequence[Boundary], model: str | None, polish: Polish, *, quads: bool
+    device: Device,
+    boundaries: Sequence[Boundary],
+    model: str | None,
+    polish: Polish,
+    quads: Topology | None = None,
 ) -> list[Solution]:
     """Return a grid inside each boundary, those of equal size computed together.
 
-    Bodies that cannot be lifted are solved as `solvers.neural.operator.infer` does.
+    Bodies that the strip operator cannot lift are solved as `solvers.neural.operator.infer` does.
 
     Parameters
     ----------
     device : ``cpu`` or ``cuda``.
     model : a strip or quad model; None is the shipped strip model.
     polish : Picard steps of the strip operator; ``auto`` or ``off`` for quad models.
-    quads : `model` is a quad model.
+    quads : topology of the grids of a quad model; None for a strip model.
 
     Raises
     ------
@@ -47,7 +51,7 @@ def infer_on(
     _check(device)
     if quads and polish not in ("auto", "off", 0):
         raise InputError("steps of descent are not taken on a device", "leave --polish or --device out")
-    topology = "quad" if quads else "o"
+    topology = quads or "o"
     for boundary in boundaries:
         if boundary.topology != topology:
             told = f"model {model or DEFAULT} makes {topology} grids on a device"
@@ -56,7 +60,7 @@ def infer_on(
     for rows in in_batches(boundaries):
         some = [boundaries[k] for k in rows]
         begun = time.perf_counter()
-        nodes = _quads(some, model, device) if quads else _strips(some, model, polish, device)
+        nodes = _quads(some, str(model), quads, device) if quads else _strips(some, model, polish, device)
         spent = (time.perf_counter() - begun) / len(rows)
         for k, boundary, one in zip(rows, some, nodes, strict=True):
             found[k] = _solution(boundary, one, model or DEFAULT, device, spent)
@@ -79,11 +83,18 @@ def _stacked(boundaries: Sequence[Boundary], sides: Sequence[str], device: Devic
     return [torch.tensor(array, device=device) for array in arrays]
 
 
-def _quads(boundaries: Sequence[Boundary], model: str | None, device: Device) -> list[Floats | None]:
-    from solvers.neural.quads.differentiable import QuadGrids
+def _quads(
+    boundaries: Sequence[Boundary], model: str, topology: Topology, device: Device
+) -> list[Floats | None]:
+    if topology == "quad":
+        from solvers.neural.quads.differentiable import QuadGrids
 
-    grids = QuadGrids(str(model), device)
-    return list(grids(*_stacked(boundaries, ("south", "north", "west", "east"), device)).cpu().numpy())
+        sides = _stacked(boundaries, ("south", "north", "west", "east"), device)
+        return list(QuadGrids(model, device)(*sides).cpu().numpy())
+    from solvers.neural.quads.differentiable_around import BodyGrids
+
+    south, north = _stacked(boundaries, ("south", "north"), device)
+    return list(BodyGrids(model, device)(south, north, boundaries[0].nj).cpu().numpy())
 
 
 def _strips(

@@ -123,11 +123,9 @@ def infer_many(
     if device is not None:
         from solvers.neural.devices import infer_on
 
-        quads = _is_quad(model)
-        other = kind_of(model_path(_named(model))) not in (KIND, QUADS)
-        if other or (quads and many_of(model) != "quad"):
+        if kind_of(model_path(_named(model))) not in (KIND, QUADS):
             raise InputError(f"model {model} has no grids on a device", "leave --device out")
-        return infer_on(device, boundaries, model, polish, quads=quads)
+        return infer_on(device, boundaries, model, polish, many_of(model) if _is_quad(model) else None)
     from solvers.neural.quads.inference import infer_quads
 
     kind = KIND if _named(model) is None else kind_of(model_path(model))

@@ -46,6 +46,16 @@ def test_four_sided_domains_are_those_without_torch(meshonet: Meshonet, quad_mod
     assert same("here.h5", "there.h5")
 
 
+def test_bodies_are_those_without_torch(meshonet: Meshonet) -> None:
+    family = ("--family", "hole", "--count", "3", "--res", "41x17", "-o", "holes.h5")
+    assert meshonet("sample-boundary", *family).code == 0
+    words = ("infer", "holes.h5", "--model", "hole-o", "--polish", "off")
+    meshonet(*words, "-o", "here.h5")
+    told = meshonet(*words, "--device", "cpu", "-o", "there.h5", "--json").objects
+    assert [(one["method"], one["model"]) for one in told] == 3 * [("operator", "hole-o")]
+    assert same("here.h5", "there.h5")
+
+
 def test_what_a_device_cannot_do_is_said(meshonet: Meshonet, quad_model: str) -> None:
     family = ("--family", "arch", "--count", "1", "--res", "21x17", "-o", "arches.h5")
     assert meshonet("sample-boundary", *family).code == 0

@@ -48,7 +48,9 @@ class QuadGrids:
     ) -> None:
         held = load_quads(model_path(model))
         if held.topology != "quad":
-            raise InputError(f"model {model} makes {held.topology} grids", "use one of four-sided domains")
+            raise InputError(
+                f"model {model} makes {held.topology} grids", "use one of four-sided domains, or BodyGrids"
+            )
         self._dtype = dtype
         self._network = QuadUNet(held.widths, held.blocks)
         self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
@@ -73,13 +75,13 @@ class QuadGrids:
         coarse = self._coarse(sides)
         m = coarse.shape[-1]
         laws = _laws(sides)
-        thin_laws = tuple(_between(law, m) for law in laws)
+        thin_laws = tuple(between(law, m) for law in laws)
         difference = coarse - interpolated(_rims(coarse), thin_laws)
         fine = _evaluated(difference, coarse, len(sides[0][0, 0]), len(sides[2][0, 0]))
         return (interpolated(sides, laws) + _without_rim(fine)).movedim(1, -1)
 
     def _coarse(self, sides: Sides) -> Tensor:
-        thin = tuple(_between(side, LATENT) for side in sides)
+        thin = tuple(between(side, LATENT) for side in sides)
         base = interpolated(thin, _laws(thin))
         z = torch.complex(base[:, 0], base[:, 1])
         middle, factor = (value[:, None, None] for value in frame(z, torch))
@@ -96,10 +98,10 @@ def _evaluated(difference: Tensor, coarse: Tensor, ni: int, nj: int) -> Tensor:
     """Return the splines of `difference` (batch, 2, m, m) at ni x nj places, as `solvers.acute`."""
     m = coarse.shape[-1]
     opened = acute.openings(torch.complex(coarse[:, 0], coarse[:, 1]), torch).reshape(-1, 4, 1, 1)
-    kept = 1.0 - (opened * _matrix(acute.fading, m, m, coarse)).amax(1, keepdim=True)
+    kept = 1.0 - (opened * matrix(acute.fading, m, m, coarse)).amax(1, keepdim=True)
     bends = torch.as_tensor(bending(m, False), dtype=coarse.dtype, device=coarse.device)
     (low, high), (line, curve) = (
-        [_matrix(make, m, n, coarse) for make in (_hats, acute.cubic)] for n in (ni, nj)
+        [matrix(make, m, n, coarse) for make in (hats, acute.cubic)] for n in (ni, nj)
     )
     second = bends @ difference
     values = difference @ line.mT + (kept * (difference @ bends.mT)) @ curve.mT
@@ -151,18 +153,20 @@ def _without_rim(planes: Tensor) -> Tensor:
     return torch.nn.functional.pad(planes[..., 1:-1, 1:-1], (1, 1, 1, 1))
 
 
-def _between(values: Tensor, n: int) -> Tensor:
+def between(values: Tensor, n: int) -> Tensor:
+    """Return (..., n), linear between the last axis' `values` (..., m), as `solvers.spline.between`."""
     m = values.shape[-1]
-    return values if m == n else values @ _matrix(_hats, m, n, values).mT
+    return values if m == n else values @ matrix(hats, m, n, values).mT
 
 
 @lru_cache(maxsize=16)
-def _hats(m: int, n: int) -> Any:
+def hats(m: int, n: int) -> Any:
     """Return the matrix (n, m) of linear interpolation from m uniform knots to n uniform places."""
     at = np.arange(n) * ((m - 1) / (n - 1))
     at[-1] = m - 1
     return np.maximum(0.0, 1.0 - np.abs(at[:, None] - np.arange(m)))
 
 
-def _matrix(make: Any, m: int, n: int, like: Tensor) -> Tensor:
+def matrix(make: Any, m: int, n: int, like: Tensor) -> Tensor:
+    """Return the matrix that `make` makes of m and n, as a tensor `like` another."""
     return torch.as_tensor(make(m, n), dtype=like.dtype, device=like.device)

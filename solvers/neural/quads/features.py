@@ -43,7 +43,7 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     v, b = _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
     product, lengths = u.conj() * v, (abs(u), abs(v))
     angle = product / (lengths[0] * lengths[1] + TINY)
-    place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype) + 0.0 * z.real
+    place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype, device=z.device) + 0.0 * z.real
     along = 0.0 * place if around else place.swapaxes(1, 2)
     squares = step.real**2 + step.imag**2
     size = xp.sqrt(squares.mean((1, 2)) + TINY**2)[:, None, None] + STILL
@@ -69,7 +69,7 @@ def _round(z: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
     inner = z[:, :-1]
     slope = 0.5 * cells * (ring[:, 2:] - ring[:, :-2])
     bend = 2 * cells * (ring[:, 2:] + ring[:, :-2] - 2.0 * inner)
-    steps = xp.arange(m, dtype=z.real.dtype)[:, None] / m
+    steps = xp.arange(m, dtype=z.real.dtype, device=z.device)[:, None] / m
     where = inner - turn * steps
     return slope, bend, inner, where - where.mean((1, 2))[:, None, None]
 

@@ -1,0 +1,186 @@
+"""O grids around bodies in torch: gradients from every node to those of body and far field, on any device.
+
+The arithmetic of `solvers.neural.quads.around` and `solvers.coarse_around` once more, on tensors; without
+polish and guard.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from geometry.errors import InputError
+from solvers.coarse_around import FLAT, SQUARINGS, STEEP
+from solvers.neural.models.quad_unet import QuadUNet
+from solvers.neural.quads.approach import AFTER, approach
+from solvers.neural.quads.differentiable import between, hats, matrix
+from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
+from solvers.neural.quads.features import features
+from solvers.neural.quads.model import ANSWERS_AROUND, load_quads
+from solvers.neural.quads.unrolled import AROUND, TURN
+from solvers.neural.tensors import check_sides
+from solvers.neural.weights import model_path
+from solvers.spline import bending, places, spline_matrix
+
+
+class BodyGrids:
+    """A shipped model for bodies, or one of a file, as a differentiable function.
+
+    Parameters
+    ----------
+    model : ``hole-o``, ``hole-winslow``, or the path of a file, whose variational answer is taken.
+    device : torch's name of where to compute.
+    dtype : torch's type of the arithmetic.
+
+    Raises
+    ------
+    InputError
+        no such model, or one that cannot be read.
+    """
+
+    def __init__(
+        self, model: str = ANSWERS_AROUND[-1], device: str = "cpu", dtype: torch.dtype = torch.float64
+    ) -> None:
+        held = load_quads(model_path(model))
+        if held.topology != "o":
+            raise InputError(f"model {model} makes {held.topology} grids", "use one for bodies")
+        self._dtype = dtype
+        self._network = QuadUNet(held.widths, held.blocks, around=True)
+        self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
+        self._network.to(device=device, dtype=dtype).requires_grad_(False)
+        known = ANSWERS_AROUND
+        self._head = known.index(model) if model in known else len(known) - 1
+
+    def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
+        """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
+
+        Parameters
+        ----------
+        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one the
+            first.
+        nj : nodes from wall to far field.
+
+        Raises
+        ------
+        InputError
+            tensors of other shapes, or of another dtype than the network's; fewer than 2 nodes away; walls
+            that do not go once round the middle of a body.
+        """
+        check_sides(self._dtype, 4, south=south, north=north)
+        if nj < 2:
+            raise InputError(f"nj is {nj} nodes", "use at least 2")
+        sides = [edge.movedim(-1, 1) for edge in (south, north)]
+        body, far = (_complex(side) for side in sides)
+        walls = torch.stack([_complex(between(side, AROUND)) for side in sides], 2)
+        coarse = torch.cat([walls[..., :1], self._coarse(body, walls), walls[..., 1:]], 2)
+        inner = torch.view_as_real(_evaluated(coarse, body, far, nj))
+        inner = torch.cat([inner[:, :-1], inner[:, :1]], 1)[:, :, 1:-1]
+        return torch.cat([south[:, :, None], inner, north[:, :, None]], 2)
+
+    def _coarse(self, wall: Tensor, walls: Tensor) -> Tensor:
+        """Return the nodes (batch, 65, 31) between `walls` (batch, 65, 2) of bodies `wall` (batch, ni)."""
+        centres = _middles(wall[:, :-1])[:, None, None]
+        strips = _unrolled(walls, centres)
+        eta = torch.linspace(0.0, 1.0, LATENT, dtype=self._dtype, device=walls.device)
+        base = strips[:, :, :1] * (1.0 - eta) + strips[:, :, 1:] * eta
+        heights = (strips[:, :-1, 1] - strips[:, :-1, 0]).imag.mean(1)
+        factor = (1.0 / torch.sqrt(0.5 * TURN * heights))[:, None, None]
+        z = base * factor
+        near, step = approach(z, torch, around=True)
+        answer = self._network(features(near, step, torch, around=True))[:, self._head]
+        found = near[:, :-1] + SCALE * answer
+        if self._head == WINSLOW:
+            closed = torch.cat([found, found[:, :1] + factor * TURN], 1)
+            found = approach(closed, torch, True, AFTER, harmonic=False)[0][:, :-1]
+        strip = (base[:, :-1] + (found - z[:, :-1]) / factor)[..., 1:-1]
+        grid = torch.exp(-1j * strip) + centres
+        return torch.cat([grid, grid[:, :1]], 1)
+
+
+def _middles(wall: Tensor) -> Tensor:
+    """Return the centroids (batch,) of the areas inside closed curves, as `unrolled.middles`."""
+    off = wall - wall[:, :1]
+    ahead = torch.roll(off, -1, 1)
+    cross = (off.conj() * ahead).imag
+    return wall[:, 0] + (cross * (off + ahead)).sum(1) / (3.0 * cross.sum(1))
+
+
+def _unrolled(walls: Tensor, centres: Tensor) -> Tensor:
+    """Return the strips (batch, 65, 2) of `walls`, as `unrolled.unrolled`; raises InputError."""
+    off = walls - centres
+    cut = torch.angle(off[:, :1, 1:] / off[:, :1, :-1])
+    first = torch.cumsum(torch.cat([torch.angle(off[:, :1, :1]), cut], 2), 2)
+    angle = torch.cumsum(torch.cat([first, torch.angle(off[:, 1:] / off[:, :-1])], 1), 1)
+    gone = (angle[:, -1] - angle[:, 0] + TURN).abs() < 1e-6
+    strip = torch.complex(-angle, torch.log(off.abs()))
+    if not bool((gone.all() & torch.isfinite(torch.view_as_real(strip)).all()).detach()):
+        told = "the walls do not go once round the middle of a body"
+        raise InputError(told, "use meshonet solve-pde for this shape")
+    return torch.cat([strip[:, :-1], strip[:, :1] + TURN], 1)
+
+
+def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
+    """Return the nodes (batch, ni, nj), as `solvers.coarse_around.evaluate_around`; the rim is not theirs."""
+    m, ni = coarse.shape[1], south.shape[1]
+    lines, share = _along_lines(coarse, nj)
+    shares = matrix(hats, m, ni, share) @ share
+    near_south, near_north = 1.0 - shares, shares
+    for _ in range(SQUARINGS):
+        near_south, near_north = near_south**2, near_north**2
+    around = matrix(_spline_around, m, ni, share).to(coarse.dtype)
+    nodes: Tensor = around @ lines
+    walls = south[..., None] - nodes[..., :1], north[..., None] - nodes[..., -1:]
+    return nodes + walls[0] * near_south + walls[1] * near_north
+
+
+def _along_lines(z: Tensor, nj: int) -> tuple[Tensor, Tensor]:
+    """Return nj nodes on each line of `z` (batch, m, n) and their shares of its length."""
+    n = z.shape[-1]
+    moves = z.diff(dim=-1)
+    steps = moves.abs()
+    length = torch.nn.functional.pad(torch.cumsum(steps, -1), (1, 0))
+    first = places(n, nj)[0]
+    t = torch.as_tensor(np.append((np.arange(nj) * ((n - 1) / (nj - 1)) - first)[:-1], 1.0)).to(steps)
+    at = _hermite(length, _slopes(length, steps), first, t, 1.0)
+    span = steps[..., first]
+    new = _hermite(z, _tangents(moves / steps, steps), first, (at - length[..., first]) / span, span)
+    return new, at / at[..., -1:]
+
+
+def _hermite(values: Tensor, slopes: Tensor, first: Any, t: Tensor, span: Tensor | float) -> Tensor:
+    rest = 1.0 - t
+    ends = (1.0 + 2.0 * t) * rest**2 * values[..., first] + (3.0 - 2.0 * t) * t**2 * values[..., first + 1]
+    return ends + span * t * rest * (rest * slopes[..., first] - t * slopes[..., first + 1])
+
+
+def _slopes(length: Tensor, steps: Tensor) -> Tensor:
+    n = length.shape[-1]
+    bends = length @ torch.as_tensor(bending(n, False)).to(length).mT
+    before, after = steps[..., :-1], steps[..., 1:]
+    slopes = torch.cat(
+        [
+            steps - (2.0 * bends[..., :-1] + bends[..., 1:]) / 6.0,
+            after[..., -1:] + (bends[..., -2:-1] + 2.0 * bends[..., -1:]) / 6.0,
+        ],
+        -1,
+    )
+    mean = torch.cat([steps[..., :1], 2.0 / (1.0 / before + 1.0 / after), steps[..., -1:]], -1)
+    return torch.minimum(torch.maximum(slopes, FLAT * mean), STEEP * mean)
+
+
+def _tangents(directions: Tensor, steps: Tensor) -> Tensor:
+    before, after = steps[..., :-1], steps[..., 1:]
+    inner = (directions[..., :-1] * after + directions[..., 1:] * before) / (before + after)
+    start = 2.0 * directions[..., :1] - inner[..., :1]
+    return torch.cat([start, inner, 2.0 * directions[..., -1:] - inner[..., -1:]], -1)
+
+
+def _spline_around(m: int, n: int) -> Any:
+    return spline_matrix(m, n, True)
+
+
+def _complex(planes: Tensor) -> Tensor:
+    return torch.complex(planes[:, 0], planes[:, 1])

@@ -1,0 +1,87 @@
+"""O grids around bodies in torch: those of numpy, and gradients that finite differences confirm."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from quad_models import random_model
+
+from geometry.boundary import Boundary
+from geometry.errors import InputError
+from geometry.families.bodies import boundary
+from solvers.neural.quads.inference import infer_quads
+
+torch = pytest.importorskip("torch")
+from solvers.neural.quads.differentiable_around import BodyGrids  # noqa: E402 - it imports torch
+
+torch.set_num_threads(1)  # tests run side by side
+
+
+def bodies(ni: int, nj: int) -> list[Boundary]:
+    return [boundary(np.random.default_rng([1, k]), ni, nj) for k in range(3)]
+
+
+def walls(boundaries: list[Boundary]) -> list[Any]:
+    return [torch.tensor(np.stack([getattr(b, side) for b in boundaries])) for side in ("south", "north")]
+
+
+@pytest.mark.parametrize("model", ["hole-o", "hole-winslow"])
+@pytest.mark.parametrize(("ni", "nj"), [(65, 33), (129, 17), (40, 50), (9, 2)])
+def test_torch_equals_numpy(model: str, ni: int, nj: int) -> None:
+    boundaries = bodies(ni, nj)
+    found = BodyGrids(model)(*walls(boundaries), nj).numpy()
+    for one, solution in zip(found, infer_quads(boundaries, model, "off"), strict=True):
+        expected = solution.grid.nodes
+        np.testing.assert_allclose(one, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_walls_are_the_given_ones_and_the_cut_is_closed() -> None:
+    south, north = walls(bodies(97, 21))
+    found = BodyGrids()(south, north, 21)
+    assert torch.equal(found[:, :, 0], south)
+    assert torch.equal(found[:, :, -1], north)
+    assert torch.equal(found[:, 0], found[:, -1])
+
+
+@pytest.mark.parametrize("model", ["hole-o", "hole-winslow"])
+def test_gradients_are_those_of_finite_differences(model: str) -> None:
+    """A random direction of both walls against the change of a random sum of the nodes."""
+    grids, given = BodyGrids(model), walls(bodies(73, 21))
+    generator = torch.Generator().manual_seed(0)
+    moves = [torch.randn(edge.shape, generator=generator, dtype=edge.dtype) for edge in given]
+    for move in moves:
+        move[:, -1] = move[:, 0]
+    weights = torch.randn(grids(*given, 21).shape, generator=generator, dtype=torch.float64)
+
+    def summed(step: float) -> Any:
+        return (weights * grids(*(e + step * m for e, m in zip(given, moves, strict=True)), 21)).sum()
+
+    leaves = [edge.clone().requires_grad_() for edge in given]
+    (weights * grids(*leaves, 21)).sum().backward()
+    found = sum(float((leaf.grad * move).sum()) for leaf, move in zip(leaves, moves, strict=True))
+    h = 1e-6
+    expected = float(8 * (summed(h) - summed(-h)) - (summed(2 * h) - summed(-2 * h))) / (12 * h)
+    assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_single_precision_is_near_double() -> None:
+    given = walls(bodies(65, 33))
+    found = BodyGrids(dtype=torch.float32)(*(edge.float() for edge in given), 33)
+    assert found.dtype == torch.float32
+    assert float((found - BodyGrids()(*given, 33)).abs().max()) < 1e-3
+
+
+def test_what_it_does_not_take_is_told(tmp_path: Path) -> None:
+    south, north = walls(bodies(33, 9))
+    with pytest.raises(InputError, match="nj is 1 nodes; use at least 2"):
+        BodyGrids()(south, north, 1)
+    with pytest.raises(InputError, match="opposite sides need equal counts"):
+        BodyGrids()(south, north[:, ::2], 9)
+    with pytest.raises(InputError, match="do not go once round the middle of a body"):
+        BodyGrids()(south + 1e3, north, 9)
+    quads = str(random_model(tmp_path / "quads.safetensors"))
+    with pytest.raises(InputError, match="makes quad grids; use one for bodies"):
+        BodyGrids(quads)
