@@ -32,11 +32,12 @@ def edges(boundaries: list[Boundary]) -> list[Any]:
     return [torch.tensor(np.stack([getattr(b, side) for b in boundaries])) for side in SIDES]
 
 
+@pytest.mark.parametrize("name", ["random", "quad-winslow"])
 @pytest.mark.parametrize(("ni", "nj"), [(33, 33), (65, 50), (20, 81)])
-def test_torch_equals_numpy(model: str, ni: int, nj: int) -> None:
-    boundaries = domains(ni, nj)
-    found = QuadGrids(model)(*edges(boundaries)).numpy()
-    for one, solution in zip(found, infer_quads(boundaries, model, "off"), strict=True):
+def test_torch_equals_numpy(model: str, ni: int, nj: int, name: str) -> None:
+    boundaries, name = domains(ni, nj), model if name == "random" else name
+    found = QuadGrids(name)(*edges(boundaries)).numpy()
+    for one, solution in zip(found, infer_quads(boundaries, name, "off"), strict=True):
         np.testing.assert_allclose(one, solution.grid.nodes, rtol=0, atol=1e-12)
 
 
@@ -49,9 +50,10 @@ def test_edges_are_the_given_ones(model: str) -> None:
         assert torch.equal(edge, expected)
 
 
-def test_gradients_are_those_of_finite_differences(model: str) -> None:
+@pytest.mark.parametrize("name", ["random", "quad-winslow"])
+def test_gradients_are_those_of_finite_differences(model: str, name: str) -> None:
     """A random direction of all four edges, corners kept, against the change of a random sum of the nodes."""
-    grids, given = QuadGrids(model), edges(domains(25, 41))
+    grids, given = QuadGrids(model if name == "random" else name), edges(domains(25, 41, (3,)))
     generator = torch.Generator().manual_seed(0)
     moves = [torch.randn(edge.shape, generator=generator, dtype=edge.dtype) for edge in given]
     for move in moves:

@@ -14,7 +14,7 @@ from solvers.neural.quads.inference import infer_quads
 
 GOLDEN = {
     "quad-general": [[0.25553334637494635, 0.23122452956376632], [0.5000000000000001, 0.7046136096304436]],
-    "quad-winslow": [[0.25000085025945373, 0.25953964960056314], [0.5, 0.8544736541785776]],
+    "quad-winslow": [[0.24999954262918062, 0.25956074879944085], [0.5, 0.8551464249135811]],
 }
 """Nodes (16, 16) and (32, 48) of the arch on 65 x 65, without polish."""
 
@@ -43,5 +43,5 @@ def test_the_twin_is_near_winslows_grid_and_a_cycle_brings_it_nearer() -> None:
         np.median([compare(s.grid, goal).relative_l2 for s, goal in zip(found, goals, strict=True)])
         for found in (infer_quads(boundaries, "quad-winslow", steps) for steps in (0, 1))
     ]
-    assert medians[0] < 1e-3
-    assert medians[1] < 5e-4
+    assert medians[0] < 3e-4
+    assert medians[1] < 1e-4

@@ -12,7 +12,7 @@ typedef double Lanes __attribute__((vector_size(8 * sizeof(double)), aligned(8))
 
 ptrdiff_t approach_scratch(const Approach *a)
 {
-    return 2 * (a->m + 4) * a->n + 4 * a->rows * a->width + 10 * a->n;
+    return 2 * (a->m + 4) * a->n + 6 * a->rows * a->width + 10 * a->n;
 }
 
 /* `count` rows of out = those of a (., inner) times b (inner, width). */
@@ -147,11 +147,34 @@ MESHONET_INLINE void go_round(const Approach *a, const double *p, const double *
     }
 }
 
+/* Replace the step in `missed` by that to where it vanishes when it is linear along the last move: f - g (f - f' + move),
+   with f' the last step and g = (f - f')·f / |f - f'|², 1 at the most. `move` holds the last move, then this one. */
+MESHONET_INLINE void extrapolate(const Approach *a, double *missed, const double *step, double *move, int first)
+{
+    const ptrdiff_t n = a->n, plane = a->m * n, field = a->rows * a->width, top = a->around ? 0 : 1;
+    double along = 0.0, squares = TINY;
+    for (int q = 0; q < 2 && !first; q++)
+        for (ptrdiff_t i = 0; i < a->rows; i++) {
+            const double *f = missed + q * field + i * a->width, *before = step + q * plane + (top + i) * n + 1;
+            for (ptrdiff_t j = 0; j < n - 2; j++)
+                along += (f[j] - before[j]) * f[j], squares += (f[j] - before[j]) * (f[j] - before[j]);
+        }
+    const double share = along / squares, g = share < -1.0 ? -1.0 : share > 1.0 ? 1.0 : share;
+    for (int q = 0; q < 2; q++)
+        for (ptrdiff_t i = 0; i < a->rows; i++) {
+            const double *f = missed + q * field + i * a->width, *before = step + q * plane + (top + i) * n + 1;
+            double *to = move + q * field + i * a->width;
+            for (ptrdiff_t j = 0; j < n - 2; j++)
+                to[j] = first ? f[j] : f[j] - g * (f[j] - before[j] + to[j]);
+        }
+}
+
 MESHONET_CLONES
 void approach_grid(const Approach *a, double *p, const double *turn, double *scratch, double *step)
 {
     const ptrdiff_t n = a->n, plane = a->m * n, field = a->rows * a->width, top = a->around ? 0 : 1;
-    double *missed = scratch, *other = missed + 2 * field, *room = other + field, *ring = room + 10 * n;
+    double *missed = scratch, *move = missed + 2 * field, *other = move + 2 * field, *room = other + field;
+    double *ring = room + 10 * n, *by = a->harmonic ? missed : move;
     double size = INFINITY, mean[2];
     memset(step, 0, (size_t)(2 * plane) * sizeof(double));
     memset(missed, 0, (size_t)(2 * field) * sizeof(double));
@@ -174,12 +197,15 @@ void approach_grid(const Approach *a, double *p, const double *turn, double *scr
             memset(missed, 0, (size_t)(2 * field) * sizeof(double));
             continue;
         }
+        if (!a->harmonic)
+            extrapolate(a, missed, step, move, k == 1);
         size = square;
         for (int q = 0; q < 2; q++)
             for (ptrdiff_t i = 0; i < a->rows; i++) {
-                double *to = p + q * plane + (top + i) * n + 1, *moved = step + q * plane + (top + i) * n + 1;
+                double *to = p + q * plane + (top + i) * n + 1, *taken = step + q * plane + (top + i) * n + 1;
+                const ptrdiff_t at = q * field + i * a->width;
                 for (ptrdiff_t j = 0; j < n - 2; j++)
-                    to[j] += moved[j] = missed[q * field + i * a->width + j];
+                    taken[j] = missed[at + j], to[j] += by[at + j];
             }
     }
     if (a->around)

@@ -8,7 +8,7 @@
 /* Planes of (m, n) nodes, the unknown ones off the rim; `around`, m rows that go round, unknown but at both ends.
    `left` (rows, rows) and `right` (width, width) are the transforms, with zeros beyond the n - 2 unknown columns,
    `slow` (rows) and `fast` (width) minus the eigenvalues of second differences. Before the steps comes Laplace's
-   solution when `harmonic`. */
+   solution when `harmonic`; else the steps after the first are extrapolated. */
 typedef struct {
     ptrdiff_t m, n, rows, width;
     int around, harmonic, steps;

@@ -15,7 +15,7 @@ from torch import Tensor
 from geometry.errors import InputError
 from solvers import acute
 from solvers.neural.models.quad_unet import QuadUNet
-from solvers.neural.quads.approach import AFTER, approach
+from solvers.neural.quads.approach import AFTER, approach, nodes_after
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
@@ -73,12 +73,9 @@ class QuadGrids:
         check_sides(self._dtype, 2, south=south, north=north, west=west, east=east)
         sides = _planes(south, north, west, east)
         coarse = self._coarse(sides)
-        m = coarse.shape[-1]
-        laws = _laws(sides)
-        thin_laws = tuple(between(law, m) for law in laws)
-        difference = coarse - interpolated(_rims(coarse), thin_laws)
-        fine = _evaluated(difference, coarse, len(sides[0][0, 0]), len(sides[2][0, 0]))
-        return (interpolated(sides, laws) + _without_rim(fine)).movedim(1, -1)
+        if self._head == WINSLOW:
+            coarse = _nearer(coarse, sides)
+        return _within(sides, coarse).movedim(1, -1)
 
     def _coarse(self, sides: Sides) -> Tensor:
         thin = tuple(between(side, LATENT) for side in sides)
@@ -88,24 +85,47 @@ class QuadGrids:
         z = (z - middle) * factor
         near, step = approach(z, torch)
         found = near + SCALE * self._network(features(near, step, torch))[:, self._head]
-        if self._head == WINSLOW:
-            found, _ = approach(found, torch, steps=AFTER, harmonic=False)
-        moved = (found - z) / factor
-        return base + torch.stack([moved.real, moved.imag], 1)
+        return _moved(base, (found - z) / factor)
+
+
+def _nearer(coarse: Tensor, sides: Sides) -> Tensor:
+    """Return grids `coarse` on more nodes, nearer to Winslow's."""
+    planes = _within(tuple(between(side, nodes_after(side.shape[-1])) for side in sides), coarse)
+    z = torch.complex(planes[:, 0], planes[:, 1])
+    middle, factor = (value[:, None, None] for value in frame(z, torch))
+    z = (z - middle) * factor
+    near, _ = approach(z, torch, steps=AFTER, harmonic=False)
+    return _moved(planes, (near - z) / factor)
+
+
+def _moved(planes: Tensor, by: Tensor) -> Tensor:
+    return planes + torch.stack([by.real, by.imag], 1)
+
+
+def _within(sides: Any, coarse: Tensor) -> Tensor:
+    """Return the planes inside `sides` of grids `coarse` (batch, 2, m, n)."""
+    laws = _laws(sides)
+    rims = _rims(coarse)
+    thin_laws = tuple(between(law, rim.shape[-1]) for law, rim in zip(laws, rims, strict=True))
+    difference = coarse - interpolated(rims, thin_laws)
+    fine = _evaluated(difference, coarse, sides[0].shape[-1], sides[2].shape[-1])
+    return interpolated(sides, laws) + _without_rim(fine)
 
 
 def _evaluated(difference: Tensor, coarse: Tensor, ni: int, nj: int) -> Tensor:
-    """Return the splines of `difference` (batch, 2, m, m) at ni x nj places, as `solvers.acute`."""
-    m = coarse.shape[-1]
+    """Return the splines of `difference` (batch, 2, m, n) at ni x nj places, as `solvers.acute`."""
+    m, n = coarse.shape[2:]
     opened = acute.openings(torch.complex(coarse[:, 0], coarse[:, 1]), torch).reshape(-1, 4, 1, 1)
-    kept = 1.0 - (opened * matrix(acute.fading, m, m, coarse)).amax(1, keepdim=True)
-    bends = torch.as_tensor(bending(m, False), dtype=coarse.dtype, device=coarse.device)
-    (low, high), (line, curve) = (
-        [matrix(make, m, n, coarse) for make in (hats, acute.cubic)] for n in (ni, nj)
+    kept = 1.0 - (opened * matrix(acute.fading, m, n, coarse)).amax(1, keepdim=True)
+    along, across = (
+        torch.as_tensor(bending(k, False), dtype=coarse.dtype, device=coarse.device) for k in (m, n)
     )
-    second = bends @ difference
-    values = difference @ line.mT + (kept * (difference @ bends.mT)) @ curve.mT
-    return low @ values + high @ ((kept * second) @ line.mT + (kept * (second @ bends.mT)) @ curve.mT)
+    (low, high), (line, curve) = (
+        [matrix(make, *counts, coarse) for make in (hats, acute.cubic)] for counts in ((m, ni), (n, nj))
+    )
+    second = along @ difference
+    values = difference @ line.mT + (kept * (difference @ across.mT)) @ curve.mT
+    return low @ values + high @ ((kept * second) @ line.mT + (kept * (second @ across.mT)) @ curve.mT)
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:

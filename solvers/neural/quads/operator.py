@@ -6,6 +6,8 @@
           -> features -> network -> 33 x 33 grid, its rim that of the edges
           -> splines -> grid at the edges' own counts
 
+Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations.
+
 The last step is that of `solvers.coarse`: the difference from transfinite interpolation is smooth, but near
 acute corners (`solvers.acute`), so it is evaluated anywhere and added to the interpolation of the full edges,
 which are met bitwise.
@@ -22,7 +24,7 @@ from geometry.boundary import Boundary
 from solvers import acute
 from solvers._evaluate import begin_all, evaluate_all
 from solvers.neural.quads._network import look
-from solvers.neural.quads.approach import AFTER, approached
+from solvers.neural.quads.approach import AFTER, approached, nodes_after
 from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import FEATURES
@@ -39,7 +41,9 @@ CORNERS = [0, 1, -2, -1]
 
 
 def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float64") -> Floats:
-    """Return the planes (batch, 2, n, n) of the network's grids inside the `edges` at n = 33 nodes each.
+    """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
+
+    Winslow's have up to 65 along a direction, where the edges have as many.
 
     Parameters
     ----------
@@ -55,11 +59,8 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
         seen = room[: len(near)]
         look(near, step, seen)
         found = near[:, 0] + 1j * near[:, 1] + SCALE * network(seen, head)
-        if head == WINSLOW:
-            after, _ = approached(found, steps=AFTER, harmonic=False)
-            found = after[:, 0] + 1j * after[:, 1]
         _move(base[rows], found - z[rows], factor[rows])
-    return base
+    return _nearer(base, edges) if head == WINSLOW else base
 
 
 def near_grids(edges: Edges) -> Floats:
@@ -68,6 +69,17 @@ def near_grids(edges: Edges) -> Floats:
     near, _ = approached(z)
     _move(base, near[:, 0] + 1j * near[:, 1] - z, factor)
     return base
+
+
+def _nearer(coarse: Floats, edges: Edges) -> Floats:
+    """Return grids `coarse` on more nodes, nearer to Winslow's."""
+    planes = evaluate(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
+    z = planes[:, 0] + 1j * planes[:, 1]
+    middle, factor = (np.asarray(value)[:, None, None] for value in frame(z, np))
+    z = (z - middle) * factor
+    near, _ = approached(z, steps=AFTER, harmonic=False)
+    _move(planes, near[:, 0] + 1j * near[:, 1] - z, factor)
+    return planes
 
 
 def _begun(edges: Edges) -> tuple[Floats, Complexes, Complexes]:

@@ -70,12 +70,34 @@ def test_the_compiled_arithmetic_is_that_in_numpy(around: bool) -> None:
     np.testing.assert_allclose(compiled[1], planes(step), rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("harmonic", [True, False])
 @pytest.mark.parametrize("around", [False, True])
-def test_numpy_equals_torch(around: bool) -> None:
+def test_numpy_equals_torch(around: bool, harmonic: bool) -> None:
     torch = pytest.importorskip("torch")
     z = wild(around)
-    for mine, its in zip(approach(z, np, around), approach(torch.from_numpy(z), torch, around), strict=True):
+    tensors = approach(torch.from_numpy(z), torch, around, harmonic=harmonic)
+    for mine, its in zip(approach(z, np, around, harmonic=harmonic), tensors, strict=True):
         np.testing.assert_allclose(its.numpy(), mine, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("around", [False, True])
+def test_extrapolated_steps_are_those_in_numpy_with_other_counts_along_eta_too(around: bool) -> None:
+    z = wild(around)[:, :, ::2]
+    found = approached(z, around, steps=4, harmonic=False)
+    for mine, compiled in zip(approach(z, np, around, 4, harmonic=False), found, strict=True):
+        np.testing.assert_allclose(compiled, planes(mine), rtol=0, atol=1e-12)
+
+
+def test_extrapolated_steps_get_nearer_than_as_many_plain_ones() -> None:
+    """In a sheared and bent domain, by the mean square of the last step, which is zero at the solution."""
+    t = np.linspace(0.0, 1.0, 33)[:, None]
+    near, _ = approached(interpolated(t + (1.0 + 1j) * t.T + 0.2j * np.sin(2 * np.pi * t))[None])
+    start = near[:, 0] + 1j * near[:, 1]
+    _, step = approached(start, steps=3, harmonic=False)
+    for _ in range(3):
+        plain, last = approached(start, steps=1, harmonic=False)
+        start = plain[:, 0] + 1j * plain[:, 1]
+    assert np.square(step).mean() < 0.5 * np.square(last).mean()
 
 
 @pytest.mark.parametrize("around", [False, True])
