@@ -138,6 +138,8 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
     InputError
         the ending is not known, or the format cannot be written with what `kind` says.
     """
+    if not path_text:
+        raise InputError("the output has no name", "name a file, or - for standard output", source="-o")
     suffix = Path(path_text).suffix.lower()
     if fmt or path_text == "-":
         claimed: tuple[Format, ...] = (format_named(fmt or "hdf5"),)

@@ -168,7 +168,7 @@ def _difficult(number: int, text: str, words: list[str]) -> Line:
         if _ONE.fullmatch(word):
             value = float(re.sub("[dDqQ]", "e", word))
             if not abs(value) < LARGEST:
-                return Line(number, "broken" if place else "text", (), text)
+                return Line(number, "broken", (), text)
             values.append(value)
         elif place == 0:
             return Line(number, "broken" if _NOT_FINITE.fullmatch(word) else "text", (), text)

@@ -85,7 +85,7 @@ def open_source(text: str) -> Source:
     try:
         source = replace(_opened(text), split=kept)
     except FileNotFoundError:
-        raise InputError("no such file", "check the path", source=printable(text)) from None
+        raise _missing(text) from None
     except PermissionError:
         raise InputError("may not be read", "check its permissions", source=printable(text)) from None
     except (OSError, ValueError) as error:
@@ -112,6 +112,16 @@ def printable(text: str) -> str:
 def _selected(text: str) -> tuple[str, str]:
     name, mark, kept = text.rpartition("#")
     return (name, kept) if mark and name and kept in SPLITS and not Path(text).exists() else (text, "")
+
+
+def _missing(text: str) -> InputError:
+    name, mark, kept = text.rpartition("#")
+    if not (mark and Path(name).is_file()):
+        return InputError("no such file", "check the path", source=printable(text))
+    only = (
+        f"no such file, and of {printable(name)} there is only {' or '.join(f'#{part}' for part in SPLITS)}"
+    )
+    return InputError(only, f"leave #{printable(kept)} out", source=printable(text))
 
 
 def _opened(text: str) -> Source:

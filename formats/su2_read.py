@@ -95,6 +95,8 @@ class _Reader:
         first = self._lines[self._at].split(None, 1) if self._at < len(self._lines) else []
         kinds = {line.split(None, 1)[0] if line.strip() else b"" for line in self._ahead(count)}
         if not kinds <= set(_NODES):
+            if b"" in kinds:
+                raise self._wrong(f"an empty line among the next {count}, which should be cells", _CUT)
             told = ", ".join(_told(kind) for kind in sorted(kinds - set(_NODES)))
             raise self._wrong(f"has cells of kind {told}"[:80], "a plane mesh has lines, triangles and quads")
         if len(kinds) == 1:

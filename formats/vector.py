@@ -61,6 +61,8 @@ def read_geojson(source: Source) -> Iterator[Shape]:
     found: list[tuple[str, str, BaseGeometry]] = []
     for number, (name, geometry) in enumerate(features, start=1):
         place = f"feature {number}" if len(features) > 1 else ""
+        if not isinstance(geometry, dict) or not isinstance(geometry.get("type"), str):
+            raise InputError("is not a GeoJSON geometry (it names no type)", _ASK, place=place)
         try:
             with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
                 found.append((name or source.stem, place, shape(geometry)))

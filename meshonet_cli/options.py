@@ -161,7 +161,7 @@ def sampling(
     """
     from geometry.sampling import Sampling
 
-    ni, nj = resolution(res) if res else (None, None)
+    ni, nj = (None, None) if res is None else resolution(res)
     return Sampling(ni, nj, topology=topology, spacing=spacing, corners=four_corners(corners), **rest)
 
 

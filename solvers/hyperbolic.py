@@ -140,7 +140,7 @@ def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -
     check_layers(wall_spacing, growth)
     if boundary.topology == "quad":
         raise InputError(
-            f"hyperbolic marching cannot make a {boundary.topology} grid",
+            f"hyperbolic marching cannot make topology {boundary.topology}",
             "use it around a body (topology o or c), or another method without a wall spacing",
         )
     return wall_spacing * boundary.chord

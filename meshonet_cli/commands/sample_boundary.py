@@ -41,7 +41,7 @@ Range = Annotated[
 Sensors = Annotated[
     int | None,
     typer.Option(
-        "--sensors", metavar="M", show_default=False,
+        "--sensors", metavar="M", min=2, show_default=False,
         help="Also keep M boundary nodes as sensors (dataset sensors of an .h5 file).",
     ),
 ]

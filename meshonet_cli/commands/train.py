@@ -50,21 +50,21 @@ Settings = Annotated[
 Epochs = Annotated[
     int | None,
     typer.Option(
-        "--epochs", min=1, show_default=False,
+        "--epochs", metavar="N", min=1, show_default=False,
         help="Passes over the shapes. [default: strip 24, quad 64, others 15000]",
     ),
 ]
 Batch = Annotated[
     int | None,
     typer.Option(
-        "--batch", min=1, show_default=False,
+        "--batch", metavar="N", min=1, show_default=False,
         help="Shapes a step. [default: strip 32, quad 64, others 30]",
     ),
 ]
 Rate = Annotated[
     float | None,
     typer.Option(
-        "--rate", "--lr", show_default=False,
+        "--rate", "--lr", metavar="R", show_default=False,
         help="Largest learning rate. [default: strip 0.002, quad 0.003, others 0.001]",
     ),
 ]
@@ -105,8 +105,8 @@ Patience = Annotated[
         help="Stop when the loss of the shapes held out has not fallen for so long; keep the best weights.",
     ),
 ]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Of weights, order and places.")]
-Threads = Annotated[int, typer.Option("--threads", min=1, help="Threads of torch.")]
+Seed = Annotated[int, typer.Option("--seed", metavar="S", min=0, help="Of weights, order and places.")]
+Threads = Annotated[int, typer.Option("--threads", metavar="N", min=1, help="Threads of torch.")]
 DeviceName = Annotated[
     Literal["auto", "cpu", "cuda"] | None,
     typer.Option(

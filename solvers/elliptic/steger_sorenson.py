@@ -127,7 +127,7 @@ def _asked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float
     asked = dict(heights) if heights else dict.fromkeys(walls, 0.0)
     for side in asked:
         if boundary.topology != "quad" and side != "south":
-            problem = f"{side} of a {boundary.topology} grid cannot be controlled"
+            problem = f"{side} in topology {boundary.topology} cannot be controlled"
             raise InputError(problem, "control its wall, south")
     return asked
 

@@ -68,7 +68,7 @@ def check_fit(heights: Heights, boundary: Boundary) -> None:
     """Raise InputError when `boundary` cannot have the heights: wrong edges, cells too few or too high."""
     if boundary.topology != "quad" and (heights.north or heights.west or heights.east):
         raise InputError(
-            f"a spacing off north, west or east of a {boundary.topology} grid",
+            f"a spacing off north, west or east in topology {boundary.topology}",
             "give that of its wall, south",
         )
     for one, other, sides, count in (

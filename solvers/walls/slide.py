@@ -58,7 +58,7 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
         a topology other than ``quad``.
     """
     if boundary.topology != "quad":
-        raise InputError(f"the wall of a {boundary.topology} grid cannot slide", "slide those of channels")
+        raise InputError(f"walls of topology {boundary.topology} cannot slide", "slide those of channels")
     curves = Curve(boundary.south), Curve(boundary.north)
     given = curves[0].knots, curves[1].knots
     m, n = (min(count, most) for count, most in zip((boundary.ni, boundary.nj), COUNTS, strict=True))

@@ -19,7 +19,7 @@ INPUTS = {
 }
 """What each command does well with; train loads a library of its own first, and has tests of its own."""
 
-NONSENSE = ("some words", "-7", "nan", "1e400", "9" * 30, "", "\udcff")
+NONSENSE = ("some words", "-7", "nan", "1e400", "1e-300", "9" * 30, "", "\udcff")
 TAKES_WORDS = ("--output", "--log-csv")
 """Options that name a file or folder, and may be called anything."""
 

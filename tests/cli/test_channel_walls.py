@@ -107,7 +107,7 @@ def test_angles_that_make_no_sense_get_a_line(
 def test_no_body_slides(meshonet: Meshonet, body_h5: Path) -> None:
     done = meshonet("solve-pde", body_h5, "--slide", "-o", "g.vts")
     assert done.code == 2
-    assert "the wall of a o grid cannot slide; slide those of channels" in done.err
+    assert "walls of topology o cannot slide; slide those of channels" in done.err
     assert not Path("g.vts").exists()
 
 

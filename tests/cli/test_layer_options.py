@@ -136,7 +136,7 @@ def test_no_march_makes_a_channel(meshonet: Meshonet, duct_h5: Path) -> None:
     words = (duct_h5, "--wall-spacing", "1e-3", "--method", "hyperbolic", "-o", "g.vts")
     done = meshonet("solve-pde", *words)
     assert done.code == 2
-    assert "hyperbolic marching cannot make a quad grid; use it around a body (topology o or c)" in done.err
+    assert "hyperbolic marching cannot make topology quad; use it around a body (topology o or c)" in done.err
 
 
 @pytest.mark.parametrize("command", LAYER_COMMANDS)

@@ -246,6 +246,7 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("a\0b", "null byte.*; check the path"),
         ("x.png", "x.png: png files can only be written; give a grid"),
         ("x.geo", "x.geo: geo files can only be written; give a grid"),
+        ("plain#0", "plain#0: no such file, and of .*plain there is only #train or #test; leave #0 out"),
         ("\x1b[31m.vts", r"\\x1b\[31m.vts: no such file"),
     ],
 )
@@ -264,6 +265,7 @@ def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_
     ("path", "told"),
     [
         ("a.q", r"a.q: its ending '.q' is not known; .*--to; known endings: .*\.vts"),
+        ("", "-o: the output has no name; name a file, or - for standard output"),
         ("grid", "grid: its name has no ending to tell the format by; .*--to"),
         ("a.vts", "a.vts: vts cannot hold boundaries; write one of hdf5"),
     ],

@@ -56,6 +56,7 @@ def test_numbers_are_read_as_people_write_them(text, values):
         ("nan 0.1", "broken"),
         ("0.5 nan", "broken"),
         ("0.5 1e999", "broken"),
+        ("1e308 1e308", "broken"),
         ("1_0 2_0", "text"),
     ],
 )

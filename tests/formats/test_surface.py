@@ -247,6 +247,11 @@ BROKEN = [
     ("su2", b"NDIME= 2\nNPOIN= 9\n0 0\n", "should have 9 more lines and has 2; the file is cut"),
     ("su2", b"NDIME= 2\nNPOIN= 2\n0 0\n1 a\n", "a word that is no number"),
     ("su2", b"NDIME= 2\nNPOIN= 1\n0\n", "points have 1 numbers"),
+    (
+        "su2",
+        b"NDIME= 2\nNELEM= 1\n\n",
+        "line 2: an empty line among the next 1, which should be cells; .*again",
+    ),
     ("su2", b"NDIME= 2\nNELEM= 1\n12 1 2 3\n", "has cells of kind 12; a plane mesh has lines"),
     ("su2", b"NDIME= 2\nNELEM= 1\n9 1 2 3\n", "cells have 4 numbers; write kind, 4 points"),
     ("su2", b"NDIME= 2\nhello\n", "line 2: 'hello' is no KEYWORD= VALUE"),

@@ -169,7 +169,9 @@ def test_a_four_sided_domain_is_refused() -> None:
     t = np.linspace(0.0, 1.0, 9)
     south, west = np.stack([t, 0 * t], axis=1), np.stack([0 * t, t], axis=1)
     quad = Boundary(south, south + np.array([0, 1]), west, west + np.array([1, 0]))
-    with pytest.raises(InputError, match="hyperbolic marching cannot make a quad grid; use it around a body"):
+    with pytest.raises(
+        InputError, match="hyperbolic marching cannot make topology quad; use it around a body"
+    ):
         hyperbolic(quad, wall_spacing=1e-3)
 
 

@@ -127,7 +127,7 @@ def test_the_spacing_along_the_walls_is_kept_by_a_control_function() -> None:
 
 
 def test_a_ring_does_not_slide() -> None:
-    with pytest.raises(InputError, match="the wall of a o grid cannot slide; slide those of channels"):
+    with pytest.raises(InputError, match="walls of topology o cannot slide; slide those of channels"):
         slide_walls(hole(41, 20))
 
 

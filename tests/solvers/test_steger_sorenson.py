@@ -161,7 +161,7 @@ def test_going_astray_ends_at_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
         (
             hole,
             {"heights": {"north": 0.1}},
-            "north of a o grid cannot be controlled; control its wall, south",
+            "north in topology o cannot be controlled; control its wall, south",
         ),
         (arch, {"tol": 2.0}, "tolerance 2 is not between 0 and 1"),
     ],

@@ -167,7 +167,7 @@ def test_heights_that_do_not_fit_are_refused(heights: dict[str, float], told: st
 
 def test_a_ring_has_one_wall() -> None:
     boundary = hole(41, 20)
-    with pytest.raises(InputError, match="north, west or east of a o grid; give that of its wall, south"):
+    with pytest.raises(InputError, match="north, west or east in topology o; give that of its wall, south"):
         spread(solve(boundary), boundary, Heights(north=1e-3))
 
 
