@@ -1,6 +1,6 @@
 from geometry.arrays import Floats
 
-WIDTH: int
+LINE: int
 
 def approach_all(
     planes: Floats,
@@ -9,10 +9,8 @@ def approach_all(
     steps: int,
     share: float,
     growth: float,
-    left: Floats,
-    slow: Floats,
-    right: Floats,
-    fast: Floats,
+    xi: tuple[Floats, Floats, Floats],
+    eta: tuple[Floats, Floats, Floats],
     around: bool,
     last: Floats,
 ) -> None: ...

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Complexes, Floats
-from solvers.neural.quads._approach import WIDTH, approach_all
+from solvers.neural.quads._approach import LINE, approach_all
 from solvers.neural.quads.encoding import LATENT
 
 STEPS = 4
@@ -44,6 +44,9 @@ GROWTH = 4.0
 """A step whose square is so many times the last one's, in the mean, is not taken."""
 
 TINY = 1e-30
+
+Tables = tuple[Floats, Floats, Floats]
+"""A transform, its transpose, and minus the eigenvalues of second differences, as compiled code has them."""
 
 
 def approach(
@@ -87,8 +90,8 @@ def approached(
     near = np.stack([z.real, z.imag], axis=1)
     last, (m, n) = np.empty_like(near), z.shape[1:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
-    left, right = _transform(m - 1 if around else m, around), _padded(n)
-    approach_all(near, turns, harmonic, steps, SHARE, GROWTH, *left, *right, around, last)
+    xi = _plain(m - 1) if around else _folded(m)
+    approach_all(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
     return near, last
 
 
@@ -105,11 +108,31 @@ def nodes_after(n: int) -> int:
 
 
 @lru_cache(maxsize=8)
-def _padded(n: int) -> tuple[Floats, Floats]:
-    """Return the transform along rows of n nodes in the width that the compiled code has."""
+def _plain(n: int) -> Tables:
+    """Return the tables of n nodes that go round."""
+    table, values = _transform(n, around=True)
+    return table, table, values[None]
+
+
+@lru_cache(maxsize=8)
+def _folded(n: int) -> Tables:
+    """Return the tables of n nodes for sums of values and their mirror images, and for differences.
+
+    A wave of an odd number is its own mirror image, one of an even number is so with the other sign.
+    """
     table, values = _transform(n, around=False)
-    more = -len(values) % WIDTH
-    return np.pad(table, (0, more)), np.pad(values, (0, more), constant_values=1.0)
+    less = len(values) // 2
+    half = len(values) - less
+    line = -(-half // LINE) * LINE
+    to, back, told = np.zeros((half + less, line)), np.zeros((half + less, line)), np.ones((2, line))
+    for parity, count in enumerate((half, less)):
+        rows, part = slice(parity * half, parity * half + count), table[:count, parity::2]
+        to[rows, :count], back[rows, :count] = part, part.T
+        told[parity, :count] = values[parity::2]
+    if half > less:  # the value in the middle is its own image
+        to[half - 1] *= 0.5
+        back[:half, half - 1] *= 0.5
+    return to, back, told
 
 
 def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:

@@ -3,215 +3,276 @@
 #include "clones.h"
 #include <math.h>
 #include <string.h>
+#include "waves.h"
 
-#define BLOCK 4 /* rows of a product that are made together */
+#define BEFORE 7 /* numbers before a row of nodes, so that the unknown ones begin with a line of the cache */
 
 static const double TINY = 1e-30;
 
-typedef double Lanes __attribute__((vector_size(8 * sizeof(double)), aligned(8)));
+/* Where things lie in scratch. */
+typedef struct {
+    ptrdiff_t pitch, plane, width, field;
+    double *z;              /* nodes (2, rows, pitch), `plane` apart; `around`, two more rows at either end */
+    double *missed, *other; /* what is transformed, folded: (2, rows, width), `field` apart */
+    double *waves;          /* the one of these two that holds it transformed */
+    double *step, *move;    /* the last ones, transformed, when steps are extrapolated */
+    double *room;           /* for a row at work */
+} Places;
+
+MESHONET_INLINE Places places(const Approach *a, double *scratch)
+{
+    Places p;
+    p.width = 2 * a->eta.line, p.field = a->xi.count * p.width;
+    p.pitch = (a->n + 2 * LANES - 2) / LANES * LANES, p.plane = (a->xi.count + 4) * p.pitch;
+    p.missed = scratch, p.other = p.missed + 2 * p.field, p.waves = a->xi.folded ? p.other : p.missed;
+    p.step = p.other + 2 * p.field, p.move = p.step + 2 * p.field, p.room = p.move + 2 * p.field;
+    p.z = p.room + 10 * p.pitch + BEFORE;
+    return p;
+}
 
 ptrdiff_t approach_scratch(const Approach *a)
 {
-    return 2 * (a->m + 4) * a->n + 6 * a->rows * a->width + 10 * a->n;
+    const Places p = places(a, NULL);
+    return 8 * p.field + 10 * p.pitch + 2 * p.plane + 2 * LANES;
 }
 
-/* `count` rows of out = those of a (., inner) times b (inner, width). */
-MESHONET_INLINE void some_rows(const double *a, ptrdiff_t inner, ptrdiff_t line, const double *b, ptrdiff_t width,
-                               double *out, const int count)
+/* Weights of five nodes in a row in the first and the second difference at one of them, 1, 2 or 3. */
+typedef struct {
+    double slope[5], bend[5];
+} Stencil;
+
+MESHONET_INLINE Stencil stencil(int node, double share)
 {
-    for (ptrdiff_t c = 0; c < width; c += APPROACH_WIDTH) {
-        Lanes sum[BLOCK][2] = {{{0}}};
-        for (ptrdiff_t k = 0; k < inner; k++) {
-            const Lanes low = *(const Lanes *)(b + k * width + c), high = *(const Lanes *)(b + k * width + c + 8);
-#pragma GCC unroll 4
-            for (int r = 0; r < count; r++) {
-                sum[r][0] += a[r * line + k] * low;
-                sum[r][1] += a[r * line + k] * high;
-            }
-        }
-        for (int r = 0; r < count; r++) {
-            *(Lanes *)(out + r * width + c) = sum[r][0];
-            *(Lanes *)(out + r * width + c + 8) = sum[r][1];
-        }
+    static const double third[5] = {-0.5, 1.0, 0.0, -1.0, 0.5}, fourth[5] = {1.0, -4.0, 6.0, -4.0, 1.0};
+    Stencil s;
+    for (int k = 0; k < 5; k++) {
+        s.slope[k] = -share / 6.0 * third[k];
+        s.bend[k] = -share / 12.0 * fourth[k];
     }
+    s.slope[node - 1] -= 0.5, s.slope[node + 1] += 0.5;
+    s.bend[node - 1] += 1.0, s.bend[node] -= 2.0, s.bend[node + 1] += 1.0;
+    return s;
 }
 
-/* out (rows, width) = a (rows, inner), rows `line` apart, times b (inner, width). */
-MESHONET_INLINE void product(const double *a, ptrdiff_t rows, ptrdiff_t inner, ptrdiff_t line, const double *b,
-                             ptrdiff_t width, double *out)
-{
-    ptrdiff_t i = 0;
-    for (; i + BLOCK <= rows; i += BLOCK)
-        some_rows(a + i * line, inner, line, b, width, out + i * width, BLOCK);
-    for (; i < rows; i++)
-        some_rows(a + i * line, inner, line, b, width, out + i * width, 1);
-}
+/* Differences of five values, `by` apart. */
+#define WEIGHED(load, z, by, c) \
+    (load((z)) * (c)[0] + load((z) + (by)) * (c)[1] + load((z) + 2 * (by)) * (c)[2] + load((z) + 3 * (by)) * (c)[3] + \
+     load((z) + 4 * (by)) * (c)[4])
+#define ONE(pointer) (*(pointer))
 
-/* Differences at a node whose neighbours are `by` apart: z points to it, e to the node whose error counts. */
-MESHONET_INLINE double slope(const double *z, const double *e, ptrdiff_t by, double share)
-{
-    const double third = 0.5 * (e[2 * by] - e[-2 * by]) + e[-by] - e[by];
-    return 0.5 * (z[by] - z[-by]) - share * third;
-}
-
-MESHONET_INLINE double bend(const double *z, const double *e, ptrdiff_t by, double share)
-{
-    const double fourth = e[2 * by] + e[-2 * by] - 4.0 * (e[by] + e[-by]) + 6.0 * e[0];
-    return z[by] + z[-by] - 2.0 * z[0] - share * fourth;
-}
-
-/* Either of them along a row at its nodes but the ends. */
-#define ALONG(difference, z, n, share, out) \
-    do { \
-        (out)[1] = difference((z) + 1, (z) + 2, 1, share); \
-        for (ptrdiff_t j = 2; j < (n) - 2; j++) \
-            (out)[j] = difference((z) + j, (z) + j, 1, share); \
-        (out)[(n) - 2] = difference((z) + (n) - 2, (z) + (n) - 3, 1, share); \
-    } while (0)
-
-/* What a row of a grid needs: first and second differences along xi and eta, and along both. */
+/* What a row of a plane needs: first and second differences along xi and eta, and along both, at its nodes 1, 2, ... */
 typedef struct {
     double *u, *v, *uu, *vv, *uv;
 } Row;
 
-/* z points to the row, e to that whose error along xi counts. */
-MESHONET_INLINE void differ(const double *restrict z, const double *restrict e, ptrdiff_t n, double share, Row *row)
+/* z points to the row, whose place among five along xi tells `at`; s are those of nodes 1, 2 and 3. */
+MESHONET_INLINE void differ(const double *restrict z, ptrdiff_t pitch, ptrdiff_t n, const Stencil *s, int at,
+                            const Row *row)
 {
     double *restrict u = row->u, *restrict uu = row->uu, *restrict v = row->v, *restrict vv = row->vv;
     double *restrict uv = row->uv;
-    for (ptrdiff_t j = 0; j < n; j++) {
-        u[j] = slope(z + j, e + j, n, share / 6.0);
-        uu[j] = bend(z + j, e + j, n, share / 12.0);
+    const double *first = z - (at + 1) * pitch;
+    const Stencil down = s[at], along = s[1];
+    AT(u - BEFORE) = WEIGHED(OF, first - BEFORE, pitch, down.slope);
+    for (ptrdiff_t j = 1; j < n; j += LANES) {
+        AT(u + j) = WEIGHED(OF, first + j, pitch, down.slope);
+        AT(uu + j) = WEIGHED(OF, first + j, pitch, down.bend);
+        AT(v + j) = WEIGHED(OF, z + j - 2, 1, along.slope);
+        AT(vv + j) = WEIGHED(OF, z + j - 2, 1, along.bend);
     }
-    ALONG(slope, z, n, share / 6.0, v);
-    ALONG(bend, z, n, share / 12.0, vv);
-    ALONG(slope, u, n, share / 6.0, uv);
+    for (ptrdiff_t j = 1; j < n; j += LANES)
+        AT(uv + j) = WEIGHED(OF, u + j - 2, 1, along.slope);
+    for (int end = 0; end < 3; end += 2) {
+        const ptrdiff_t j = end ? n - 2 : 1, begin = end ? n - 5 : 0;
+        v[j] = WEIGHED(ONE, z + begin, 1, s[end].slope);
+        vv[j] = WEIGHED(ONE, z + begin, 1, s[end].bend);
+        uv[j] = WEIGHED(ONE, u + begin, 1, s[end].slope);
+    }
 }
 
-/* By how much the planes `ring`, `plane` numbers apart, miss the equations: missed (2, rows, width), and the means of
-   their coefficients. Laplace's along xi and eta when `linear`. `room` holds 10 n numbers. */
-MESHONET_INLINE void find_missed(const Approach *a, const double *ring, ptrdiff_t plane, int linear, double *room,
-                                 double *restrict missed, double *restrict mean)
+/* By how much a row misses Winslow's equations with the coefficients of its differences x and y, into x->u and y->u;
+   shares of the coefficients are added to sums. */
+MESHONET_INLINE void winslow_row(const Row *x, const Row *y, ptrdiff_t n, Lanes *sums)
 {
-    const ptrdiff_t n = a->n, first = a->around ? 2 : 1, last = first + a->rows - 1, field = a->rows * a->width;
-    Row x = {room, room + n, room + 2 * n, room + 3 * n, room + 4 * n}, y = x;
-    y.u += 5 * n, y.v += 5 * n, y.uu += 5 * n, y.vv += 5 * n, y.uv += 5 * n;
-    mean[0] = mean[1] = 0.0;
-    for (ptrdiff_t i = first; i <= last; i++) {
-        ptrdiff_t whose = i;
-        if (!a->around)
-            whose = i == first ? first + 1 : i == last ? last - 1 : i;
-        const double share = linear ? 0.0 : a->share;
-        differ(ring + i * n, ring + whose * n, n, share, &x);
-        differ(ring + plane + i * n, ring + plane + whose * n, n, share, &y);
-        double *restrict out = missed + (i - first) * a->width - 1;
-        if (linear) {
-            for (ptrdiff_t j = 1; j < n - 1; j++)
-                out[j] = x.uu[j] + x.vv[j], out[j + field] = y.uu[j] + y.vv[j];
-            continue;
+    for (ptrdiff_t j = n - 1; j % LANES != 1; j++) /* what is not off the rim does not count */
+        x->u[j] = y->u[j] = x->v[j] = y->v[j] = 0.0;
+    for (ptrdiff_t j = 1; j < n - 1; j += LANES) {
+        const Lanes ux = OF(x->u + j), uy = OF(y->u + j), vx = OF(x->v + j), vy = OF(y->v + j);
+        const Lanes alpha = vx * vx + vy * vy, gamma = ux * ux + uy * uy, one = 1.0 / (alpha + gamma + TINY);
+        const Lanes first = alpha * one, second = gamma * one, mixed = (ux * vx + uy * vy) * one * -2.0;
+        AT(x->u + j) = first * OF(x->uu + j) + mixed * OF(x->uv + j) + second * OF(x->vv + j);
+        AT(y->u + j) = first * OF(y->uu + j) + mixed * OF(y->uv + j) + second * OF(y->vv + j);
+        sums[0] += first, sums[1] += second;
+    }
+}
+
+/* By how much it misses Laplace's equations along xi and eta, to `out`. */
+MESHONET_INLINE void laplace_row(const double *z, ptrdiff_t pitch, ptrdiff_t n, double *out)
+{
+    for (ptrdiff_t j = 1; j < n - 1; j += LANES)
+        AT(out + j) = OF(z + j - pitch) + OF(z + j + pitch) + OF(z + j - 1) + OF(z + j + 1) - 4.0 * OF(z + j);
+}
+
+/* By how much the nodes miss the equations, folded along eta, and the means of their coefficients. */
+MESHONET_INLINE void find_missed(const Approach *a, const Places *p, int linear, double *restrict mean)
+{
+    const ptrdiff_t n = a->n, rows = a->xi.count, top = a->around ? 2 : 1;
+    const Stencil s[3] = {stencil(1, a->share), stencil(2, a->share), stencil(3, a->share)};
+    Row row[2];
+    for (int q = 0; q < 2; q++) {
+        double *room = p->room + 5 * q * p->pitch + BEFORE;
+        row[q] = (Row){room, room + p->pitch, room + 2 * p->pitch, room + 3 * p->pitch, room + 4 * p->pitch};
+    }
+    Lanes sums[2] = {{0}};
+    for (ptrdiff_t i = 0; i < rows; i++) {
+        const int at = a->around ? 1 : i == 0 ? 0 : i == rows - 1 ? 2 : 1;
+        for (int q = 0; q < 2; q++) {
+            const double *z = p->z + q * p->plane + (top + i) * p->pitch;
+            if (linear)
+                laplace_row(z, p->pitch, n, row[q].u);
+            else
+                differ(z, p->pitch, n, s, at, &row[q]);
         }
-        for (ptrdiff_t j = 1; j < n - 1; j++) {
-            const double alpha = x.v[j] * x.v[j] + y.v[j] * y.v[j], gamma = x.u[j] * x.u[j] + y.u[j] * y.u[j];
-            const double beta = x.u[j] * x.v[j] + y.u[j] * y.v[j], one = 1.0 / (alpha + gamma + TINY);
-            out[j] = (alpha * x.uu[j] - 2.0 * beta * x.uv[j] + gamma * x.vv[j]) * one;
-            out[j + field] = (alpha * y.uu[j] - 2.0 * beta * y.uv[j] + gamma * y.vv[j]) * one;
-            mean[0] += alpha * one, mean[1] += gamma * one;
-        }
+        if (!linear)
+            winslow_row(&row[0], &row[1], n, sums);
+        for (int q = 0; q < 2; q++)
+            fold_row(&a->eta, row[q].u + 1, p->missed + q * p->field + i * p->width);
     }
     for (int k = 0; k < 2; k++)
-        mean[k] = linear ? 1.0 : mean[k] / (double)(a->rows * (n - 2));
+        mean[k] = linear ? 1.0 : summed(sums[k]) / (double)(rows * (n - 2));
 }
 
-/* Fields (rows, width) over the operator with the mean coefficients, in place; `other` has room for as much. */
-MESHONET_INLINE void invert(const Approach *a, const double *mean, double *field, double *other)
+/* What is missed over the operator with the mean coefficients, transformed; returns the mean of its squares. */
+MESHONET_INLINE double solve(const Approach *a, const Places *p, const double *mean)
 {
-    product(a->left, a->rows, a->rows, a->rows, field, a->width, other);
-    product(other, a->rows, a->n - 2, a->width, a->right, a->width, field);
-    for (ptrdiff_t i = 0; i < a->rows; i++)
-        for (ptrdiff_t j = 0; j < a->width; j++)
-            field[i * a->width + j] /= mean[0] * a->slow[i] + mean[1] * a->fast[j];
-    product(a->left, a->rows, a->rows, a->rows, field, a->width, other);
-    product(other, a->rows, a->n - 2, a->width, a->right, a->width, field);
-}
-
-/* The planes with two rows more at either end, a turn before and after. */
-MESHONET_INLINE void go_round(const Approach *a, const double *p, const double *turn, double *ring)
-{
-    const ptrdiff_t n = a->n, m = a->m - 1;
-    for (int q = 0; q < 2; q++, p += a->m * n, ring += (m + 4) * n, turn += n) {
-        memcpy(ring + 2 * n, p, (size_t)(m * n) * sizeof(double));
-        for (ptrdiff_t j = 0; j < 2 * n; j++) {
-            ring[j] = p[(m - 2) * n + j] - turn[j % n];
-            ring[(m + 2) * n + j] = p[j] + turn[j % n];
+    const Waves *xi = &a->xi, *eta = &a->eta;
+    const ptrdiff_t rows = xi->count, width = p->width, half = rows - rows / 2;
+    double *other = p->waves == p->other ? p->missed : p->other;
+    for (int q = 0; q < 2; q++) {
+        double *from = p->waves + q * p->field, *to = other + q * p->field;
+        if (xi->folded)
+            fold_columns(rows, width, to, from);
+        along_rows(eta, eta->to, from, rows, to);
+        along_columns(xi, xi->back, to, width, from);
+    }
+    Lanes squares = {0};
+    for (ptrdiff_t i = 0; i < rows; i++) {
+        const double slow = mean[0] * xi->values[xi->folded && i >= half ? xi->line + i - half : i];
+        for (ptrdiff_t c = 0; c < width; c += LANES) {
+            const Lanes one = 1.0 / (slow + mean[1] * OF(eta->values + c));
+            for (int q = 0; q < 2; q++) {
+                double *wave = p->waves + q * p->field + i * width + c;
+                const Lanes value = OF(wave) * one;
+                AT(wave) = value;
+                squares += value * value;
+            }
         }
+    }
+    return summed(squares) / (double)(2 * rows * (a->n - 2));
+}
+
+/* Replace the step by that to where it vanishes when it is linear along the last move: f - g (f - f' + move), with f'
+   the last step and g = (f - f').f / |f - f'|^2, 1 at the most. Transforms keep products. */
+MESHONET_INLINE void extrapolate(const Places *p, int first)
+{
+    Lanes along = {0}, squares = {0};
+    for (ptrdiff_t k = 0; k < 2 * p->field && !first; k += LANES) {
+        const Lanes f = OF(p->waves + k), change = f - OF(p->step + k);
+        along += change * f, squares += change * change;
+    }
+    const double share = summed(along) / (summed(squares) + TINY), g = share < -1.0 ? -1.0 : share > 1.0 ? 1.0 : share;
+    for (ptrdiff_t k = 0; k < 2 * p->field; k += LANES) {
+        const Lanes f = OF(p->waves + k), change = f - OF(p->step + k);
+        AT(p->step + k) = f;
+        AT(p->waves + k) = AT(p->move + k) = first ? f : f - g * (change + OF(p->move + k));
     }
 }
 
-/* Replace the step in `missed` by that to where it vanishes when it is linear along the last move: f - g (f - f' + move),
-   with f' the last step and g = (f - f')·f / |f - f'|², 1 at the most. `move` holds the last move, then this one. */
-MESHONET_INLINE void extrapolate(const Approach *a, double *missed, const double *step, double *move, int first)
+/* Transform back, to `missed`. */
+MESHONET_INLINE void transform_back(const Approach *a, const Places *p)
 {
-    const ptrdiff_t n = a->n, plane = a->m * n, field = a->rows * a->width, top = a->around ? 0 : 1;
-    double along = 0.0, squares = TINY;
-    for (int q = 0; q < 2 && !first; q++)
-        for (ptrdiff_t i = 0; i < a->rows; i++) {
-            const double *f = missed + q * field + i * a->width, *before = step + q * plane + (top + i) * n + 1;
-            for (ptrdiff_t j = 0; j < n - 2; j++)
-                along += (f[j] - before[j]) * f[j], squares += (f[j] - before[j]) * (f[j] - before[j]);
+    const Waves *xi = &a->xi, *eta = &a->eta;
+    double *other = p->waves == p->other ? p->missed : p->other;
+    for (int q = 0; q < 2; q++) {
+        double *from = p->waves + q * p->field, *to = other + q * p->field;
+        along_columns(xi, xi->to, from, p->width, to);
+        along_rows(eta, eta->back, to, xi->count, from);
+        if (xi->folded)
+            unfold_columns(xi->count, p->width, from, to);
+    }
+}
+
+/* Rows beyond the ends of planes that go round, a turn before and after. */
+MESHONET_INLINE void go_round(const Approach *a, const Places *p, const double *turn)
+{
+    const ptrdiff_t rows = a->xi.count;
+    for (int q = 0; q < 2; q++, turn += a->n)
+        for (int i = 0; i < 2; i++) {
+            double *before = p->z + q * p->plane + i * p->pitch, *after = before + (rows + 2) * p->pitch;
+            for (ptrdiff_t j = 0; j < a->n; j++) {
+                before[j] = before[rows * p->pitch + j] - turn[j];
+                after[j] = after[-rows * p->pitch + j] + turn[j];
+            }
         }
-    const double share = along / squares, g = share < -1.0 ? -1.0 : share > 1.0 ? 1.0 : share;
+}
+
+/* Add what `missed` holds by now to the nodes. */
+MESHONET_INLINE void move(const Approach *a, const Places *p)
+{
     for (int q = 0; q < 2; q++)
-        for (ptrdiff_t i = 0; i < a->rows; i++) {
-            const double *f = missed + q * field + i * a->width, *before = step + q * plane + (top + i) * n + 1;
-            double *to = move + q * field + i * a->width;
-            for (ptrdiff_t j = 0; j < n - 2; j++)
-                to[j] = first ? f[j] : f[j] - g * (f[j] - before[j] + to[j]);
+        for (ptrdiff_t i = 0; i < a->xi.count; i++) {
+            double *z = p->z + q * p->plane + ((a->around ? 2 : 1) + i) * p->pitch;
+            unfold_row(&a->eta, p->missed + q * p->field + i * p->width, z + 1);
+        }
+}
+
+/* The same in place of the steps, whose rims are zeros. */
+MESHONET_INLINE void tell(const Approach *a, const Places *p, double *step)
+{
+    double *row = p->room + BEFORE;
+    for (int q = 0; q < 2; q++)
+        for (ptrdiff_t i = 0; i < a->xi.count; i++) {
+            memset(p->room, 0, (size_t)p->pitch * sizeof(double));
+            unfold_row(&a->eta, p->missed + q * p->field + i * p->width, row + 1);
+            memcpy(step + (q * a->m + (a->around ? 0 : 1) + i) * a->n, row, (size_t)a->n * sizeof(double));
         }
 }
 
 MESHONET_CLONES
-void approach_grid(const Approach *a, double *p, const double *turn, double *scratch, double *step)
+void approach_grid(const Approach *a, double *nodes, const double *turn, double *scratch, double *step)
 {
-    const ptrdiff_t n = a->n, plane = a->m * n, field = a->rows * a->width, top = a->around ? 0 : 1;
-    double *missed = scratch, *move = missed + 2 * field, *other = move + 2 * field, *room = other + field;
-    double *ring = room + 10 * n, *by = a->harmonic ? missed : move;
+    const Places p = places(a, scratch);
+    const ptrdiff_t n = a->n, rows = a->around ? a->m - 1 : a->m, first = a->around ? 2 : 0;
     double size = INFINITY, mean[2];
-    memset(step, 0, (size_t)(2 * plane) * sizeof(double));
-    memset(missed, 0, (size_t)(2 * field) * sizeof(double));
+    memset(step, 0, (size_t)(2 * a->m * n) * sizeof(double));
+    for (int q = 0; q < 2; q++)
+        for (ptrdiff_t i = 0; i < rows; i++)
+            memcpy(p.z + q * p.plane + (first + i) * p.pitch, nodes + (q * a->m + i) * n, (size_t)n * sizeof(double));
     for (int k = a->harmonic ? 0 : 1; k <= a->steps; k++) {
-        if (a->around) {
-            go_round(a, p, turn, ring);
-            find_missed(a, ring, (a->m + 3) * n, k == 0, room, missed, mean);
-        } else
-            find_missed(a, p, plane, k == 0, room, missed, mean);
-        double square = 0.0;
-        for (int q = 0; q < 2; q++) {
-            invert(a, mean, missed + q * field, other);
-            for (ptrdiff_t i = 0; i < a->rows; i++)
-                for (ptrdiff_t j = 0; j < n - 2; j++)
-                    square += missed[q * field + i * a->width + j] * missed[q * field + i * a->width + j];
-        }
-        square /= (double)(2 * a->rows * (n - 2));
-        if (!(square < a->growth * size)) { /* or not a number */
-            memset(step, 0, (size_t)(2 * plane) * sizeof(double));
-            memset(missed, 0, (size_t)(2 * field) * sizeof(double));
+        if (a->around)
+            go_round(a, &p, turn);
+        find_missed(a, &p, k == 0, mean);
+        const double square = solve(a, &p, mean);
+        if (!(square < a->growth * size)) /* or not a number */
             continue;
-        }
-        if (!a->harmonic)
-            extrapolate(a, missed, step, move, k == 1);
         size = square;
-        for (int q = 0; q < 2; q++)
-            for (ptrdiff_t i = 0; i < a->rows; i++) {
-                double *to = p + q * plane + (top + i) * n + 1, *taken = step + q * plane + (top + i) * n + 1;
-                const ptrdiff_t at = q * field + i * a->width;
-                for (ptrdiff_t j = 0; j < n - 2; j++)
-                    taken[j] = missed[at + j], to[j] += by[at + j];
-            }
+        if (!a->harmonic)
+            extrapolate(&p, k == 1);
+        transform_back(a, &p);
+        move(a, &p);
+        if (k == a->steps && !a->harmonic) {
+            memcpy(p.waves, p.step, (size_t)(2 * p.field) * sizeof(double));
+            transform_back(a, &p);
+        }
+        if (k == a->steps)
+            tell(a, &p, step);
     }
-    if (a->around)
-        for (int q = 0; q < 2; q++)
-            for (ptrdiff_t j = 0; j < n; j++) {
-                p[q * plane + a->rows * n + j] = p[q * plane + j] + turn[q * n + j];
-                step[q * plane + a->rows * n + j] = step[q * plane + j];
-            }
+    for (int q = 0; q < 2; q++) {
+        for (ptrdiff_t i = 0; i < rows; i++)
+            memcpy(nodes + (q * a->m + i) * n, p.z + q * p.plane + (first + i) * p.pitch, (size_t)n * sizeof(double));
+        for (ptrdiff_t j = 0; j < n && a->around; j++) {
+            nodes[(q * a->m + rows) * n + j] = nodes[q * a->m * n + j] + turn[q * n + j];
+            step[(q * a->m + rows) * n + j] = step[q * a->m * n + j];
+        }
+    }
 }

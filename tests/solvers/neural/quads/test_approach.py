@@ -70,6 +70,20 @@ def test_the_compiled_arithmetic_is_that_in_numpy(around: bool) -> None:
     np.testing.assert_allclose(compiled[1], planes(step), rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize("around", [False, True])
+@pytest.mark.parametrize("counts", [(6, 6), (7, 10), (12, 9), (18, 17), (35, 18)])
+def test_the_compiled_arithmetic_is_that_in_numpy_for_any_counts(
+    counts: tuple[int, int], around: bool
+) -> None:
+    m, n = counts
+    along, across = np.linspace(0.0, 2 * np.pi if around else 1.0, m)[:, None], np.linspace(0.0, 1.0, n)
+    z = (along + 1j * across + 0.1 * np.sin(along + 2.0 * across) * (1.0 + 0.5j))[None]
+    near, step = approach(z, np, around)
+    compiled = approached(z, around)
+    np.testing.assert_allclose(compiled[0], planes(near), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(compiled[1], planes(step), rtol=0, atol=1e-12)
+
+
 @pytest.mark.parametrize("harmonic", [True, False])
 @pytest.mark.parametrize("around", [False, True])
 def test_numpy_equals_torch(around: bool, harmonic: bool) -> None:
