@@ -177,9 +177,9 @@ HEAD = """# The operator for bodies
 
 <!-- made by python benchmarks/bench_bodies.py --page docs/body-operator.md -->
 
-`infer --model hole-o` makes the variational O grid between any body that goes once round its middle and any
-far field by one pass of a network; `hole-winslow` is its other answer, Winslow's grid. `--polish N` takes N
-steps of descent after it (of multigrid for Winslow's).
+`infer --model hole-o` makes the variational O grid between any body and any far field by one pass of a
+network; `hole-winslow` is its other answer, Winslow's grid. `--polish N` takes N steps of descent after it
+(of multigrid for Winslow's).
 
 It is the network of [four-sided domains](quad-operator.md), taught on: around a body the logarithm of the
 distance from its middle unrolls the domain to a strip, where Winslow's equations are the same and only one
@@ -201,8 +201,11 @@ answer on 65 x 33 nodes has folds; then the elliptic solver makes the grid. With
 where a quarter of Winslow's grids are folded before the guard, and nearer to right angles, in up to four
 times the time; alone, one in forty folds. `solve-pde --method variational` has the best of all, in four times
 the time again. What both pay is evenness: they draw lines together where a body stands near its far field.
-Smooth bodies in round far fields stay with `airfoil-o`, as do thin ones; a body whose middle lies outside
-itself (a clip, a crescent) is refused.
+Smooth bodies in round far fields stay with `airfoil-o`, as do thin ones. A body whose centroid lies outside
+it (a clip, a crescent, an angle) is seen from where it is thickest. No such body was shown to the network:
+its answer often folds, and the five steps, or the guard's repair, unfold it; of 25 plates, crescents and
+angles all were valid after the steps, and nearly as near to right angles as the variational grids. A mirrored
+one has the mirrored grid unless it is its own mirror image and equally thick on both sides.
 
 ## Gradients
 

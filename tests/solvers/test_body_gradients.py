@@ -12,6 +12,7 @@ from quad_models import random_model
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.families.bodies import boundary
+from geometry.topology import straight
 from solvers.neural.quads.inference import infer_quads
 
 torch = pytest.importorskip("torch")
@@ -21,7 +22,15 @@ torch.set_num_threads(1)  # tests run side by side
 
 
 def bodies(ni: int, nj: int) -> list[Boundary]:
-    return [boundary(np.random.default_rng([1, k]), ni, nj) for k in range(3)]
+    """Return two random bodies, and an angle whose centroid is outside it."""
+    found = [boundary(np.random.default_rng([1, k]), ni, nj) for k in range(2)]
+    corners = np.array([0j, 1j, 0.2 + 1j, 0.2 + 0.2j, 1 + 0.2j, 1 + 0j, 0j])
+    wall = np.interp(np.linspace(0, 6, ni), np.arange(7), corners) * np.exp(0.3j)
+    far = 0.5 + 0.5j + 4.0 * np.exp(-1j * np.linspace(3.9, 3.9 + 2 * np.pi, ni))
+    wall[-1], far[-1] = wall[0], far[0]
+    south, north = (np.stack([edge.real, edge.imag], 1) for edge in (wall, far))
+    cut = straight(south[0], north[0], nj)
+    return [*found, Boundary(south, north, cut, cut, topology="o")]
 
 
 def walls(boundaries: list[Boundary]) -> list[Any]:
@@ -80,7 +89,7 @@ def test_what_it_does_not_take_is_told(tmp_path: Path) -> None:
         BodyGrids()(south, north, 1)
     with pytest.raises(InputError, match="opposite sides need equal counts"):
         BodyGrids()(south, north[:, ::2], 9)
-    with pytest.raises(InputError, match="do not go once round the middle of a body"):
+    with pytest.raises(InputError, match="do not go once round a middle of a body"):
         BodyGrids()(south + 1e3, north, 9)
     quads = str(random_model(tmp_path / "quads.safetensors"))
     with pytest.raises(InputError, match="makes quad grids; use one for bodies"):

@@ -14,11 +14,13 @@ from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.families.bodies import boundary
+from geometry.quality import count_folded
 from geometry.topology import straight
 from solvers.neural.quads._network import activate, refine
 from solvers.neural.quads.approach import approach
 from solvers.neural.quads.features import features
 from solvers.neural.quads.inference import infer_quads
+from solvers.neural.quads.inside import inside
 from solvers.neural.quads.network import Network, shapes
 from solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
 
@@ -173,13 +175,59 @@ def test_a_quad_boundary_is_refused(model: str) -> None:
         infer_quads([square], model)
 
 
-def test_a_body_whose_middle_is_outside_it_is_refused(model: str) -> None:
-    bend = np.linspace(-2.2, 2.2, 33)
-    outer, inner = (r * np.stack([np.sin(bend), np.cos(bend)], axis=1) for r in (1.0, 0.9))
+def clip(ni: int = 66, nj: int = 9) -> Boundary:
+    """Return a bent plate whose centroid is outside it."""
+    bend = np.linspace(-2.2, 2.2, ni // 2)
+    outer, inner = (r * np.stack([np.sin(bend), np.cos(bend)], axis=1) for r in (1.0, 0.7))
     body = np.concatenate([outer, inner[::-1], outer[:1]])
     far = 9.0 * np.stack([np.sin(t := np.linspace(-2.2, -2.2 + 2 * np.pi, len(body))), np.cos(t)], axis=1)
     far[-1] = far[0]
-    cut = straight(body[0], far[0], 9)
-    edges = Boundary(body, far, cut, cut, topology="o", name="a clip")
-    with pytest.raises(InputError, match="once round the middle of the body; use meshonet solve-pde"):
-        infer_quads([edges], model)
+    cut = straight(body[0], far[0], nj)
+    return Boundary(body, far, cut, cut, topology="o", name="a clip")
+
+
+def test_a_body_whose_centroid_is_outside_it_is_seen_from_inside(model: str) -> None:
+    wall = clip().south[:-1] @ [1.0, 1.0j]
+    assert abs(middles(wall[None])[0]) < 0.7  # in the hollow
+    point = inside(wall)
+    assert np.abs(wall - point).min() > 0.1
+    turns = np.angle(np.roll(wall - point, -1) / (wall - point)).sum() / TURN
+    assert abs(turns) == pytest.approx(1.0)
+    assert np.isfinite(nodes(clip(), model)).all()
+
+
+def test_the_point_inside_moves_turns_and_mirrors_with_the_body() -> None:
+    wall = clip().south[:-1] @ [1.0, 1.0j]
+    point = inside(wall)
+    for moved_to in (1e-6 * np.exp(1j), 1e5, 2.0 + 1.0j):
+        assert inside(moved_to * wall + 3.0 - 1.0j) == pytest.approx(moved_to * point + 3.0 - 1.0j, rel=1e-12)
+    assert inside(np.roll(wall.conj()[::-1], 1)) == pytest.approx(point.conjugate(), rel=1e-12)
+
+
+def test_the_point_inside_is_where_the_body_is_thickest() -> None:
+    """A pan: a disc of radius 1 with a handle, whose thickness is 0.2."""
+    t = np.linspace(0.1, 2 * np.pi - 0.1, 80)
+    handle = np.array([5.0 - 0.1j, 5.0 + 0.1j])
+    pan = np.concatenate([np.exp(1j * t), handle])
+    assert abs(inside(pan)) < 0.1
+
+
+def test_grids_around_bent_bodies_move_and_mirror_with_them(model: str) -> None:
+    plain = nodes(clip(), model)
+    size = 1e-12 * np.abs(plain).max()
+    there = nodes(moved(clip(), lambda points: points @ [[0.0, 2.0], [-2.0, 0.0]] + 3.0), model)
+    np.testing.assert_allclose(there, plain @ [[0.0, 2.0], [-2.0, 0.0]] + 3.0, rtol=0, atol=3 * size)
+    mirror = moved(clip(), lambda points: (points * [1.0, -1.0])[::-1].copy())
+    np.testing.assert_allclose(nodes(mirror, model), plain[::-1] * [1.0, -1.0], rtol=0, atol=size)
+
+
+def test_polished_grids_around_bent_bodies_are_valid() -> None:
+    assert count_folded(infer_quads([clip(130, 33)], "hole-o")[0].grid.nodes) == 0
+
+
+def test_a_body_outside_its_far_field_is_refused(model: str) -> None:
+    edges = clip()
+    cut = straight(edges.south[0] + 90.0, edges.north[0], edges.nj)
+    away = replace(edges, south=edges.south + 90.0, west=cut, east=cut)
+    with pytest.raises(InputError, match="a clip: its walls do not go once round a middle of the body"):
+        infer_quads([away], model)

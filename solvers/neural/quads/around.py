@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
@@ -23,6 +24,7 @@ from solvers import coarse
 from solvers.neural.quads.approach import AFTER, approached
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import features
+from solvers.neural.quads.inside import inside
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK
 from solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
@@ -45,17 +47,12 @@ def coarse_grids(
     Raises
     ------
     InputError
-        a wall that does not go round the middle of the body once.
+        walls that, at 65 nodes, do not go once round the body's centroid, nor round a point inside it.
     """
-    south, north = (
-        np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")
-    )
-    centres = middles(_complex(south)[:, :-1])
-    walls = _complex(np.stack([between(south, AROUND), between(north, AROUND)], axis=3))
-    strips, once = unrolled(walls, centres)
+    walls, strips, centres, once = _strips(boundaries)
     if not once.all():
         name = boundaries[int(np.argmin(once))].name
-        told = "its walls do not go once round the middle of the body"
+        told = "its walls do not go once round a middle of the body"
         raise InputError(told, "use meshonet solve-pde for this shape", source=name)
     base, factor = even(strips, LATENT), factors(strips)[:, None, None]
     network = model.network(dtype)
@@ -76,11 +73,29 @@ def coarse_grids(
     return np.ascontiguousarray(np.stack([grids.real, grids.imag], axis=1))
 
 
+def _strips(
+    boundaries: Sequence[Boundary],
+) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
+    """Return the walls of boundaries at 65 nodes, their strips, the middles, and which go round these once.
+
+    Middles are centroids where the walls go round them, else points `inside` the bodies.
+    """
+    sides = [np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")]
+    walls = _complex(np.stack([between(side, AROUND) for side in sides], axis=3))
+    centres = middles(_complex(sides[0])[:, :-1])
+    strips, once = unrolled(walls, centres)
+    if not once.all():
+        seen = zip(centres, once, walls[:, :-1, 0], strict=True)
+        centres = np.array([centre if fits else inside(wall) for centre, fits, wall in seen])
+        strips, once = unrolled(walls, centres)
+    return walls, strips, centres, once
+
+
 def compact(boundary: Boundary) -> bool:
     """Return whether an O boundary's body is about as thick as those that models are trained on."""
-    wall = _complex(boundary.south.T[None])[:, :-1]
-    reach = np.abs(wall - middles(wall)[:, None])
-    return bool(reach.min() > COMPACT * reach.max())
+    _, _, centres, once = _strips([boundary])
+    reach = np.abs(_complex(boundary.south.T[None]) - centres)
+    return bool(once[0] and reach.min() > COMPACT * reach.max())
 
 
 def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:

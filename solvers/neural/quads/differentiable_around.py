@@ -19,6 +19,7 @@ from solvers.neural.quads.approach import AFTER, approach
 from solvers.neural.quads.differentiable import between, hats, matrix
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import features
+from solvers.neural.quads.inside import inside, slope
 from solvers.neural.quads.model import ANSWERS_AROUND, load_quads
 from solvers.neural.quads.unrolled import AROUND, TURN
 from solvers.neural.tensors import check_sides
@@ -67,7 +68,7 @@ class BodyGrids:
         ------
         InputError
             tensors of other shapes, or of another dtype than the network's; fewer than 2 nodes away; walls
-            that do not go once round the middle of a body.
+            that do not go once round a middle of the body.
         """
         check_sides(self._dtype, 4, south=south, north=north)
         if nj < 2:
@@ -82,8 +83,15 @@ class BodyGrids:
 
     def _coarse(self, wall: Tensor, walls: Tensor) -> Tensor:
         """Return the nodes (batch, 65, 31) between `walls` (batch, 65, 2) of bodies `wall` (batch, ni)."""
-        centres = _middles(wall[:, :-1])[:, None, None]
-        strips = _unrolled(walls, centres)
+        centres = _middles(wall[:, :-1])
+        strips, once = _unrolled(walls, centres)
+        if not once.all():
+            seen = zip(centres, once, walls[:, :-1, 0], strict=True)
+            centres = torch.stack([centre if fits else _inside(z) for centre, fits, z in seen])
+            strips, once = _unrolled(walls, centres)
+        if not once.all():
+            told = "the walls do not go once round a middle of a body"
+            raise InputError(told, "use meshonet solve-pde for this shape")
         eta = torch.linspace(0.0, 1.0, LATENT, dtype=self._dtype, device=walls.device)
         base = strips[:, :, :1] * (1.0 - eta) + strips[:, :, 1:] * eta
         heights = (strips[:, :-1, 1] - strips[:, :-1, 0]).imag.mean(1)
@@ -96,7 +104,7 @@ class BodyGrids:
             closed = torch.cat([found, found[:, :1] + factor * TURN], 1)
             found = approach(closed, torch, True, AFTER, harmonic=False)[0][:, :-1]
         strip = (base[:, :-1] + (found - z[:, :-1]) / factor)[..., 1:-1]
-        grid = torch.exp(-1j * strip) + centres
+        grid = torch.exp(-1j * strip) + centres[:, None, None]
         return torch.cat([grid, grid[:, :1]], 1)
 
 
@@ -108,18 +116,28 @@ def _middles(wall: Tensor) -> Tensor:
     return wall[:, 0] + (cross * (off + ahead)).sum(1) / (3.0 * cross.sum(1))
 
 
-def _unrolled(walls: Tensor, centres: Tensor) -> Tensor:
-    """Return the strips (batch, 65, 2) of `walls`, as `unrolled.unrolled`; raises InputError."""
-    off = walls - centres
+def _inside(wall: Tensor) -> Tensor:
+    """Return the point that `inside.inside` finds, which follows `wall` (n,) as a step of Newton's does."""
+    found = torch.tensor(
+        inside(wall.detach().cpu().numpy().astype(np.complex128)), dtype=wall.dtype, device=wall.device
+    )
+    size = (wall.detach() - wall[0].detach()).abs().max()
+    curve, p = (wall - wall[0]) / size, (found - wall[0].detach()) / size
+    g, m, c = slope(p, curve, torch)
+    m, c = m.detach(), c.detach()
+    return wall[0] + size * (p + (c * g.conj() - m * g) / (m * m - c.abs() ** 2))
+
+
+def _unrolled(walls: Tensor, centres: Tensor) -> tuple[Tensor, Any]:
+    """Return the strips (batch, 65, 2) of `walls`, and which go round once, as `unrolled.unrolled`."""
+    off = walls - centres[:, None, None]
     cut = torch.angle(off[:, :1, 1:] / off[:, :1, :-1])
     first = torch.cumsum(torch.cat([torch.angle(off[:, :1, :1]), cut], 2), 2)
     angle = torch.cumsum(torch.cat([first, torch.angle(off[:, 1:] / off[:, :-1])], 1), 1)
-    gone = (angle[:, -1] - angle[:, 0] + TURN).abs() < 1e-6
     strip = torch.complex(-angle, torch.log(off.abs()))
-    if not bool((gone.all() & torch.isfinite(torch.view_as_real(strip)).all()).detach()):
-        told = "the walls do not go once round the middle of a body"
-        raise InputError(told, "use meshonet solve-pde for this shape")
-    return torch.cat([strip[:, :-1], strip[:, :1] + TURN], 1)
+    gone = ((angle[:, -1] - angle[:, 0] + TURN).abs() < 1e-6).all(1)
+    once = gone & torch.isfinite(torch.view_as_real(strip)).flatten(1).all(1)
+    return torch.cat([strip[:, :-1], strip[:, :1] + TURN], 1), once.cpu().numpy()
 
 
 def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:

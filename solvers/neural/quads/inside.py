@@ -1,0 +1,99 @@
+"""A point inside a body whose centroid is not: where the wall's own potential is least.
+
+::
+
+    V(p) = ∮ |p - x|⁻⁴ ds
+
+rises without bound towards the wall, so its least value inside is in the middle of where the body is
+thickest. It moves, turns and grows with the body; of equal places that nearest to the wall's first node is
+taken.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Complexes, Floats
+
+PIECES = 8
+"""Pieces of each of the wall's edges whose middles stand for it."""
+
+EQUAL = 1e-9
+"""Relative difference of two values of the potential that count as equal."""
+
+WITHIN = 0.3
+"""Share of the distance to the wall that a step may have."""
+
+STEPS, STILL = 50, 1e-14
+"""Newton's steps at the most, and the step over the body's size that is the last."""
+
+
+def inside(wall: Complexes) -> complex:
+    """Return the point inside a simple closed curve (n,), first node not repeated, of least potential."""
+    size = float(np.abs(wall - wall[0]).max())
+    curve = (wall - wall[0]) / size
+    p = _first(curve)
+    for _ in range(STEPS):
+        g, m, c = slope(p, curve, np)
+        convex = m > abs(c)
+        step = (c * g.conjugate() - m * g) / (m * m - abs(c) ** 2) if convex else -g / (m + abs(c))
+        step *= min(1.0, WITHIN * float(np.abs(curve - p).min()) / max(abs(step), 1e-300))
+        p += step
+        if abs(step) < STILL:
+            break
+    return complex(wall[0] + size * p)
+
+
+def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
+    """Return the potential's gradient g and its second derivatives m and c at `p`, of a closed curve (n,).
+
+    A step v changes g by ``m v + c v̄``; m is real.
+
+    Parameters
+    ----------
+    xp : the module, numpy or torch, that `wall` is of.
+    """
+    x, lengths = _pieces(wall, xp)
+    o = p - x
+    weights = lengths * abs(o) ** -6.0
+    return -4.0 * (weights * o).sum(), 8.0 * weights.sum(), 12.0 * (weights * (o / abs(o)) ** 2).sum()
+
+
+def _pieces(wall: Any, xp: Any) -> tuple[Any, Any]:
+    """Return the middles of pieces of the edges of a closed curve, (n, PIECES), and their lengths (n, 1)."""
+    edges = xp.concatenate([wall[1:], wall[:1]]) - wall
+    at = (xp.arange(PIECES, dtype=wall.real.dtype, device=wall.device) + 0.5) / PIECES
+    return wall[:, None] + edges[:, None] * at, abs(edges)[:, None] / PIECES
+
+
+def _first(wall: Complexes) -> complex:
+    """Return the middle of the inscribed circle in which the potential is least."""
+    x, lengths = _pieces(wall, np)
+    middles = _inscribed(wall, x)
+    values = np.array([(lengths * np.abs(p - x) ** -4.0).sum() for p in middles])
+    values[~_within(middles, wall)] = np.inf
+    lowest = np.flatnonzero(values <= values.min() * (1.0 + EQUAL))
+    return complex(middles[lowest[np.argmin(np.abs(middles[lowest] - wall[0]))]])
+
+
+def _inscribed(wall: Complexes, x: Complexes) -> Complexes:
+    """Return the middles of circles inside a closed curve that touch it at `x`, as far as these tell."""
+    edges = np.roll(wall, -1) - wall
+    turn = 1j * np.sign((wall.conj() * edges).imag.sum())
+    inwards = np.repeat(turn * edges / np.maximum(np.abs(edges), 1e-300), PIECES)
+    points = x.ravel()
+    off = points - points[:, None]
+    away: Floats = (off * inwards.conj()[:, None]).real
+    radii = np.full(off.shape, np.inf)
+    np.divide(np.abs(off) ** 2, 2.0 * away, out=radii, where=away > 1e-9 * np.abs(off))
+    return np.asarray(points + inwards * np.minimum(radii.min(axis=1), 1.0))
+
+
+def _within(points: Complexes, wall: Complexes) -> NDArray[np.bool_]:
+    """Return which points a closed curve goes round once."""
+    off = wall - points[:, None]
+    turns = np.angle(np.roll(off, -1, axis=1) / off).sum(axis=1)
+    return np.asarray(np.abs(np.abs(turns) - 2.0 * np.pi) < 1e-6)
