@@ -149,6 +149,33 @@ def test_a_mirrored_body_has_the_mirrored_grid(model: str) -> None:
         np.testing.assert_allclose(there, plain[::-1] * [1.0, -1.0], atol=1e-12 * np.abs(plain).max())
 
 
+@pytest.mark.parametrize("polish", [2, 5])
+def test_steps_after_the_network_move_and_mirror_with_the_body(model: str, polish: int) -> None:
+    turn = np.array([[np.cos(1.0), np.sin(1.0)], [-np.sin(1.0), np.cos(1.0)]])
+    for edges in [*bodies(), clip(98, 17)]:
+        plain = nodes(edges, model, polish)
+        there = nodes(moved(edges, lambda points: 3.7 * points @ turn + [5.0, -2.0]), model, polish)
+        expected = 3.7 * plain @ turn + [5.0, -2.0]
+        np.testing.assert_allclose(there, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+        mirror = moved(edges, lambda points: (points * [1.0, -1.0])[::-1].copy())
+        expected = plain[::-1] * [1.0, -1.0]
+        np.testing.assert_allclose(
+            nodes(mirror, model, polish), expected, atol=1e-12 * np.abs(expected).max()
+        )
+
+
+def test_a_body_that_is_its_own_mirror_image_has_such_a_grid() -> None:
+    corners = np.array([1, 1 - 1j, -1j, -1 - 1j, -1, -1 + 1j, 1j, 1 + 1j, 1])
+    square = np.interp(np.linspace(0, 8, 97), np.arange(9), corners)
+    far = 5.0 * np.exp(-2j * np.pi * np.arange(97) / 96)
+    far[49:] = far[47::-1].conj()
+    far[-1] = far[0]
+    south, north = (np.stack([edge.real, edge.imag], axis=1) for edge in (square, far))
+    cut = straight(south[0], north[0], 33)
+    found = nodes(Boundary(south, north, cut, cut, topology="o"), "hole-o", 5)
+    np.testing.assert_allclose(found, found[::-1] * [1.0, -1.0], rtol=0, atol=1e-14)
+
+
 def test_a_body_begun_a_quarter_further_has_the_same_grid(model: str) -> None:
     """Three levels of this model: an eighth for the four of a shipped one."""
     for edges in bodies():

@@ -21,6 +21,7 @@ from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import WINSLOW
 from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, load_quads
 from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
+from solvers.neural.quads.own_frame import OwnFrame
 from solvers.neural.weights import model_path
 from solvers.solution import Solution
 
@@ -107,7 +108,10 @@ def _solved(
 ) -> list[Solution]:
     """Return the solutions of boundaries with equal counts, made together."""
     begun = time.perf_counter()
-    planes, taken = _polished(boundaries, model, head, steps, dtype)
+    frames = [OwnFrame.of(one) for one in boundaries] if steps and model.topology == "o" else []
+    planes, taken = _polished([one.boundary for one in frames] or boundaries, model, head, steps, dtype)
+    if frames:
+        planes = np.stack([frame.back(one) for frame, one in zip(frames, planes, strict=True)])
     spent = (time.perf_counter() - begun) / len(boundaries)
     with np.errstate(invalid="ignore"):  # infinity less infinity
         finite = bool(np.isfinite(planes.sum()))
