@@ -88,11 +88,16 @@ def approached(
 ) -> tuple[Floats, Floats]:
     """Return what `approach` does, as planes (batch, 2, ...): the same compiled, to rounding."""
     near = np.stack([z.real, z.imag], axis=1)
-    last, (m, n) = np.empty_like(near), z.shape[1:]
+    return near, step_all(near, around, steps, harmonic=harmonic)
+
+
+def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic: bool = True) -> Floats:
+    """Move planes `near` (batch, 2, m, n) in place as `approach` does; return the last steps, likewise."""
+    last, (m, n) = np.empty_like(near), near.shape[2:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
     xi = _plain(m - 1) if around else _folded(m)
     approach_all(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
-    return near, last
+    return last
 
 
 def _extrapolated(found: Any, step: Any, move: Any, xp: Any) -> Any:

@@ -121,6 +121,14 @@ class Network:
 
         Of one `head` alone (batch, m, n).
         """
+        pairs = self.answers(seen)
+        m, n = pairs.shape[1:3]
+        pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
+        moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
+        return np.asarray(moved.view(np.complex128)[..., 0])
+
+    def answers(self, seen: Reals) -> Reals:
+        """Return the fields (batch, m, n, heads, 2) before `rim_factor`, in the network's arithmetic."""
         batch, m, n = seen.shape[:3]
         seen = np.ascontiguousarray(seen, self.dtype)
         answer = np.empty((batch, m, n, 2 * self.heads), self.dtype)
@@ -132,10 +140,7 @@ class Network:
         for k in range(0, batch, CHUNK):
             program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
         idle.append(program)
-        pairs = answer.reshape(batch, m, n, self.heads, 2)
-        pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
-        moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
-        return np.asarray(moved.view(np.complex128)[..., 0])
+        return answer.reshape(batch, m, n, self.heads, 2)
 
     def _program(self, m: int, n: int) -> Program:
         """Return the layers for `CHUNK` domains or fewer, on arrays that no other program has."""

@@ -19,18 +19,18 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
+from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from solvers import acute
 from solvers._evaluate import begin_all, evaluate_all
+from solvers.neural.quads._frame import add, put_back, take_out
 from solvers.neural.quads._network import look
-from solvers.neural.quads.approach import AFTER, approached, nodes_after
+from solvers.neural.quads.approach import AFTER, nodes_after, step_all
 from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import FEATURES
-from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import QuadModel
-from solvers.neural.quads.network import CHUNK
+from solvers.neural.quads.network import CHUNK, rim_factor
 from solvers.spline import places
 
 BATCH = 64
@@ -50,53 +50,52 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
     head : index into `encoding.HEADS`.
     dtype : of the network's arithmetic, ``float64`` or ``float32``; all else is float64.
     """
-    base, z, factor = _begun(edges)
-    network = model.network(dtype)
+    base, network = _begun(edges), model.network(dtype)
     room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), dtype)
     for k in range(0, len(base), CHUNK):
-        rows = slice(k, k + CHUNK)
-        near, step = approached(z[rows])
-        seen = room[: len(near)]
+        planes = base[k : k + CHUNK]
+        unit, factors = _unit(planes)
+        near = unit.copy()
+        step, seen = step_all(near), room[: len(near)]
         look(near, step, seen)
-        found = near[:, 0] + 1j * near[:, 1] + SCALE * network(seen, head)
-        _move(base[rows], found - z[rows], factor[rows])
+        add(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
+        put_back(planes, near, unit, factors)
     return _nearer(base, edges) if head == WINSLOW else base
 
 
 def near_grids(edges: Edges) -> Floats:
     """Return the planes (batch, 2, n, n) that the network goes out from, at n = 33 nodes each."""
-    base, z, factor = _begun(edges)
-    near, _ = approached(z)
-    _move(base, near[:, 0] + 1j * near[:, 1] - z, factor)
+    base = _begun(edges)
+    unit, factors = _unit(base)
+    near = unit.copy()
+    step_all(near)
+    put_back(base, near, unit, factors)
     return base
 
 
 def _nearer(coarse: Floats, edges: Edges) -> Floats:
     """Return grids `coarse` on more nodes, nearer to Winslow's."""
     planes = evaluate(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
-    z = planes[:, 0] + 1j * planes[:, 1]
-    middle, factor = (np.asarray(value)[:, None, None] for value in frame(z, np))
-    z = (z - middle) * factor
-    near, _ = approached(z, steps=AFTER, harmonic=False)
-    _move(planes, near[:, 0] + 1j * near[:, 1] - z, factor)
+    unit, factors = _unit(planes)
+    near = unit.copy()
+    step_all(near, steps=AFTER, harmonic=False)
+    put_back(planes, near, unit, factors)
     return planes
 
 
-def _begun(edges: Edges) -> tuple[Floats, Complexes, Complexes]:
-    """Return transfinite grids as planes and, of unit size, as z (batch, n, n), and the factors to it."""
+def _begun(edges: Edges) -> Floats:
+    """Return transfinite grids as planes (batch, 2, n, n) at n = 33 nodes each."""
     base = np.empty((len(edges), 2, LATENT, LATENT))
     ni, nj = edges.counts
     begin_all(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
-    z = base[:, 0] + 1j * base[:, 1]
-    middle, factor = (np.asarray(value)[:, None, None] for value in frame(z, np))
-    return base, (z - middle) * factor, factor
+    return base
 
 
-def _move(planes: Floats, by: Complexes, factor: Complexes) -> None:
-    """Add displacements at unit size to planes (batch, 2, n, n)."""
-    moved = by / factor
-    planes[:, 0] += moved.real
-    planes[:, 1] += moved.imag
+def _unit(planes: Floats) -> tuple[Floats, Floats]:
+    """Return planes at unit size (`solvers.neural.quads.frame`), and the factors (batch, 2) to it."""
+    unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
+    take_out(planes, unit, factors)
+    return unit, factors
 
 
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
