@@ -98,8 +98,20 @@ class _Answer:
         self._scale = held.scale
 
     def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
-        flip = (hand < 0)[:, None]
-        a, b = (torch.where(flip, one.conj(), one) for one in (wall, far))
+        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative.
+
+        A body that is its own mirror image (0) has the mean of both, whose slopes are symmetric too.
+        """
+        flip, even = (hand < 0)[:, None], hand == 0
+        answer = self._told(*(torch.where(flip, one.conj(), one) for one in (wall, far)))
+        answer = torch.where(flip[..., None], answer.conj(), answer)
+        if even.any():
+            image = torch.zeros_like(answer)
+            image[even] = self._told(wall[even].conj(), far[even].conj()).conj()
+            answer = torch.where(even[:, None, None], 0.5 * (answer + image), answer)
+        return answer * torch.as_tensor(smoothing(), device=answer.device)[:, None]
+
+    def _told(self, a: Tensor, b: Tensor) -> Tensor:
         mean = (b - a)[:, 0]
         a, b = (torch.cat([torch.zeros_like(one[:, :1]), one[:, 1:]], 1) for one in (a, b))
         size = torch.sqrt((torch.abs(a) ** 2 + torch.abs(b) ** 2).sum(1).clamp(min=1e-24))
@@ -113,10 +125,7 @@ class _Answer:
         q = len(self._basis)
         kept = _kept(torch.fft.fft(torch.complex(told[:, :q], told[:, q:])) / COLUMNS)
         inner = (kept.mT @ self._basis.to(kept.dtype)) * (self._scale * size**2)[:, None, None]
-        answer = torch.nn.functional.pad(inner, (1, 1))
-        answer = torch.where(flip[..., None], answer.conj(), answer)
-        answer = torch.where((hand == 0)[:, None, None], answer.real.to(answer.dtype), answer)
-        return answer * torch.as_tensor(smoothing(), device=answer.device)[:, None]
+        return torch.nn.functional.pad(inner, (1, 1))
 
 
 def _modes(F: Tensor) -> Tensor:

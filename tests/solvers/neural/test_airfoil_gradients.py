@@ -82,6 +82,36 @@ def test_gradients_are_those_of_finite_differences(designation: str) -> None:
     assert slope == pytest.approx((total(step) - total(-step)) / (2.0 * step), rel=1e-6)
 
 
+@pytest.mark.parametrize("polish", [0, 2])
+def test_gradients_of_a_symmetric_section(polish: int) -> None:
+    """Along moves that keep it symmetric, and along others, which the nodes jump at.
+
+    The network's answers to two mirror images are not one when these are nearly the same; their slope is what
+    is left of differences over two lengths.
+    """
+    south, north = walls(airfoil("0012-sharp", 101, 31))
+    grids = AirfoilGrids("airfoil-o", polish)
+    rng = np.random.default_rng(4)
+    theta = 2.0 * np.pi * np.arange(101) / 100
+    waves = np.stack([np.cos(k * theta + k) / (k + 1) for k in range(5)])
+    move = torch.tensor((rng.standard_normal((2, 5)) @ waves).T[None] * 0.02)
+    move[:, -1] = move[:, 0]
+    image = move.flip(1) * torch.tensor([1.0, -1.0])
+    weights = torch.tensor(rng.standard_normal((1, 101, 31, 2)))
+    given = south.clone().requires_grad_()
+    (grids(given, north, 31) * weights).sum().backward()
+
+    def change(way: Any, step: float) -> float:
+        both = [float((grids(south + s * way, north, 31) * weights).sum()) for s in (step, -step)]
+        return both[0] - both[1]
+
+    even, odd = 0.5 * (move + image), 0.5 * (move - image)
+    step = 1e-4
+    assert float((given.grad * even).sum()) == pytest.approx(change(even, step) / (2 * step), rel=1e-5)
+    left = (change(odd, 2 * step) - change(odd, step)) / (2 * step)
+    assert float((given.grad * odd).sum()) == pytest.approx(left, rel=2e-5)
+
+
 def test_a_body_that_cannot_be_lifted_is_refused() -> None:
     angle = -2.0 * np.pi * np.arange(8) / 7
     ring = torch.tensor(np.stack([np.cos(angle), np.sin(angle)], 1)[None])
