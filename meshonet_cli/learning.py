@@ -135,7 +135,8 @@ def _train_strip(
 def _train_quads(
     sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
 ) -> dict[str, Any]:
-    from solvers.neural.fit.quads import HELD_OUT, PLAN, quads, train_quads
+    from solvers.neural.fit.quad_grids import quads
+    from solvers.neural.fit.quads import HELD_OUT, PLAN, train_quads
     from solvers.neural.quads.encoding import HEADS
     from solvers.neural.quads.model import load_quads
     from solvers.neural.weights import model_path

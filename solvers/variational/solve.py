@@ -1,14 +1,13 @@
 """Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
 
 Each level starts from the minimum of the next coarser one, evaluated by splines (`solvers.coarse`). A start
-with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. The
-descent itself, preconditioned L-BFGS, is compiled; its smooth moves follow the Hessian of the coarsest level.
+with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. Smooth
+moves of the descents (`descent`) follow the Hessian of the coarsest level.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -19,15 +18,13 @@ from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import angles, count_folded, widest_cell
 from solvers.coarse import divided, evaluate, sweep_kinks, thinned
-from solvers.progress import heard, tell
-from solvers.repair import repair
 from solvers.solution import Solution
-from solvers.spline import spline_matrix
-from solvers.variational._variational import Minimiser, Stiffness, energy, workspace
-from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of, relief_of
+from solvers.variational._variational import Stiffness, energy, workspace
+from solvers.variational.descent import descend, in_cells, teller
+from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.start import winslow_start
-from solvers.variational.windowed import REACH, descend_windows, unfold
+from solvers.variational.windowed import REACH, unfold
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
@@ -52,22 +49,16 @@ iterations around notches, but the angles hardly change.
 """
 
 FEW_AROUND = 20, 10
-"""The same around a body, with up to `NEXT` nodes and with more, where the value is not `HARD`."""
+"""The same around a body, with up to `NEXT` nodes and with more, up to the value `descent.HARD`."""
 
 FIRST_AROUND = 100
 """The same on a coarser level."""
-
-HARD = 1.1
-"""Value of the functional around a body above which descents go on."""
 
 ROUGH = 3.0
 """How much further nodes of levels between may move when descent stops there: the next is farther away."""
 
 MOST = 1000
 """Iterations on a coarser level at the most."""
-
-UNFOLDED = 129
-"""Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
 
 WEAKER = 3
 """How often the edge length term may be made weaker, to a fourth each time."""
@@ -223,8 +214,8 @@ def _descended(
     z, descent = np.moveaxis(nodes, -1, 0), minimiser(ni, nj, False, terms[0], weights)
     value, low, iterations = np.inf, 0.0, 0
     if unfold(z, descent, terms):
-        told = _teller(nodes)
-        value, low, iterations = descent.run(z, *terms, 0.0, None, _moves(still, start), REACH, most, told)
+        told = teller(nodes)
+        value, low, iterations = descent.run(z, *terms, 0.0, None, in_cells(still, start), REACH, most, told)
     if value <= easy:
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
@@ -246,77 +237,6 @@ def _stiffness(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, i
     """Return the Hessian at the minimum `nodes` of the coarsest level, and its counts, if it is positive."""
     found = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
     return (found, (nodes.shape[0], nodes.shape[1])) if found.positive else None
-
-
-def descend(
-    nodes: Floats,
-    weights: Weights,
-    still: float,
-    most: int,
-    *,
-    periodic: bool = False,
-    first: int | None = None,
-    stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
-) -> tuple[int, bool]:
-    """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
-
-    Parameters
-    ----------
-    still : as `tol` of `solve`.
-    most : iterations at the most.
-    periodic : around a body: the last row of nodes is the first, and its nodes move like any others. Before
-        all others those of windows around skewed cells do (`windowed`).
-    first : end after so many iterations where the value is not `HARD` then.
-    stiffness : the Hessian on a coarse copy and its counts, which leads smooth moves.
-    """
-    ni, nj = nodes.shape[:2]
-    if min(ni, nj) < 3:
-        return 0, count_folded(nodes) == 0
-    z = np.moveaxis(nodes, -1, 0)
-    aspect = aspect_of(nodes, periodic)
-    relief = relief_of(nodes[:, 0]) if periodic else None
-    descent = minimiser(ni, nj, periodic, aspect, weights)
-    if stiffness is not None:
-        hessian, (m, n) = stiffness
-        descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
-    terms = aspect, weights.shape, weights.smoothness
-    if relief is not None:
-        descend_windows(nodes, aspect, weights, relief)
-    if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
-        return 0, False
-    moves, told = _moves(still, nodes), _teller(nodes)
-    begin = most if first is None else min(first, most)
-    value, _, done = descent.run(z, *terms, 0.0, relief, moves, REACH, begin, told)
-    if begin <= done < most and value > HARD:
-        done += descent.run(z, *terms, 0.0, relief, moves, REACH, most - done, told)[2]
-    return done, True
-
-
-def _teller(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return what tells listeners of iterations that move `nodes` (ni, nj, 2), None without listeners."""
-    if not heard():
-        return None
-    first = 0.0
-
-    def told(number: int, value: float, slope: float) -> None:
-        nonlocal first
-        first = slope if number == 0 else first
-        tell("variational", nodes, number, slope / first if first else 0.0, functional=value)
-
-    return told
-
-
-def _moves(still: float, nodes: Floats) -> float:
-    """Return `still` in cells of planar `nodes` (ni, nj, 2)."""
-    return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
-
-
-def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
-    """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
-    if repair(nodes, periodic) == 0:
-        return True
-    small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
-    return small and unfold(np.moveaxis(nodes, -1, 0), descent, terms)
 
 
 def _inside(boundary: Boundary, initial: Grid) -> Floats:

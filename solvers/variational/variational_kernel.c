@@ -1,20 +1,14 @@
-/* Descent of the variational functional: L-BFGS with the preconditioner of spectral.h and coarse_space.h.
-
-   Steps s and preconditioned changes z = P y of the gradient are the rows of one table, read once for the products
-   with the gradient and once for the new direction; the two-loop recursion runs on the small tables of the products
-   s·y and y·z. Rows are in single precision: they steer the descent, they are not its result.
-
-   Nocedal and Wright, Numerical Optimization (2006), algorithm 7.4; the form in products: Chen, Wang and Zhou,
-   NIPS 27 (2014). */
+/* Descent of the variational functional: L-BFGS (steps.h) with a preconditioner (frame.h); the functional's gradient
+   over a grid from its rows of cells (functional.h), and its Hessian on a coarse one. */
 #include "variational_kernel.h"
 #include "coarse_space.h"
+#include "frame.h"
 #include "functional.h"
-#include "spectral.h"
+#include "steps.h"
 
-#define TRIES 25   /* lengths of a step that are tried */
-#define IDLE 2     /* small changes in a row that count as standing still; one may come from a short step */
-#define GAIN 1e-4  /* part of the value that such a change wins at the most */
-#define CHUNK 2048 /* values of every row of the table that are read together */
+#define TRIES 25  /* lengths of a step that are tried */
+#define IDLE 2    /* small changes in a row that count as standing still; one may come from a short step */
+#define GAIN 1e-4 /* part of the value that such a change wins at the most */
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj)
 {
@@ -141,188 +135,12 @@ static double evaluate(Descent *d, const double *at, double *gradient, double *s
     return value;
 }
 
-/* Row i of the gradient in the frames of its nodes, as rows x and y. */
-MESHONET_INLINE void into_frame(const Descent *d, const double *restrict gradient, ptrdiff_t i, float *restrict x,
-                                float *restrict y)
-{
-    const ptrdiff_t mj = d->spectrum.mj, n = d->spectrum.mi * mj, k = i * mj;
-    const float *restrict fx = d->frame + k, *restrict fy = fx + n;
-    const double *restrict gx = gradient + k, *restrict gy = gx + n;
-    for (ptrdiff_t j = 0; j < mj; j++) {
-        const float px = (float)gx[j], py = (float)gy[j];
-        x[j] = fx[j] * px + fy[j] * py, y[j] = fx[j] * py - fy[j] * px;
-    }
-}
-
-/* Row i of the result from rows x and y. */
-MESHONET_INLINE void out_of_frame(const Descent *d, const float *restrict x, const float *restrict y, ptrdiff_t i,
-                                  float *restrict result)
-{
-    const ptrdiff_t mj = d->spectrum.mj, n = d->spectrum.mi * mj, k = i * mj;
-    const float *restrict fx = d->frame + k, *restrict fy = fx + n;
-    float *restrict rx = result + k, *restrict ry = rx + n;
-    for (ptrdiff_t j = 0; j < mj; j++)
-        rx[j] = fx[j] * x[j] - fy[j] * y[j], ry[j] = fx[j] * y[j] + fy[j] * x[j];
-}
-
-/* result = P gradient. Rows i and mi - 1 - i are folded together. */
-MESHONET_CLONES
-void descent_precondition(Descent *d, const double *restrict gradient, float *restrict result)
-{
-    const Spectrum *s = &d->spectrum;
-    const ptrdiff_t mi = s->mi, mj = s->mj, width = values_of(&s->eta), modes = modes_of(&s->eta);
-    float *w = d->transform, *packed = w + 6 * mi * (width > modes ? width : modes);
-    float *a[2] = {packed, packed + mj}, *b[2] = {packed + 2 * mj, packed + 3 * mj};
-    for (ptrdiff_t i = 0; i < s->xi.even.nodes; i++) {
-        const ptrdiff_t other = mi - 1 - i;
-        into_frame(d, gradient, i, a[0], a[1]);
-        if (other > i)
-            into_frame(d, gradient, other, b[0], b[1]);
-        for (int c = 0; c < 2; c++) {
-            float *rows = w + c * mi * width;
-            if (other > i) {
-                mix(a[c], b[c], mj);
-                fold(b[c], &s->eta, rows + (s->xi.even.nodes + i) * width);
-            }
-            fold(a[c], &s->eta, rows + i * width);
-        }
-    }
-    divide(s, w, w + 2 * mi * (width > modes ? width : modes), packed);
-    for (ptrdiff_t i = 0; i < s->xi.even.nodes; i++) {
-        const ptrdiff_t other = mi - 1 - i;
-        for (int c = 0; c < 2; c++) {
-            const float *rows = w + c * mi * width;
-            unfold(rows + i * width, &s->eta, a[c]);
-            if (other > i) {
-                unfold(rows + (s->xi.even.nodes + i) * width, &s->eta, b[c]);
-                mix(a[c], b[c], mj);
-            }
-        }
-        out_of_frame(d, a[0], a[1], i, result);
-        if (other > i)
-            out_of_frame(d, b[0], b[1], other, result);
-    }
-    const Space *space = &d->space;
-    if (space->mi == 0)
-        return;
-    for (int c = 0; c < 2; c++)
-        space_restrict(space, gradient + c * mi * mj, mi, mj, c, packed, space->unknowns);
-    solve_band(space->band, 2 * space->mi * space->mj, space->width, space->unknowns);
-    for (int c = 0; c < 2; c++)
-        from_space(space, space->unknowns, mi, mj, c, result + c * mi * mj);
-}
-
-/* The step along xi at each free node, from both directions: (p + q) / 2 with p = √a x_ξ and q = -i x_η / √a by centred
-   differences, or the longer of the two where they oppose each other, in folded places. */
-MESHONET_CLONES
-static void set_frame(Descent *d)
-{
-    const ptrdiff_t nj = d->nj, nodes = d->ni * nj, mi = d->spectrum.mi, mj = d->spectrum.mj, n = mi * mj;
-    const double *x = d->z, *y = d->z + nodes;
-    const double along = 0.5 * sqrt(d->weights.aspect), across = 0.5 / sqrt(d->weights.aspect);
-    for (ptrdiff_t i = 0; i < mi; i++) {
-        const ptrdiff_t at = d->first + i, west = at > 0 ? at - 1 : d->ni - 2;
-        for (ptrdiff_t j = 1; j <= mj; j++) {
-            const ptrdiff_t k = at * nj + j, w = west * nj + j, e = (at + 1) * nj + j;
-            const double px = along * (x[e] - x[w]), py = along * (y[e] - y[w]);
-            const double qx = across * (y[k + 1] - y[k - 1]), qy = -across * (x[k + 1] - x[k - 1]);
-            const double p = px * px + py * py, q = qx * qx + qy * qy;
-            double cx = 0.5 * (px + qx), cy = 0.5 * (py + qy);
-            if (cx * cx + cy * cy < 0.05 * (p + q))
-                cx = p > q ? px : qx, cy = p > q ? py : qy;
-            d->frame[i * mj + j - 1] = (float)cx, d->frame[n + i * mj + j - 1] = (float)cy;
-        }
-    }
-}
-
 void descent_start(Descent *d)
 {
     set_frame(d);
     d->count = d->idle = 0;
     d->value = evaluate(d, d->z, d->gradient, &d->smallest);
-    descent_precondition(d, d->gradient, d->steepest);
-}
-
-/* Products of every row of the table (2 count, n) with v. */
-MESHONET_CLONES
-void descent_products(const float *table, int rows, const double *v, ptrdiff_t n, double *products)
-{
-    for (int r = 0; r < rows; r++)
-        products[r] = 0.0;
-    for (ptrdiff_t start = 0; start < n; start += CHUNK) {
-        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
-        for (int r = 0; r < rows; r++) {
-            const float *restrict row = table + r * n;
-            double sum = 0.0;
-            for (ptrdiff_t k = start; k < stop; k++)
-                sum += (double)row[k] * v[k];
-            products[r] += sum;
-        }
-    }
-}
-
-/* direction = Σ share[r] row r - scale steepest. */
-MESHONET_CLONES
-void descent_combine(const float *table, int rows, const float *share, const float *restrict steepest, float scale,
-                     ptrdiff_t n, float *restrict direction)
-{
-    for (ptrdiff_t start = 0; start < n; start += CHUNK) {
-        const ptrdiff_t stop = start + CHUNK < n ? start + CHUNK : n;
-        for (ptrdiff_t k = start; k < stop; k++)
-            direction[k] = -scale * steepest[k];
-        for (int r = 0; r < rows; r++) {
-            const float *restrict row = table + r * n, factor = share[r];
-            for (ptrdiff_t k = start; k < stop; k++)
-                direction[k] += factor * row[k];
-        }
-    }
-}
-
-/* The direction -H g from the gradient and P g, and its slope. */
-static double choose_direction(Descent *d)
-{
-    const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
-    const int count = d->count, *order = d->order;
-    const double *products = d->products;
-    double alpha[PAIRS], rest[PAIRS], scale = 1.0, slope;
-    float share[2 * PAIRS];
-    if (count > 0)
-        scale = d->sy[order[count - 1]][order[count - 1]] / d->yz[order[count - 1]][order[count - 1]];
-    for (int k = count - 1; k >= 0; k--) {
-        double sum = products[2 * order[k]];
-        for (int l = k + 1; l < count; l++)
-            sum -= d->sy[order[k]][order[l]] * alpha[l];
-        alpha[k] = sum / d->sy[order[k]][order[k]];
-    }
-    for (int k = 0; k < count; k++) {
-        double sum = products[2 * order[k] + 1];
-        for (int l = 0; l < count; l++)
-            sum -= d->yz[order[k]][order[l]] * alpha[l];
-        sum *= scale;
-        for (int l = 0; l < k; l++)
-            sum += rest[l] * d->sy[order[l]][order[k]];
-        rest[k] = alpha[k] - sum / d->sy[order[k]][order[k]];
-    }
-    for (int k = 0; k < count; k++)
-        share[2 * order[k]] = (float)-rest[k], share[2 * order[k] + 1] = (float)(scale * alpha[k]);
-    descent_combine(d->table, 2 * count, share, d->steepest, (float)scale, n, d->direction);
-    descent_products(d->direction, 1, d->gradient, n, &slope);
-    return slope;
-}
-
-/* The largest move of `direction`, in cells. */
-MESHONET_CLONES
-double descent_largest(const Descent *d)
-{
-    const ptrdiff_t n = d->spectrum.mi * d->spectrum.mj;
-    const float *restrict fx = d->frame, *restrict fy = d->frame + n;
-    const float *restrict dx = d->direction, *restrict dy = d->direction + n;
-    float most = 0.0f;
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const float move = (dx[k] * dx[k] + dy[k] * dy[k]) / (fx[k] * fx[k] + fy[k] * fy[k] + 1e-36f);
-        most = move > most ? move : most;
-    }
-    return sqrt((double)most);
+    precondition(d, d->gradient, d->steepest);
 }
 
 /* Planes of z moved by `factor` directions. */
@@ -352,44 +170,6 @@ static double shorter(double rise, double slope)
     return factor < 0.1 ? 0.1 : factor > 0.5 ? 0.5 : factor;
 }
 
-/* Add the step, whose slope was `slope`, the gradient's change y and P y, unless the functional bends down along the
-   step; then the products of all rows with the new gradient. Those with y are the changes of these. */
-MESHONET_CLONES
-static void remember(Descent *d, double factor, double slope)
-{
-    const ptrdiff_t n = 2 * d->spectrum.mi * d->spectrum.mj;
-    const double *restrict old = d->gradient, *restrict fresh = d->fresh;
-    double before[2 * PAIRS], steps = 0.0, changes = 0.0, curvature = 0.0, turned = 0.0;
-    const float *restrict step = d->direction;
-    for (ptrdiff_t k = 0; k < n; k++) {
-        const double s = (double)step[k], y = fresh[k] - old[k];
-        steps += s * s, changes += y * y, curvature += s * y;
-        turned += old[k] * (double)(d->turned[k] - d->steepest[k]);
-    }
-    const int bends = curvature > 1e-12 * sqrt(steps * changes);
-    int slot = d->count;
-    memcpy(before, d->products, sizeof before);
-    if (bends) {
-        if (d->count == PAIRS) {
-            slot = d->order[0];
-            memmove(d->order, d->order + 1, (PAIRS - 1) * sizeof *d->order);
-            d->count--;
-        }
-        d->order[d->count++] = slot;
-        float *restrict s = d->table + 2 * slot * n, *restrict z = s + n;
-        for (ptrdiff_t k = 0; k < n; k++)
-            s[k] = (float)factor * step[k], z[k] = d->turned[k] - d->steepest[k];
-        before[2 * slot] = factor * slope, before[2 * slot + 1] = turned;
-    }
-    descent_products(d->table, 2 * d->count, fresh, n, d->products);
-    for (int k = 0; bends && k < d->count; k++) {
-        const int other = d->order[k];
-        d->sy[slot][other] = 0.0;
-        d->sy[other][slot] = d->products[2 * other] - before[2 * other];
-        d->yz[slot][other] = d->yz[other][slot] = d->products[2 * other + 1] - before[2 * other + 1];
-    }
-}
-
 int descent_step(Descent *d)
 {
     const ptrdiff_t nodes = d->ni * d->nj, n = 2 * d->spectrum.mi * d->spectrum.mj;
@@ -400,7 +180,7 @@ int descent_step(Descent *d)
     }
     if (!(slope < 0.0))
         return STUCK;
-    const double largest = descent_largest(d);
+    const double largest = largest_move(d);
     double factor = d->count == 0 && largest > d->reach ? d->reach / largest : 1.0, value = 0.0, low = 0.0;
     int tries = 0;
     for (; tries < TRIES; tries++) {
@@ -418,7 +198,7 @@ int descent_step(Descent *d)
     const double gain = d->value - value;
     memcpy(d->z, d->full, 2 * (size_t)nodes * sizeof *d->z);
     d->value = value, d->smallest = low;
-    descent_precondition(d, d->fresh, d->turned);
+    precondition(d, d->fresh, d->turned);
     remember(d, factor, slope);
     memcpy(d->gradient, d->fresh, (size_t)n * sizeof *d->gradient);
     memcpy(d->steepest, d->turned, (size_t)n * sizeof *d->steepest);

@@ -31,7 +31,9 @@ from geometry.sampling import Sampling
 from solvers.coarse import solve_coarse, thinned
 from solvers.elliptic.solve import solve as winslow
 from solvers.tfi import tfi
+from solvers.variational import descent as descent_module
 from solvers.variational import solve as module
+from solvers.variational.descent import descend
 from solvers.variational.functional import Weights, aspect_of, energy
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.solve import solve
@@ -110,7 +112,7 @@ def test_straight_lines_lead_on_where_splines_fold_too_much(monkeypatch: pytest.
 
     goal = solve(boundary, tol=1e-7).grid.nodes
     monkeypatch.setattr(module, "evaluate", swinging)
-    monkeypatch.setattr(module, "_made_valid", lambda *_: False)
+    monkeypatch.setattr(descent_module, "_made_valid", lambda *_: False)
     found = solve(boundary, tol=1e-7)
     assert found.notes == ()
     np.testing.assert_allclose(found.grid.nodes, goal, atol=1e-5)
@@ -125,7 +127,7 @@ def test_of_several_minima_of_a_hard_domain_the_better_one_counts() -> None:
     whole = start.copy(order="K")
     descent = minimiser(17, 17, False, terms[0], Weights())
     assert unfold(np.moveaxis(whole, -1, 0), descent, terms)
-    module.descend(whole, Weights(), module.STILL, 1000)
+    descend(whole, Weights(), module.STILL, 1000)
     found = solve(boundary, max_cycles=1000).grid.nodes
     assert folded(found) == 0
     assert energy(found, terms[0], Weights()) < energy(whole, terms[0], Weights()) - 0.2
@@ -194,7 +196,7 @@ def test_smooth_moves_follow_the_coarsest_level() -> None:
     reached = []
     for stiffness in (module._stiffness(coarse, weights), None):
         nodes = start.copy(order="K")
-        module.descend(nodes, weights, 1e-9, 15, stiffness=stiffness)
+        descend(nodes, weights, 1e-9, 15, stiffness=stiffness)
         reached.append(energy(nodes, aspect, weights))
     least = energy(solve(boundary, tol=1e-7, max_cycles=500).grid.nodes, aspect, weights)
     assert reached[0] - least < 0.3 * (reached[1] - least)
@@ -211,7 +213,7 @@ def test_a_folded_start_is_unfolded() -> None:
 
 
 def test_the_regularised_barrier_unfolds_what_repair_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "repair", lambda nodes, periodic: folded(nodes))
+    monkeypatch.setattr(descent_module, "repair", lambda nodes, periodic: folded(nodes))
     boundary = wrench(33, 33)
     assert folded(tfi(boundary).nodes) > 10
     found = solve(boundary, initial=tfi(boundary), max_cycles=1000)

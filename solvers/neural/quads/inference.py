@@ -172,8 +172,8 @@ def _descent(planes: Floats, steps: int, topology: Topology) -> int:
     """Descend from the planes (2, m, n) in place; return the steps taken."""
     if not steps:
         return 0
+    from solvers.variational.descent import descend
     from solvers.variational.functional import AROUND, Weights
-    from solvers.variational.solve import descend
 
     weights, nodes = Weights() if topology == "quad" else AROUND, np.moveaxis(planes, 0, -1)
     return descend(nodes, weights, STILL, steps, periodic=topology == "o")[0]

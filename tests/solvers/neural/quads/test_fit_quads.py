@@ -14,7 +14,8 @@ from geometry.families.four_sided import boundary
 from solvers.elliptic.solve import solve as winslow
 from solvers.neural.fit.loop import Progress
 from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.quads import Quads, Sizes, quads, train_quads
+from solvers.neural.fit.quad_grids import Quads, quads
+from solvers.neural.fit.quads import Sizes, train_quads
 from solvers.neural.fit.team import Team
 from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.approach import approach

@@ -1,0 +1,97 @@
+"""One descent of the functional: from given nodes, made valid first, to where they hardly move.
+
+The iterations themselves, preconditioned L-BFGS, are compiled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from geometry.arrays import Floats
+from geometry.quality import count_folded
+from solvers.progress import heard, tell
+from solvers.repair import repair
+from solvers.spline import spline_matrix
+from solvers.variational._variational import Minimiser, Stiffness
+from solvers.variational.functional import Weights, aspect_of, relief_of
+from solvers.variational.preconditioner import minimiser
+from solvers.variational.windowed import REACH, descend_windows, unfold
+
+HARD = 1.1
+"""Value of the functional around a body above which descents go on."""
+
+UNFOLDED = 129
+"""Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
+
+
+def descend(
+    nodes: Floats,
+    weights: Weights,
+    still: float,
+    most: int,
+    *,
+    periodic: bool = False,
+    first: int | None = None,
+    stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
+) -> tuple[int, bool]:
+    """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
+
+    Parameters
+    ----------
+    still : as `tol` of `solve`.
+    most : iterations at the most.
+    periodic : around a body: the last row of nodes is the first, and its nodes move like any others. Before
+        all others those of windows around skewed cells do (`windowed`).
+    first : end after so many iterations where the value is not `HARD` then.
+    stiffness : the Hessian on a coarse copy and its counts, which leads smooth moves.
+    """
+    ni, nj = nodes.shape[:2]
+    if min(ni, nj) < 3:
+        return 0, count_folded(nodes) == 0
+    z = np.moveaxis(nodes, -1, 0)
+    aspect = aspect_of(nodes, periodic)
+    relief = relief_of(nodes[:, 0]) if periodic else None
+    descent = minimiser(ni, nj, periodic, aspect, weights)
+    if stiffness is not None:
+        hessian, (m, n) = stiffness
+        descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
+    terms = aspect, weights.shape, weights.smoothness
+    if relief is not None:
+        descend_windows(nodes, aspect, weights, relief)
+    if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
+        return 0, False
+    moves, told = in_cells(still, nodes), teller(nodes)
+    begin = most if first is None else min(first, most)
+    value, _, done = descent.run(z, *terms, 0.0, relief, moves, REACH, begin, told)
+    if begin <= done < most and value > HARD:
+        done += descent.run(z, *terms, 0.0, relief, moves, REACH, most - done, told)[2]
+    return done, True
+
+
+def teller(nodes: Floats) -> Callable[[int, float, float], None] | None:
+    """Return what tells listeners of iterations that move `nodes` (ni, nj, 2), None without listeners."""
+    if not heard():
+        return None
+    first = 0.0
+
+    def told(number: int, value: float, slope: float) -> None:
+        nonlocal first
+        first = slope if number == 0 else first
+        tell("variational", nodes, number, slope / first if first else 0.0, functional=value)
+
+    return told
+
+
+def in_cells(still: float, nodes: Floats) -> float:
+    """Return `still` in cells of planar `nodes` (ni, nj, 2)."""
+    return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
+
+
+def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
+    """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
+    if repair(nodes, periodic) == 0:
+        return True
+    small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
+    return small and unfold(np.moveaxis(nodes, -1, 0), descent, terms)
