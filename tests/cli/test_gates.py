@@ -20,6 +20,7 @@ def parallelogram() -> Grid:
         ("max_angle>170", "max_angle", "max", ">", 170),
         (" scaled_jacobian <= 0.2 ", "scaled_jacobian", "min", "<=", 0.2),
         ("skewness.p99>=8e-1", "skewness", "p99", ">=", 0.8),
+        ("skewness>=0.8", "skewness", "max", ">=", 0.8),
         ("min_angle.mean<45", "min_angle", "mean", "<", 45),
         ("folded>0", "folded", "max", ">", 0),
         ("orthogonality<-.5", "orthogonality", "min", "<", -0.5),

@@ -136,6 +136,12 @@ def test_an_end_mark_is_no_point(order, unit):
     np.testing.assert_allclose(got.curve.points, unit * EXPECTED.curve.points, atol=1e-9)
 
 
+def test_four_points_are_an_airfoil_none_of_them_a_mark():
+    points = np.array([[1, 0], [0.5, 0.1], [0, 0], [0.5, -0.1]])
+    got = parse("Wedge\n" + lines(points), "wedge.dat")
+    np.testing.assert_allclose(got.curve.points, points[[0, 3, 2, 1]], atol=1e-12)
+
+
 def test_an_edge_far_behind_the_last_points_is_no_mistake():
     few, thin = (X < 0.85) | (X == 1), np.array([1.0, 0.1])
     upper, lower = thin * UPPER[few], thin * LOWER[few][:-1]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from format_shapes import PYTHON, Pipe, file_names
 
-from formats.output import PART_SUFFIX, whole_file, whole_folder
+from formats.output import PART_SUFFIX, _swapped, whole_file, whole_folder
 from geometry.errors import InputError
 
 
@@ -170,8 +170,17 @@ def test_sigterm_turned_into_an_exit_removes_the_part(tmp_path: Path) -> None:
     assert file_names(tmp_path) == []
 
 
-def test_a_folder_takes_the_place_of_the_old_one_only_when_whole(tmp_path: Path) -> None:
+def test_a_folder_takes_the_place_of_the_old_one_only_when_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     target = tmp_path / "mesh"
+    swaps: list[Path] = []
+
+    def swapped(one: Path, other: Path) -> bool:
+        swaps.append(other)
+        return _swapped(one, other)
+
+    monkeypatch.setattr("formats.output._swapped", swapped)
     for text in ("first", "second"):
         with whole_folder(target) as folder:
             (folder / text).write_text(text)
@@ -181,6 +190,7 @@ def test_a_folder_takes_the_place_of_the_old_one_only_when_whole(tmp_path: Path)
         (folder / "third" / "missing").write_text("half")
     assert file_names(target) == ["second"]
     assert file_names(tmp_path) == ["mesh"]
+    assert swaps == [target]  # in one step, once there was an old one
 
 
 def test_a_folder_is_replaced_where_the_system_cannot_swap(

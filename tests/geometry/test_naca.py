@@ -40,6 +40,23 @@ def test_curve_is_the_formula(designation):
     assert airfoil.chord == pytest.approx(1, abs=4e-3)
 
 
+@pytest.mark.parametrize("designation", ["21012", "22012", "23012", "25012", "22112", "23112", "25112"])
+def test_five_digit_mean_lines_have_the_lift_and_moment_they_were_made_for(designation):
+    """Thin airfoil theory: lift 0.3 where none flows round the nose; reflexed, no moment (Report 537)."""
+    angle = (np.arange(4000) + 0.5) * np.pi / 4000
+    points = naca_points(designation, 2001)
+    middle = 0.5 * (points[:2001][::-1] + points[2000:])
+    slope = np.interp(0.5 - 0.5 * np.cos(angle), middle[:, 0], np.gradient(middle[:, 1], middle[:, 0]))
+    first, second = (2 * np.mean(slope * np.cos(n * angle)) for n in (1, 2))
+    assert np.pi * first == pytest.approx(0.3, abs=0.009)
+    moment = np.pi / 4 * (second - first)
+    assert abs(moment) < 0.0015 if designation[2] == "1" else moment < -0.003
+
+
+def test_a_sharp_section_closes_without_a_step():
+    np.testing.assert_allclose(thickness(1.0 - np.array([1e-6, 0.0]), 0.12, sharp=True), 0.0, atol=1e-6)
+
+
 def test_base_is_open_unless_sharp_is_asked_for():
     assert naca("0012").gap == pytest.approx(0.00252)
     assert naca("0012").blunt

@@ -14,6 +14,7 @@ from geometry.errors import InputError
 from geometry.naca import naca
 from geometry.parts import wake_nodes
 from geometry.sampling import Sampling
+from geometry.wake import Wake
 
 SHARP = Airfoil(selig(0.12))
 CAMBERED = Airfoil(selig(0.12, 0.04))
@@ -91,6 +92,16 @@ def test_the_growth_of_the_wake_sets_in_slowly_and_stays_nearly_the_same() -> No
     assert ratio[0] < 0.4 * ratio[12]
     assert (np.diff(ratio) > 0).all()
     assert ratio[-1] < 1.1 * ratio[12]
+    assert ratio[-1] > 1.03 * ratio[24]  # a little faster at the outlet than in the middle
+
+
+@pytest.mark.parametrize("droop", [1.0, -1.2])
+def test_a_wake_leaves_no_steeper_than_the_axis_can_follow(droop: float) -> None:
+    sides = np.array([[np.cos(turn), np.sin(turn)] for turn in (droop - 0.1, droop + 0.1)])
+    edge = np.array([1.0, 0.0])
+    wall = np.array([edge, edge - sides[0], [-1.0, 0.0], edge - sides[1], edge])
+    wake = Wake.behind(wall, np.array([1.0, 0.0]), 1.0, 10.0)
+    assert np.degrees(np.arctan(wake.slope)) == pytest.approx(np.sign(droop) * 34.0, abs=1e-9)
 
 
 def test_a_turned_airfoil_keeps_a_level_wake_a_steep_one_follows_its_chord() -> None:
