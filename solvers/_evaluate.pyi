@@ -10,9 +10,10 @@ def evaluate_all(
     coarse: Floats,
     sides: tuple[Floats, ...],
     fine: tuple[Placed, Placed],
-    thin: tuple[Placed, Placed],
     opened: Floats,
     near: float,
     far: float,
+    reach: float,
     nodes: Floats,
+    straight: NDArray[np.uint8] | None = None,
 ) -> None: ...

@@ -1,27 +1,23 @@
 """What a spline leaves out near acute corners, so that it does not fold the thin cells there.
 
-Between the walls of an acute corner cells are much thinner than long, and the difference from transfinite
-interpolation turns within a cell or two of the walls. A cubic through it swings by more than the thickness of
-a cell; straight lines between coarse nodes do not. So a share of the second derivatives is taken out: all of
-them at the corner itself, less with the distance from it and the wider it opens. With L the matrices of
-linear interpolation, C those of what second derivatives B add between, and K the share left at each node::
+Between the walls of an acute corner cells are much thinner than long, and lines turn within a cell or two of
+the walls. A cubic through their nodes swings by more than the thickness of a cell; straight lines between
+coarse nodes do not. So a share of the second derivatives is taken out: all of them at the corner itself, less
+with the distance from it and the wider it opens. With L the matrices of linear interpolation, C those of what
+second derivatives B add between, and K the share left at each node::
 
-    L D Lᵀ + C (K∘B D) Lᵀ + L (K∘D Bᵀ) Cᵀ + C (K∘B D Bᵀ) Cᵀ
+    L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
 from geometry.arrays import Floats
-from solvers.spline import places, times
-
-Splined = tuple[Floats, Floats]
-"""A field at coarse nodes and its second derivatives along xi."""
+from solvers.spline import places
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
 """Angles of a corner up to which all is taken out, and from which nothing is."""
@@ -44,50 +40,6 @@ def openings(z: Any, xp: Any) -> Any:
     up = xp.stack([west_east[..., 1], west_east[..., -2]], -1) - corner
     angle = xp.abs(xp.angle(along * up.conj()))
     return xp.clip((WIDE - angle) / (WIDE - ACUTE), 0.0, 1.0)
-
-
-def taken_out(at_corners: Floats, m: int, n: int) -> Floats:
-    """Return the share (.., m, n) of second derivatives to take out at coarse nodes, from `openings`."""
-    flat = at_corners.reshape(*at_corners.shape[:-2], 4, 1, 1)
-    return np.asarray((flat * fading(m, n)).max(axis=-3))
-
-
-def take_out(values: Floats, second: Floats, coarse: Splined, opened: Floats, bends: Floats) -> None:
-    """Take the share out of splines along eta of `coarse`, in place.
-
-    Parameters
-    ----------
-    values, second : (batch, 2, m, count), splines of differences and of their second derivatives along xi.
-    coarse : both at the coarse nodes, (batch, 2, m, n) each.
-    opened : (batch, 2, 2), from `openings`.
-    bends : (n, n), takes values along eta to the second derivatives of the splines.
-    """
-    (m, n), count = coarse[0].shape[-2:], values.shape[-1]
-    share = taken_out(opened, m, n)[:, None]
-    straight, curved = linear(n, count).T, cubic(n, count).T
-    for rows, columns, places_ in _blocks(m, n, count):
-        some = np.flatnonzero(share[:, 0, rows, columns].any(axis=(1, 2)))
-        if len(some) == 0:
-            continue
-        part = share[some, :, rows, columns]
-        near = [
-            (field[some, :, rows, columns], times(field[some, :, rows], bends[columns].T)) for field in coarse
-        ]
-        flat, bent = straight[columns, places_], curved[columns, places_]
-        values[some, :, rows, places_] -= times(part * near[0][1], bent)
-        second[some, :, rows, places_] -= times(part * near[1][0], flat) + times(part * near[1][1], bent)
-
-
-def _blocks(m: int, n: int, count: int) -> Iterator[tuple[slice, slice, slice]]:
-    """Yield rows, columns and fine columns of the blocks around corners; all where those would touch."""
-    reach = int(FAR)
-    if min(m, n) <= 2 * reach + 1:
-        yield slice(m), slice(n), slice(count)
-        return
-    fine = int(np.ceil(reach * (count - 1) / (n - 1))) + 1
-    for rows in (slice(reach), slice(m - reach, m)):
-        yield rows, slice(reach + 1), slice(fine)
-        yield rows, slice(n - reach - 1, n), slice(count - fine, count)
 
 
 @lru_cache(maxsize=16)

@@ -1,14 +1,9 @@
 """A grid of any resolution from a small one: solve with few nodes, then evaluate at many.
 
-A smooth grid differs from the transfinite interpolation of its edges by something smooth, which a few nodes
-describe. So the boundary is thinned to the coarse counts, a solver works there, and ::
-
-    x = TFI + S (x_c - TFI_c) Tᵀ
-
-with S and T the matrices of cubic splines along xi and eta (`solvers.spline`), which may turn at the lines
-that leave kinks of the boundary and are less curved near acute corners (`solvers.acute`). Around a body lines
-keep their own course instead (`solvers.coarse_around`). Thinned edges are taken between the given nodes at
-equal steps of their index, so that both interpolations agree at the coarse nodes.
+A few nodes describe a smooth grid. So the boundary is thinned to the coarse counts, a solver works there, and
+splines through its nodes are evaluated inside the full edges (`solvers.evaluation`). Around a body lines keep
+their own course instead (`solvers.coarse_around`). Thinned edges are taken between the given nodes at equal
+steps of their index.
 """
 
 from __future__ import annotations
@@ -19,18 +14,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology, as_planar, distinct, planar_nodes
+from geometry.arrays import Floats, Topology, as_planar, planar_nodes
 from geometry.boundary import Boundary
 from geometry.corners import Indices
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import angles, count_folded
-from solvers import acute
-from solvers._combine import add_rows
+from solvers import acute, evaluation
 from solvers.coarse_around import evaluate_around
 from solvers.solution import Solution
-from solvers.spline import Kinks, bending, between, kinked_matrix, kinks, places
-from solvers.tfi import Four, interpolate, parameters
+from solvers.spline import between
 
 LEAST = 9
 """Fewest coarse nodes along a direction that describe anything."""
@@ -103,31 +96,10 @@ def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside `boundary` from a grid (m, n, 2) inside its thinned edges."""
     if boundary.topology == "o":
         return evaluate_around(coarse, boundary)
-    fine = (boundary.south, boundary.north, boundary.west, boundary.east)
-    along = parameters(fine, "arclength")
-    m, n = coarse.shape[:2]
-    base = planar_nodes(m, n)
-    edges: Four = (coarse[:, 0], coarse[:, -1], coarse[0], coarse[-1])
-    south, north, west, east = (between(law, k) for law, k in zip(along, (m, m, n, n), strict=True))
-    interpolate(base[..., 0], base[..., 1], edges, (south, north, west, east))
-    nodes = planar_nodes(boundary.ni, boundary.nj)
-    interpolate(nodes[..., 0], nodes[..., 1], fine, along)
-    first, weights = places(m, boundary.ni)
-    xi, eta = _kinks(boundary, 0, m), _kinks(boundary, 1, n)
-    across = np.ascontiguousarray(kinked_matrix(n, boundary.nj, eta).T)
-    planes = np.moveaxis(coarse, -1, 0)
-    difference = planes - np.moveaxis(base, -1, 0)
-    values = difference @ across
-    opened = acute.openings(planes[0] + 1j * planes[1], np)
-    bends = xi.bends @ values
-    if opened.any():
-        both = difference[None], (xi.bends @ difference)[None]
-        acute.take_out(values[None], bends[None], both, opened[None], eta.bends)
-    for c in (0, 1):
-        add_rows(nodes[..., c], first, weights, values[c], bends[c], False)
-        for rows, ramp, jump in zip(xi.rows, xi.ramps, xi.jumps, strict=True):
-            nodes[rows, 1:-1, c] += np.outer(ramp, jump @ values[c, :, 1:-1])
-    return nodes
+    names = ("south", "north", "west", "east")
+    south, north, west, east = (np.ascontiguousarray(getattr(boundary, side).T)[None] for side in names)
+    planes = np.ascontiguousarray(np.moveaxis(coarse, -1, 0))[None]
+    return np.moveaxis(evaluation.evaluate(planes, (south, north, west, east))[0], 0, -1)
 
 
 def divided(coarse: Floats, boundary: Boundary) -> Floats:
@@ -143,18 +115,6 @@ def divided(coarse: Floats, boundary: Boundary) -> Floats:
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     nodes[0], nodes[-1] = boundary.west, boundary.east
     return nodes
-
-
-def _kinks(boundary: Boundary, axis: int, m: int) -> Kinks:
-    """Return how the lines along `axis` bend and turn that have m coarse nodes.
-
-    A kink of an edge reaches inside along the line that leaves it.
-    """
-    n = (boundary.ni, boundary.nj)[axis]
-    if m < 5:
-        return Kinks(bending(m, False), np.empty((0, m)), (), ())
-    sides = (("south", "north"), ("west", "east"))[axis]
-    return kinks(m, n, distinct(np.concatenate([boundary.corners[side] for side in sides])))
 
 
 def sweep_kinks(

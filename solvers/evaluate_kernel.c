@@ -1,16 +1,17 @@
 /* A grid on m x n nodes evaluated inside edges of ni x nj nodes, in one pass over the result.
 
-       x = TFI + L D Lᵀ + C (K∘B D) Lᵀ + L (K∘D Bᵀ) Cᵀ + C (K∘B D Bᵀ) Cᵀ
+       x = L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ + what that misses of the edges, fading inwards
 
-   with D what the grid differs from the interpolation of its own edges by, L and C the weights of values and of
-   second derivatives (`places` of spline.py), B second derivatives of not-a-knot splines, and K the share of them
-   that acute corners leave (acute.py). Rows of the sum along eta are made when the pass reaches them. */
+   with X the nodes, L and C the weights of values and of second derivatives (`places` of spline.py), B second
+   derivatives of not-a-knot splines, and K the share of them that is left (acute.py, evaluation.py). Sums along eta
+   are made row by row when the pass reaches them, what is missed of west and east among them. */
 #include "evaluate_kernel.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "clones.h"
+#include "inwards.h"
 #include "tfi_row.h"
 
 enum { TILE = 16 };
@@ -80,13 +81,14 @@ MESHONET_INLINE void turn(const double *restrict from, ptrdiff_t m, ptrdiff_t n,
                     to[l * m + k] = from[k * n + l];
 }
 
-/* Multiply fields (count, m, n) by what the openings of the corners leave of them. */
-MESHONET_INLINE void leave(const Evaluation *e, const double *opened, double *restrict share, double *fields, int count)
+/* Multiply fields (count, m, n) by what the openings of the corners and straight lines leave of them. */
+MESHONET_INLINE void leave(const Evaluation *e, const Corners *edges, double *restrict share, double *fields, int count)
 {
+    const double *opened = edges->opened;
     const ptrdiff_t size = e->m * e->n, most = (ptrdiff_t)ceil(e->far);
     const ptrdiff_t rows = most < e->m ? most : e->m, columns = most < e->n ? most : e->n;
     for (ptrdiff_t k = 0; k < size; k++)
-        share[k] = 1.0;
+        share[k] = edges->straight != NULL && edges->straight[k] ? 0.0 : 1.0;
     for (int corner = 0; corner < 4; corner++)
         for (ptrdiff_t i = 0; i < rows && opened[corner] > 0.0; i++)
             for (ptrdiff_t j = 0; j < columns; j++) {
@@ -105,49 +107,54 @@ MESHONET_INLINE void spread(const double *f, const double *second, const ptrdiff
                             const double *restrict weights, ptrdiff_t count, double *restrict out)
 {
     const double *restrict w0 = weights, *restrict w1 = w0 + count, *restrict w2 = w1 + count, *restrict w3 = w2 + count;
+    MESHONET_INDEPENDENT
     for (ptrdiff_t j = 0; j < count; j++) {
         const ptrdiff_t k = first[j];
         out[j] = (w0[j] * f[k] + w1[j] * f[k + 1]) + (w2[j] * second[k] + w3[j] * second[k + 1]);
     }
 }
 
-/* The difference D (2, m, n) of a grid from the interpolation of its edges by the laws of the full ones. */
-MESHONET_INLINE void differ(const Evaluation *e, const double *coarse, const TfiEdges *full, double *room, double *d)
+/* out, at a range of places, = what `spread` makes of values alone. */
+MESHONET_INLINE void spread_line(const double *f, const ptrdiff_t *restrict first, const double *restrict weights,
+                                 ptrdiff_t count, Range range, double *restrict out)
 {
-    const ptrdiff_t m = e->m, n = e->n, size = m * n;
-    double *laws = room, *rim = room + 2 * (m + n);
-    const TfiEdges along = {laws, laws + m, laws + 2 * m, laws + 2 * m + n};
-    thinned(full->south, &e->thin[0], m, laws);
-    thinned(full->north, &e->thin[0], m, laws + m);
-    thinned(full->west, &e->thin[1], n, laws + 2 * m);
-    thinned(full->east, &e->thin[1], n, laws + 2 * m + n);
-    TfiEdges edges[2];
-    for (int c = 0; c < 2; c++, rim += 2 * m) {
-        const double *z = coarse + c * size;
-        for (ptrdiff_t i = 0; i < m; i++)
-            rim[i] = z[i * n], rim[m + i] = z[i * n + n - 1];
-        edges[c] = (TfiEdges){rim, rim + m, z, z + size - n};
-    }
-    for (int c = 0; c < 2; c++) {
-        memset(d + c * size, 0, (size_t)n * sizeof *d);
-        memset(d + (c + 1) * size - n, 0, (size_t)n * sizeof *d);
-    }
-    for (ptrdiff_t i = 1; i < m - 1; i++) {
-        fill_row(d + i * n, d + size + i * n, i, m, n, &edges[0], &edges[1], &along);
-        for (int c = 0; c < 2; c++)
-            for (ptrdiff_t k = c * size + i * n, j = 0; j < n; j++, k++)
-                d[k] = coarse[k] - d[k];
-    }
+    const double *restrict w0 = weights, *restrict w1 = w0 + count;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = range.from; j < range.to; j++)
+        out[j] = w0[j] * f[first[j]] + w1[j] * f[first[j] + 1];
 }
 
-/* x row i += the two rows of values and of second derivatives around it. */
-MESHONET_INLINE void add(double *restrict x, const double *w, const double *restrict v0, const double *restrict v1,
-                         ptrdiff_t nj)
+/* x row = the two rows of values and of second derivatives around it. */
+MESHONET_INLINE void combine(double *restrict x, const double *w, const double *restrict v0, const double *restrict v1,
+                             ptrdiff_t nj)
 {
     const double w0 = w[0], w1 = w[1], w2 = w[2], w3 = w[3];
     const double *restrict m0 = v0 + nj, *restrict m1 = v1 + nj;
-    for (ptrdiff_t j = 1; j < nj - 1; j++)
-        x[j] += (w0 * v0[j] + w1 * v1[j]) + (w2 * m0[j] + w3 * m1[j]);
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < nj; j++)
+        x[j] = (w0 * v0[j] + w1 * v1[j]) + (w2 * m0[j] + w3 * m1[j]);
+}
+
+/* Rows of values += shares of what is missed (2, nj) of an edge along them; those of y stand two rows after x. */
+MESHONET_INLINE void add_share(const double *share, const ptrdiff_t *restrict first, const double *restrict weights,
+                               ptrdiff_t nj, const double *restrict missed, double *restrict rows)
+{
+    const double *restrict w0 = weights, *restrict w1 = w0 + nj;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < nj; j++) {
+        const double felt_here = w0[j] * share[first[j]] + w1[j] * share[first[j] + 1];
+        rows[j] += felt_here * missed[j], rows[2 * nj + j] += felt_here * missed[nj + j];
+    }
+}
+
+/* Rows x and y += what is missed at one end of them times what is felt of it, between two rows of that. */
+MESHONET_INLINE void reach_in(double *restrict x, double *restrict y, double dx, double dy, const double *w,
+                              const double *restrict low, const double *restrict high, Range range)
+{
+    const double x0 = dx * w[0], x1 = dx * w[1], y0 = dy * w[0], y1 = dy * w[1];
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = range.from; j < range.to; j++)
+        x[j] += x0 * low[j] + x1 * high[j], y[j] += y0 * low[j] + y1 * high[j];
 }
 
 MESHONET_CLONES
@@ -182,62 +189,103 @@ void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, 
 ptrdiff_t evaluate_scratch(const Evaluation *e)
 {
     const ptrdiff_t size = e->m * e->n, most = e->m > e->n ? e->m : e->n;
-    return 2 * (e->ni + e->nj) + 2 * (e->m + e->n) + 4 * e->m + 12 * e->nj + 10 * size + most;
+    return 20 * e->nj + 14 * size + most;
+}
+
+/* What a row of the result is made of, and room for it. */
+typedef struct {
+    double *weights; /* four runs (nj) of the places along eta */
+    double *rows;    /* two coarse rows along eta: values of x, second derivatives, the same of y, (4, nj) each */
+    double *ends;    /* what is felt of south and north on these, (2, nj) each */
+    double *missed;  /* of west and east (2, 2, nj) */
+    double *bends;   /* second derivatives along xi, eta and both, of x, then of y, (6, m, n) */
+    double *tables;  /* of inwards.h (4, m, n) */
+    Range ranges[2][2];
+} Parts;
+
+/* Second derivatives, how far edges are felt, and what is missed of west and east. */
+MESHONET_INLINE void prepare(const Evaluation *e, const double *coarse, const Corners *edges, Parts *p, double *spare)
+{
+    const ptrdiff_t m = e->m, n = e->n, nj = e->nj, size = m * n;
+    double *share = spare + 2 * size;
+    for (ptrdiff_t j = 0; j < nj; j++)
+        for (int k = 0; k < 4; k++)
+            p->weights[k * nj + j] = e->fine[1].weights[4 * j + k];
+    for (int c = 0; c < 2; c++) {
+        double *xi = p->bends + 3 * c * size, *eta = xi + size;
+        turn(coarse + c * size, m, n, spare);
+        bend(spare, n, m, share, spare + size);
+        turn(spare + size, n, m, eta);
+        bend(coarse + c * size, m, n, share, xi);
+        bend(eta, m, n, share, eta + size);
+    }
+    const double *opened = edges->opened;
+    if (opened[0] + opened[1] + opened[2] + opened[3] > 0.0 || edges->straight != NULL)
+        leave(e, edges, spare, p->bends, 6);
+    inwards(coarse, m, n, e->reach, spare, p->tables);
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < 2; c++) {
+            const ptrdiff_t row = side ? size - n : 0;
+            const double *given = (side ? edges->east : edges->west) + c * nj;
+            double *to = p->missed + (2 * side + c) * nj;
+            spread(coarse + c * size + row, p->bends + (3 * c + 1) * size + row, e->fine[1].first, p->weights, nj, to);
+            for (ptrdiff_t j = 0; j < nj; j++)
+                to[j] = given[j] - to[j];
+        }
+}
+
+/* Put coarse row k, at places along eta, into one half of `rows` and `ends`. */
+MESHONET_INLINE void hold(const Evaluation *e, const double *coarse, Parts *p, ptrdiff_t k)
+{
+    const ptrdiff_t n = e->n, nj = e->nj, size = e->m * n, half = k & 1, *columns = e->fine[1].first;
+    for (int c = 0; c < 2; c++) {
+        const double *xi = p->bends + 3 * c * size + k * n, *eta = xi + size;
+        double *to = p->rows + (4 * half + 2 * c) * nj;
+        spread(coarse + c * size + k * n, eta, columns, p->weights, nj, to);
+        spread(xi, eta + size, columns, p->weights, nj, to + nj);
+    }
+    for (int side = 0; side < 2; side++) {
+        const double *along = p->tables + side * size + k * n, *across = along + 2 * size;
+        double *to = p->ends + (2 * half + side) * nj;
+        p->ranges[half][side] = felt(along, n, nj, side);
+        memset(to, 0, (size_t)nj * sizeof *to);
+        spread_line(along, columns, p->weights, nj, p->ranges[half][side], to);
+        double any = 0.0;
+        for (ptrdiff_t j = 0; j < n; j++)
+            any += across[j];
+        if (any > 0.0)
+            add_share(across, columns, p->weights, nj, p->missed + 2 * side * nj, p->rows + 4 * half * nj);
+    }
 }
 
 MESHONET_CLONES
 void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes)
 {
-    const ptrdiff_t m = e->m, n = e->n, ni = e->ni, nj = e->nj, size = m * n;
-    double *laws = scratch, *room = laws + 2 * (ni + nj), *weights = room + 2 * (m + n) + 4 * m;
-    double *rows = weights + 4 * nj, *d = rows + 8 * nj, *spare = d + 8 * size, *share = spare + 2 * size;
-    const TfiEdges along = {laws, laws + ni, laws + 2 * ni, laws + 2 * ni + nj};
-    const TfiEdges ex = {edges->south, edges->north, edges->west, edges->east};
-    const TfiEdges ey = {ex.south + ni, ex.north + ni, ex.west + nj, ex.east + nj};
-    law(ex.south, ey.south, ni, laws);
-    law(ex.north, ey.north, ni, laws + ni);
-    law(ex.west, ey.west, nj, laws + 2 * ni);
-    law(ex.east, ey.east, nj, laws + 2 * ni + nj);
-    differ(e, coarse, &along, room, d);
-    for (ptrdiff_t j = 0; j < nj; j++)
-        for (int k = 0; k < 4; k++)
-            weights[k * nj + j] = e->fine[1].weights[4 * j + k];
-
-    double *bends = d + 2 * size; /* along xi, along eta and both, of x, then of y */
-    for (int c = 0; c < 2; c++) {
-        double *xi = bends + 3 * c * size, *eta = xi + size;
-        turn(d + c * size, m, n, spare);
-        bend(spare, n, m, share, spare + size);
-        turn(spare + size, n, m, eta);
-        bend(d + c * size, m, n, share, xi);
-        bend(eta, m, n, share, eta + size);
-    }
-    const double *opened = edges->opened;
-    if (opened[0] + opened[1] + opened[2] + opened[3] > 0.0)
-        leave(e, opened, spare, bends, 6);
-
-    double *x = nodes, *y = nodes + ni * nj;
-    memcpy(x, ex.west, (size_t)nj * sizeof *x), memcpy(y, ey.west, (size_t)nj * sizeof *y);
-    ptrdiff_t held[2] = {-1, -1}; /* the rows k of the coarse grid that stand in the halves of `rows` */
-    for (ptrdiff_t i = 1; i < ni - 1; i++) {
-        x += nj, y += nj;
+    const ptrdiff_t ni = e->ni, nj = e->nj, size = e->m * e->n;
+    double *bends = scratch + 20 * nj, *x = nodes, *y = nodes + ni * nj;
+    Parts p = {scratch, scratch + 4 * nj, scratch + 12 * nj, scratch + 16 * nj, bends, bends + 6 * size, {{{0, 0}}}};
+    prepare(e, coarse, edges, &p, bends + 10 * size);
+    ptrdiff_t held[2] = {-1, -1}; /* the coarse rows in the halves */
+    for (ptrdiff_t i = 0; i < ni; i++, x += nj, y += nj) {
         const ptrdiff_t first = e->fine[0].first[i];
-        for (ptrdiff_t k = first; k < first + 2; k++) {
-            if (held[k & 1] == k)
-                continue;
-            held[k & 1] = k;
-            for (int c = 0; c < 2; c++) {
-                const double *xi = bends + 3 * c * size + k * n, *eta = xi + size;
-                double *to = rows + (4 * (k & 1) + 2 * c) * nj;
-                spread(d + c * size + k * n, eta, e->fine[1].first, weights, nj, to);
-                spread(xi, eta + size, e->fine[1].first, weights, nj, to + nj);
+        for (ptrdiff_t k = first; k < first + 2; k++)
+            if (held[k & 1] != k) {
+                held[k & 1] = k;
+                hold(e, coarse, &p, k);
             }
-        }
-        fill_row(x, y, i, ni, nj, &ex, &ey, &along);
-        const double *low = rows + 4 * (first & 1) * nj, *high = rows + 4 * (~first & 1) * nj;
-        add(x, e->fine[0].weights + 4 * i, low, high, nj);
-        add(y, e->fine[0].weights + 4 * i, low + 2 * nj, high + 2 * nj, nj);
+        const double *w = e->fine[0].weights + 4 * i, *south = edges->south + i, *north = edges->north + i;
+        const int low = (int)(first & 1), high = 1 - low;
+        combine(x, w, p.rows + 4 * low * nj, p.rows + 4 * high * nj, nj);
+        combine(y, w, p.rows + (4 * low + 2) * nj, p.rows + (4 * high + 2) * nj, nj);
+        const double dx[2] = {south[0] - x[0], north[0] - x[nj - 1]}, dy[2] = {south[ni] - y[0], north[ni] - y[nj - 1]};
+        for (int side = 0; side < 2; side++)
+            reach_in(x, y, dx[side], dy[side], w, p.ends + (2 * low + side) * nj, p.ends + (2 * high + side) * nj,
+                     joined(p.ranges[low][side], p.ranges[high][side]));
+        x[0] = south[0], x[nj - 1] = north[0], y[0] = south[ni], y[nj - 1] = north[ni];
     }
-    x += nj, y += nj;
-    memcpy(x, ex.east, (size_t)nj * sizeof *x), memcpy(y, ey.east, (size_t)nj * sizeof *y);
+    x = nodes, y = nodes + ni * nj;
+    const size_t line = (size_t)nj * sizeof *x;
+    const ptrdiff_t last = (ni - 1) * nj;
+    memcpy(x, edges->west, line), memcpy(y, edges->west + nj, line);
+    memcpy(x + last, edges->east, line), memcpy(y + last, edges->east + nj, line);
 }

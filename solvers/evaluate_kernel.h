@@ -11,17 +11,19 @@ typedef struct {
 } Places;
 
 /* Grids (m, n) and (ni, nj), the places of each axis of the second in the first, and the other way round; shares of
-   second derivatives are taken out up to `near` coarse cells from a corner, none from `far` on. */
+   second derivatives are taken out up to `near` coarse cells from a corner, none from `far` on. What is missed of an
+   edge is felt along `reach` of its steps. */
 typedef struct {
     ptrdiff_t m, n, ni, nj;
     Places fine[2], thin[2];
-    double near, far;
+    double near, far, reach;
 } Evaluation;
 
-/* Edges of one grid, planes (2, ni) and (2, nj), and the share (4) taken out at its corners: those of west first, of
-   each that of south first. */
+/* Edges of one grid, planes (2, ni) and (2, nj); the share (4) taken out at its corners, those of west first, of each
+   that of south first; and the coarse nodes (m, n) around which lines are straight, or NULL. */
 typedef struct {
     const double *south, *north, *west, *east, *opened;
+    const unsigned char *straight;
 } Corners;
 
 /* Fill the planes nodes (2, m, n) by transfinite interpolation of edges with ni and nj nodes, of which `thin` are the

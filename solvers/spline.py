@@ -8,23 +8,16 @@ t the place between them (0 to 1)::
 
 with the third derivative continuous at the second and the last but one knot ("not a knot"), or periodic.
 de Boor, A Practical Guide to Splines (1978), chapter IV.
-
-A table may have kinks at known places, between knots too: then it is a smooth table and ramps ½ ψ |s - p|,
-each with the jump ψ of the slope that leaves fourth differences smallest, and only the smooth table bends.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geometry.arrays import Floats
-
-SEPARATE = 1e-2
-"""Share of the best determined jump that another must reach to count as seen by the knots."""
 
 
 @lru_cache(maxsize=16)
@@ -52,60 +45,6 @@ def bending(m: int, periodic: bool) -> Floats:
     else:
         system[0, :3] = system[-1, -3:] = 1.0, -2.0, 1.0
     return np.asarray(np.linalg.solve(system, difference))
-
-
-@dataclass(frozen=True)
-class Kinks:
-    """How tables at m uniform knots bend and turn that have kinks, for n uniform places.
-
-    Parameters
-    ----------
-    bends : (m, m) takes values to the second derivatives of the smooth table.
-    jumps : (k, m) takes values to the jumps of the slope.
-    rows : for each kink the range of places that lie in its interval between knots.
-    ramps : for each kink what a unit jump adds there to linear interpolation, (stop - start,).
-    """
-
-    bends: Floats
-    jumps: Floats
-    rows: tuple[slice, ...]
-    ramps: tuple[Floats, ...]
-
-
-def kinks(m: int, n: int, at: NDArray[np.intp]) -> Kinks:
-    """Return the `Kinks` of tables at m >= 5 uniform knots that have kinks at some of n uniform places.
-
-    Kinks so near to each other that knots do not tell them apart share what they have together.
-    """
-    if len(at) == 0:
-        return Kinks(bending(m, False), np.empty((0, m)), (), ())
-    scale = (m - 1) / (n - 1)
-    knots, places_ = np.arange(float(m)), at * scale
-    ramps = 0.5 * np.abs(knots[:, None] - places_)
-    fourth = np.zeros((m - 4, m))
-    for k, factor in enumerate((1.0, -4.0, 6.0, -4.0, 1.0)):
-        fourth[np.arange(m - 4), np.arange(m - 4) + k] = factor
-    seen = fourth @ ramps
-    near = np.abs(seen).max(axis=1) > 1e-9
-    jumps = _determined(seen[near]) @ fourth[near]
-    bends = bending(m, False) @ (np.eye(m) - ramps @ jumps)
-    rows, added = [], []
-    for place in places_:
-        left = min(int(place), m - 2)
-        start, stop = int(np.ceil(left / scale)), min(int(np.floor((left + 1) / scale)) + 1, n)
-        t = np.arange(start, stop) * scale - left
-        before, after = 0.5 * (place - left), 0.5 * (left + 1 - place)
-        rows.append(slice(start, stop))
-        added.append(0.5 * np.abs(t + left - place) - (1.0 - t) * before - t * after)
-    return Kinks(np.asarray(bends), np.asarray(jumps), tuple(rows), tuple(added))
-
-
-def _determined(seen: Floats) -> Floats:
-    """Return the pseudo-inverse (k, n) of `seen` (n, k), without what is `SEPARATE` times less seen."""
-    squares, modes = np.linalg.eigh(seen.T @ seen)
-    kept = squares > SEPARATE**2 * squares[-1]
-    modes = modes[:, kept]
-    return np.asarray((modes / squares[kept]) @ modes.T @ seen.T)
 
 
 def between(values: Floats, n: int) -> Floats:
@@ -157,24 +96,7 @@ def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
     >>> np.abs(spline_matrix(5, 9) @ cubes - np.linspace(0, 4, 9) ** 3).max() < 1e-12
     np.True_
     """
-    return _assembled(m, n, bending(m, periodic))
-
-
-def times(tables: Floats, matrix: Floats) -> Floats:
-    """Return `tables` (..., m) times `matrix` (m, n), as one product of two matrices."""
-    return np.asarray((tables.reshape(-1, len(matrix)) @ matrix).reshape(*tables.shape[:-1], -1))
-
-
-def kinked_matrix(m: int, n: int, kinked: Kinks) -> Floats:
-    """Return `spline_matrix` of tables with kinks."""
-    matrix = _assembled(m, n, kinked.bends)
-    for rows, ramp, jump in zip(kinked.rows, kinked.ramps, kinked.jumps, strict=True):
-        matrix[rows] += np.outer(ramp, jump)
-    return matrix
-
-
-def _assembled(m: int, n: int, bends: Floats) -> Floats:
-    """Return the matrix (n, m) of a spline whose second derivatives are `bends` (m, m) of the values."""
+    bends = bending(m, periodic)
     first, weights = places(m, n)
     matrix, rows = np.zeros((n, m)), np.arange(n)
     matrix[rows, first] += weights[:, 0]

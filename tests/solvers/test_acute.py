@@ -1,4 +1,4 @@
-"""Near acute corners the difference is straight between coarse nodes, elsewhere it is a spline."""
+"""Near acute corners lines are straight between coarse nodes, elsewhere they are splines."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,6 @@ from geometry.boundary import Boundary
 from geometry.quality import count_folded
 from solvers import acute
 from solvers.coarse import evaluate, thinned
-from solvers.spline import bending, spline_matrix
 from solvers.tfi import tfi
 from solvers.variational.solve import solve
 
@@ -37,7 +36,8 @@ def kite(degrees: float, n: int) -> Boundary:
 
 def shares(nodes: Floats) -> Floats:
     """Return the shares at the nodes (m, n, 2) of a grid."""
-    return acute.taken_out(acute.openings(nodes[..., 0] + 1j * nodes[..., 1], np), *nodes.shape[:2])
+    opened = acute.openings(nodes[..., 0] + 1j * nodes[..., 1], np).reshape(4, 1, 1)
+    return np.asarray((opened * acute.fading(*nodes.shape[:2])).max(axis=0))
 
 
 @pytest.mark.parametrize(("degrees", "share"), [(20.0, 1.0), (45.0, 0.5), (70.0, None)])
@@ -57,24 +57,6 @@ def test_each_corner_is_looked_at() -> None:
     assert whole.any()
     for turned, expected in ((nodes[::-1], whole[::-1]), (nodes[:, ::-1], whole[:, ::-1])):
         np.testing.assert_allclose(shares(turned), expected, atol=1e-12)
-
-
-@pytest.mark.parametrize(("m", "n", "count"), [(33, 33, 65), (33, 33, 200), (65, 25, 31), (12, 9, 17)])
-def test_splines_keep_the_share_that_is_left(m: int, n: int, count: int) -> None:
-    rng = np.random.default_rng(0)
-    difference, opened = rng.normal(size=(3, 2, m, n)), rng.random((3, 2, 2)) * [[[0]], [[1]], [[1]]]
-    opened[2, 0] = 0.0
-    along, across = bending(m, False), bending(n, False)
-    off = np.minimum(np.abs(np.linspace(0, n - 1, count) - np.arange(n)[:, None]), 1.0)
-    straight, curved = 1.0 - off, -off * (1.0 - off) * (2.0 - off) / 6.0
-    second = along @ difference
-    left = 1.0 - acute.taken_out(opened, m, n)[:, None]
-    values, bends = (field @ spline_matrix(n, count).T for field in (difference, second))
-    acute.take_out(values, bends, (difference, second), opened, across)
-    expected = difference @ straight + (left * (difference @ across.T)) @ curved
-    np.testing.assert_allclose(values, expected, atol=1e-10)
-    expected = (left * second) @ straight + (left * (second @ across.T)) @ curved
-    np.testing.assert_allclose(bends, expected, atol=1e-10)
 
 
 def test_wide_corners_are_left_to_the_spline() -> None:

@@ -8,14 +8,12 @@ from scipy.interpolate import RectBivariateSpline
 from solver_shapes import arch, bump, folded, hexagon, hole, naca, quad, seamount, wrench
 
 from geometry.boundary import Boundary
-from geometry.corners import find_corners
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import measure
 from solvers.coarse import divided, evaluate, solve_coarse, thinned
 from solvers.elliptic.solve import solve
 from solvers.solution import Solution
-from solvers.tfi import tfi
 from solvers.variational.solve import solve as variational
 
 
@@ -57,18 +55,15 @@ def test_it_is_near_the_full_solve_and_nearer_from_more_nodes(make, from_33, fro
     assert errors[1] < 0.6 * errors[0]
 
 
-def test_without_kinks_it_is_the_spline_of_the_difference() -> None:
+def test_away_from_edges_it_is_the_spline_of_the_nodes() -> None:
     """The formula by scipy, on counts that thin exactly."""
     boundary = arch(97, 65)
-    coarse = thinned(boundary, 33, 17)
-    solved = solve(coarse).grid.nodes
-    exact = tfi(boundary).nodes
-    difference = solved - exact[::3, ::4]
+    solved = solve(thinned(boundary, 33, 17)).grid.nodes
     ends = [np.linspace(0, 1, n) for n in (33, 17, 97, 65)]
-    expected = exact + np.stack(
-        [RectBivariateSpline(*ends[:2], difference[..., c], s=0)(*ends[2:]) for c in (0, 1)], axis=-1
-    )
-    np.testing.assert_allclose(evaluate(solved, boundary), expected, atol=1e-12)
+    splines = [RectBivariateSpline(*ends[:2], solved[..., c], s=0)(*ends[2:]) for c in (0, 1)]
+    off = np.abs(evaluate(solved, boundary) - np.stack(splines, axis=-1))
+    assert off[15:-15, 20:-20].max() < 1e-12
+    assert 1e-7 < off.max() < 1e-4
 
 
 def test_sweeps_around_kinks_come_nearer_to_the_solution() -> None:
@@ -80,15 +75,18 @@ def test_sweeps_around_kinks_come_nearer_to_the_solution() -> None:
     assert highest[1] < highest[0] + 1 < highest[2]
 
 
-def test_a_line_that_turns_between_coarse_nodes_turns_where_it_did() -> None:
-    """A grid with a kink along a line inside, thinned to counts that miss it, comes back."""
+def test_a_kink_of_an_edge_between_coarse_nodes_is_met_and_forgotten_inside() -> None:
+    """Further from it than two coarse steps nodes are those of the grid without the kink."""
     t = np.linspace(0, 1, 101)
     x, y = np.meshgrid(t, t, indexing="ij")
-    fine = np.stack([x, y + 0.3 * np.abs(x - 0.47) * (1 - y) ** 2 + 0.1 * np.sin(2 * x) * y], axis=-1)
-    boundary = quad(fine[:, 0], fine[:, -1], fine[0], fine[-1])
-    found = evaluate(fine[::4, ::4], boundary)
-    assert find_corners(boundary.south).tolist() == [47]
-    np.testing.assert_allclose(found, fine, atol=2e-6)
+    even = np.stack([x, y], axis=-1)
+    kinked = even.copy()
+    kinked[:, 0, 1] -= 0.02 * np.maximum(0.0, 1.0 - np.abs(100 * t - 50) / 2)
+    boundary = quad(kinked[:, 0], kinked[:, -1], kinked[0], kinked[-1])
+    found = evaluate(even[::4, ::4], boundary)
+    assert found[50, 0, 1] == -0.02
+    assert 0.004 < np.abs(found - even)[50, 4].max() < 0.016
+    np.testing.assert_allclose(found[:, 8:], even[:, 8:], atol=1e-12)
 
 
 def test_no_fewer_nodes_than_asked_for_is_the_method_itself() -> None:
@@ -149,4 +147,4 @@ def test_kinks_of_a_variational_grid_are_relaxed_where_its_largest_angle_gains(
     )
     assert relaxed <= plain
     if shape is wrench:
-        assert relaxed < plain - 3.0
+        assert relaxed < plain - 0.5

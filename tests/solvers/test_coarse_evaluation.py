@@ -1,4 +1,4 @@
-"""A grid on few nodes evaluated on many is the sum of matrices that `solvers.acute` writes down."""
+"""A grid on few nodes evaluated on many is a sum of matrices, and what these miss of the edges near them."""
 
 import numpy as np
 import pytest
@@ -6,8 +6,9 @@ import pytest
 from geometry.arrays import Floats
 from solvers import acute
 from solvers._evaluate import begin_all, evaluate_all
+from solvers.inwards import REACH, inwards
 from solvers.neural.quads.edges import Edges, rims
-from solvers.spline import bending, between, places
+from solvers.spline import bending, places
 
 RNG = np.random.default_rng(5)
 
@@ -35,26 +36,31 @@ def matrices(m: int, count: int) -> tuple[Floats, Floats]:
     ("m", "n", "ni", "nj"),
     [(33, 33, 65, 65), (9, 12, 40, 23), (5, 4, 17, 8), (3, 2, 7, 6), (2, 3, 2, 9), (33, 21, 12, 33)],
 )
-def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int) -> None:
+@pytest.mark.parametrize("straightened", [False, True])
+def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightened: bool) -> None:
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
     coarse = wavy(m, n) + 0.02 * RNG.normal(size=(2, 2, m, n))
     opened = np.array([[[0.7, 0.0], [1.0, 0.2]], [[0.0, 0.0], [0.0, 0.0]]])
+    straight = (RNG.random((2, m, n)) < 0.3).astype(np.uint8) if straightened else None
     nodes = np.empty((2, 2, ni, nj))
-    fine, thin = placed(m, n, ni, nj)
-    evaluate_all(coarse, edges.sides, fine, thin, opened.reshape(2, 4), acute.NEAR, acute.FAR, nodes)
+    fine, _ = placed(m, n, ni, nj)
+    near = acute.NEAR, acute.FAR, REACH
+    evaluate_all(coarse, edges.sides, fine, opened.reshape(2, 4), *near, nodes, straight)
 
-    south, north, west, east = edges.laws()
-    laws = between(south, m), between(north, m), between(west, n), between(east, n)
-    rim = Edges(*(np.ascontiguousarray(side) for side in rims(coarse)))
-    d = coarse - rim.interpolated(laws)
-    left = 1.0 - acute.taken_out(opened, m, n)[:, None]
+    left = 1.0 - (opened.reshape(2, 4, 1, 1) * acute.fading(m, n)).max(axis=1)
+    left = (left * (1.0 if straight is None else 1 - straight))[:, None]
     (low, high), (line, curve) = matrices(m, ni), matrices(n, nj)
     along, across = bending(m, False), bending(n, False).T
-    values = d @ line.T + (left * (d @ across)) @ curve.T
-    bends = (left * (along @ d)) @ line.T + (left * (along @ d @ across)) @ curve.T
-    expected = edges.interpolated(edges.laws())
-    expected[..., 1:-1, 1:-1] += (low @ values + high @ bends)[..., 1:-1, 1:-1]
-    np.testing.assert_allclose(nodes, expected, atol=1e-13)
+    values = coarse @ line.T + (left * (coarse @ across)) @ curve.T
+    bends = (left * (along @ coarse)) @ line.T + (left * (along @ coarse @ across)) @ curve.T
+    expected = low @ values + high @ bends
+    south, north, west, east = ((low @ one @ line.T)[:, None] for one in inwards(coarse, np))
+    missed = [side - own for side, own in zip(edges.sides[2:], rims(expected)[2:], strict=True)]
+    expected += west * missed[0][:, :, None] + east * missed[1][:, :, None]
+    missed = [side - own for side, own in zip(edges.sides[:2], rims(expected)[:2], strict=True)]
+    expected += south * missed[0][..., None] + north * missed[1][..., None]
+    inner = (..., slice(1, -1), slice(1, -1))
+    np.testing.assert_allclose(nodes[inner], expected[inner], atol=1e-13)
     for side, given in zip(rims(nodes), edges.sides, strict=True):
         assert np.array_equal(side, given)
 
@@ -72,12 +78,13 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(9, 7))))
     fine, thin = placed(5, 5, 9, 7)
     coarse, opened, nodes = wavy(5, 5), np.zeros((2, 4)), np.empty((2, 2, 9, 7))
-    near = acute.NEAR, acute.FAR
+    near, straight = (acute.NEAR, acute.FAR, REACH), np.zeros((2, 5, 4), np.uint8)
     for given, told in (
-        ((coarse[:1], edges.sides, fine, thin, opened, *near, nodes), "another number of grids"),
-        ((coarse, edges[:1].sides, fine, thin, opened, *near, nodes), "edges of shape"),
-        ((coarse, edges.sides, fine[::-1], thin, opened, *near, nodes), "another number of nodes"),
-        ((coarse, edges.sides, placed(8, 8, 9, 7)[0], thin, opened, *near, nodes), "beyond the knots"),
+        ((coarse[:1], edges.sides, fine, opened, *near, nodes), "another number of grids"),
+        ((coarse, edges[:1].sides, fine, opened, *near, nodes), "edges of shape"),
+        ((coarse, edges.sides, fine[::-1], opened, *near, nodes), "another number of nodes"),
+        ((coarse, edges.sides, placed(8, 8, 9, 7)[0], opened, *near, nodes), "beyond the knots"),
+        ((coarse, edges.sides, fine, opened, *near, nodes, straight), "straight lines of another number"),
     ):
         with pytest.raises(ValueError, match=told):
             evaluate_all(*given)

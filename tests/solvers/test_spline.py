@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from solvers.spline import bending, kinked_matrix, kinks, places, spline_matrix
+from solvers.spline import bending, places, spline_matrix
 
 
 @pytest.mark.parametrize("periodic", [False, True])
@@ -36,28 +36,3 @@ def test_the_weights_of_values_and_bends_make_the_matrix() -> None:
     bends = bending(9, False) @ values
     rows = np.stack([values[first], values[first + 1], bends[first], bends[first + 1]], axis=1)
     np.testing.assert_allclose((weights * rows).sum(axis=1), spline_matrix(9, 40) @ values, atol=1e-14)
-
-
-@pytest.mark.parametrize("at", [[37], [12, 61], [3], [40]])
-def test_tables_with_kinks_between_knots_are_followed(at: list[int]) -> None:
-    x = np.linspace(0, 1, 101)
-    values = x**3 - x + sum(0.3 * np.abs(x - x[k]) for k in at)
-    matrix = kinked_matrix(21, 101, kinks(21, 101, np.array(at)))
-    np.testing.assert_allclose(matrix @ values[::5], values, atol=1e-12)
-
-
-def test_a_smooth_table_has_no_kink_to_follow() -> None:
-    x = np.linspace(0, 1, 101)
-    matrix = kinked_matrix(21, 101, kinks(21, 101, np.array([37])))
-    plain, turned = (
-        np.abs(m @ np.sin(3 * x[::5]) - np.sin(3 * x)).max() for m in (spline_matrix(21, 101), matrix)
-    )
-    assert turned < 2 * plain
-
-
-def test_two_kinks_between_the_same_knots_share_their_jump() -> None:
-    x = np.linspace(0, 1, 101)
-    values = np.abs(x - x[52]) + np.abs(x - x[53])
-    found = kinked_matrix(21, 101, kinks(21, 101, np.array([52, 53]))) @ values[::5]
-    assert np.abs(found - values).max() < 0.012
-    assert np.abs(found - values)[np.abs(x - x[52]) > 0.1].max() < 1e-3

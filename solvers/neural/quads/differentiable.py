@@ -5,24 +5,21 @@ The arithmetic of `solvers.neural.quads.operator` once more, on tensors; without
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any
 
-import numpy as np
 import torch
 from torch import Tensor
 
 from geometry.errors import InputError
-from solvers import acute
 from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.approach import AFTER, approach, nodes_after
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
+from solvers.neural.quads.evaluated import between, evaluated
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, load_quads
 from solvers.neural.tensors import check_sides
 from solvers.neural.weights import model_path
-from solvers.spline import bending
 
 Sides = tuple[Tensor, Tensor, Tensor, Tensor]
 """South, north (batch, 2, ni), west and east (batch, 2, nj)."""
@@ -75,7 +72,7 @@ class QuadGrids:
         coarse = self._coarse(sides)
         if self._head == WINSLOW:
             coarse = _nearer(coarse, sides)
-        return _within(sides, coarse).movedim(1, -1)
+        return evaluated(coarse, sides).movedim(1, -1)
 
     def _coarse(self, sides: Sides) -> Tensor:
         thin = tuple(between(side, LATENT) for side in sides)
@@ -90,7 +87,7 @@ class QuadGrids:
 
 def _nearer(coarse: Tensor, sides: Sides) -> Tensor:
     """Return grids `coarse` on more nodes, nearer to Winslow's."""
-    planes = _within(tuple(between(side, nodes_after(side.shape[-1])) for side in sides), coarse)
+    planes = evaluated(coarse, tuple(between(side, nodes_after(side.shape[-1])) for side in sides))
     z = torch.complex(planes[:, 0], planes[:, 1])
     middle, factor = (value[:, None, None] for value in frame(z, torch))
     z = (z - middle) * factor
@@ -100,32 +97,6 @@ def _nearer(coarse: Tensor, sides: Sides) -> Tensor:
 
 def _moved(planes: Tensor, by: Tensor) -> Tensor:
     return planes + torch.stack([by.real, by.imag], 1)
-
-
-def _within(sides: Any, coarse: Tensor) -> Tensor:
-    """Return the planes inside `sides` of grids `coarse` (batch, 2, m, n)."""
-    laws = _laws(sides)
-    rims = _rims(coarse)
-    thin_laws = tuple(between(law, rim.shape[-1]) for law, rim in zip(laws, rims, strict=True))
-    difference = coarse - interpolated(rims, thin_laws)
-    fine = _evaluated(difference, coarse, sides[0].shape[-1], sides[2].shape[-1])
-    return interpolated(sides, laws) + _without_rim(fine)
-
-
-def _evaluated(difference: Tensor, coarse: Tensor, ni: int, nj: int) -> Tensor:
-    """Return the splines of `difference` (batch, 2, m, n) at ni x nj places, as `solvers.acute`."""
-    m, n = coarse.shape[2:]
-    opened = acute.openings(torch.complex(coarse[:, 0], coarse[:, 1]), torch).reshape(-1, 4, 1, 1)
-    kept = 1.0 - (opened * matrix(acute.fading, m, n, coarse)).amax(1, keepdim=True)
-    along, across = (
-        torch.as_tensor(bending(k, False), dtype=coarse.dtype, device=coarse.device) for k in (m, n)
-    )
-    (low, high), (line, curve) = (
-        [matrix(make, *counts, coarse) for make in (hats, acute.cubic)] for counts in ((m, ni), (n, nj))
-    )
-    second = along @ difference
-    values = difference @ line.mT + (kept * (difference @ across.mT)) @ curve.mT
-    return low @ values + high @ ((kept * second) @ line.mT + (kept * (second @ across.mT)) @ curve.mT)
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:
@@ -163,30 +134,3 @@ def _laws(sides: Any) -> tuple[Tensor, ...]:
 def _planes(*edges: Tensor) -> Sides:
     south, north, west, east = (edge.movedim(-1, 1) for edge in edges)
     return south, north, west, east
-
-
-def _rims(planes: Tensor) -> Sides:
-    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
-
-
-def _without_rim(planes: Tensor) -> Tensor:
-    return torch.nn.functional.pad(planes[..., 1:-1, 1:-1], (1, 1, 1, 1))
-
-
-def between(values: Tensor, n: int) -> Tensor:
-    """Return (..., n), linear between the last axis' `values` (..., m), as `solvers.spline.between`."""
-    m = values.shape[-1]
-    return values if m == n else values @ matrix(hats, m, n, values).mT
-
-
-@lru_cache(maxsize=16)
-def hats(m: int, n: int) -> Any:
-    """Return the matrix (n, m) of linear interpolation from m uniform knots to n uniform places."""
-    at = np.arange(n) * ((m - 1) / (n - 1))
-    at[-1] = m - 1
-    return np.maximum(0.0, 1.0 - np.abs(at[:, None] - np.arange(m)))
-
-
-def matrix(make: Any, m: int, n: int, like: Tensor) -> Tensor:
-    """Return the matrix that `make` makes of m and n, as a tensor `like` another."""
-    return torch.as_tensor(make(m, n), dtype=like.dtype, device=like.device)

@@ -16,8 +16,8 @@ from geometry.errors import InputError
 from solvers.coarse_around import FLAT, SQUARINGS, STEEP
 from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.approach import AFTER, approach
-from solvers.neural.quads.differentiable import between, hats, matrix
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
+from solvers.neural.quads.evaluated import between, hats, matrix
 from solvers.neural.quads.features import features
 from solvers.neural.quads.inside import inside, slope
 from solvers.neural.quads.model import ANSWERS_AROUND, load_quads

@@ -6,11 +6,8 @@
           -> features -> network -> 33 x 33 grid, its rim that of the edges
           -> splines -> grid at the edges' own counts
 
-Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations.
-
-The last step is that of `solvers.coarse`: the difference from transfinite interpolation is smooth, but near
-acute corners (`solvers.acute`), so it is evaluated anywhere and added to the interpolation of the full edges,
-which are met bitwise.
+Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations. The last step is
+`solvers.evaluation`, as in `solvers.coarse`.
 """
 
 from __future__ import annotations
@@ -21,8 +18,8 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
-from solvers import acute
-from solvers._evaluate import begin_all, evaluate_all
+from solvers import evaluation
+from solvers._evaluate import begin_all
 from solvers.neural.quads._frame import add, put_back, take_out
 from solvers.neural.quads._network import look
 from solvers.neural.quads.approach import AFTER, nodes_after, step_all
@@ -35,9 +32,6 @@ from solvers.spline import places
 
 BATCH = 64
 """Domains in memory at a time at the most."""
-
-CORNERS = [0, 1, -2, -1]
-"""Rows and columns of a grid that tell how wide its corners open."""
 
 
 def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float64") -> Floats:
@@ -100,13 +94,7 @@ def _unit(planes: Floats) -> tuple[Floats, Floats]:
 
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
-    (m, n), (ni, nj) = coarse.shape[2:], edges.counts
-    corners = coarse[:, :, CORNERS][..., CORNERS]
-    opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
-    nodes = np.empty((len(edges), 2, ni, nj))
-    fine, thin = (places(m, ni), places(n, nj)), (places(ni, m), places(nj, n))
-    evaluate_all(coarse, edges.sides, fine, thin, opened, acute.NEAR, acute.FAR, nodes)
-    return nodes
+    return evaluation.evaluate(coarse, edges.sides)
 
 
 def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:

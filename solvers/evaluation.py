@@ -1,0 +1,94 @@
+"""Four-sided grids on few nodes evaluated at many: splines, with edges that are met bitwise.
+
+With X the planes of a grid's nodes::
+
+    x = S X Tᵀ + shares * (edges - S X Tᵀ there)
+
+S and T are cubic splines, less curved near acute corners (`solvers.acute`); what they miss of the edges is
+felt near these (`solvers.inwards`). A cubic swings between nodes, and where spacings differ much that may
+fold cells although the coarse ones are valid. Then lines are made straight around these, as far as it takes:
+cells inside a valid coarse cell are valid between straight lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry.arrays import Floats
+from geometry.quality import count_folded, folded_cells
+from solvers import acute
+from solvers._evaluate import evaluate_all
+from solvers.inwards import REACH
+from solvers.spline import places
+
+Sides = tuple[Floats, Floats, Floats, Floats]
+"""Planes of south and north (batch, 2, ni), west and east (batch, 2, nj)."""
+
+Straight = NDArray[np.uint8]
+
+CORNERS = [0, 1, -2, -1]
+"""Rows and columns of a grid that tell how wide its corners open."""
+
+WIDER = (0, 1, 3)
+"""Coarse cells beyond those with folds whose lines become straight, one try after another; at last all do."""
+
+
+def evaluate(coarse: Floats, sides: Sides) -> Floats:
+    """Return the planes (batch, 2, ni, nj) inside the `sides` of grids `coarse` (batch, 2, m, n)."""
+    nodes = _evaluated(coarse, sides, None)
+    for k, one in enumerate(nodes):
+        if count_folded(one.transpose(1, 2, 0)):
+            mended(coarse[k], tuple(side[k] for side in sides), one)
+    return nodes
+
+
+def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
+    """Evaluate a valid grid `coarse` (2, m, n) again, in place, whose planes `nodes` (2, ni, nj) are folded.
+
+    Returns
+    -------
+    numpy.ndarray
+        (m, n), 1 at coarse nodes around which lines became straight; None where that is of no use.
+    """
+    if count_folded(coarse.transpose(1, 2, 0)):
+        return None
+    south, north, west, east = (side[None] for side in sides)
+    best = None
+    left = count_folded(nodes.transpose(1, 2, 0))
+    for straight in _straighter(coarse.shape[1:], nodes):
+        tried = _evaluated(coarse[None], (south, north, west, east), straight[None])[0]
+        folded = count_folded(tried.transpose(1, 2, 0))
+        if folded < left:
+            nodes[:], best, left = tried, straight, folded
+        if left == 0:
+            break
+    return best
+
+
+def _straighter(shape: tuple[int, ...], nodes: Floats) -> Iterator[Straight]:
+    """Yield ever more coarse nodes around the folded cells of planes `nodes` (2, ni, nj)."""
+    straight = np.zeros(shape, np.uint8)
+    for wider in WIDER:
+        first = [
+            cells * (m - 1) // (full - 1)
+            for cells, m, full in zip(
+                folded_cells(nodes.transpose(1, 2, 0)).T, shape, nodes.shape[1:], strict=True
+            )
+        ]
+        for i, j in set(zip(*(row.tolist() for row in first), strict=True)):
+            straight[max(i - wider, 0) : i + wider + 2, max(j - wider, 0) : j + wider + 2] = 1
+        yield straight.copy()
+    yield np.ones(shape, np.uint8)
+
+
+def _evaluated(coarse: Floats, sides: Sides, straight: Straight | None) -> Floats:
+    (m, n), ni, nj = coarse.shape[2:], sides[0].shape[-1], sides[2].shape[-1]
+    corners = coarse[:, :, CORNERS][..., CORNERS]
+    opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
+    nodes = np.empty((len(coarse), 2, ni, nj))
+    fine = places(m, ni), places(n, nj)
+    evaluate_all(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
+    return nodes
