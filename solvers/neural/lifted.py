@@ -6,7 +6,7 @@ root or a logarithm a node lies.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -62,8 +62,10 @@ def lifted(z: Tensor, far: Tensor) -> Lifted:
     InputError
         the body cannot be lifted.
     """
-    wall, outer = _numpy(z), _numpy(far)
-    hand, _ = handedness(wall, outer)
+    given, origin = z, z[0]
+    hand, _ = handedness(_numpy(z), _numpy(far))
+    z, far = z - origin, far - origin
+    wall = _numpy(z)
     known, _, corners = lift_body(wall, swap=hand < 0)
     turn = torch.angle((torch.roll(z, -1) - z) / (z - torch.roll(z, 1)))
     tail = corners == (0,)
@@ -89,7 +91,7 @@ def lifted(z: Tensor, far: Tensor) -> Lifted:
                 pole = _centroid(zeta)
     offset = zeta - pole
     psi, phi = torch.log(torch.abs(offset)), _unwrapped(torch.angle(offset))
-    lift = TorchLift(centre, quarter, tuple(found), pole, phi[0])
+    lift = TorchLift(centre + origin, quarter, tuple(found), pole, phi[0])
     theta = 2.0 * PI * torch.arange(len(z), dtype=psi.dtype, device=z.device) / len(z)
     v = _joukowski(far, centre, quarter)
     for corner in found:
@@ -97,7 +99,8 @@ def lifted(z: Tensor, far: Tensor) -> Lifted:
     above = _unwrapped(torch.angle(v - pole)) - phi[0]
     turns = round(float((above.detach() - (phi - phi[0]).detach()).mean()) / (2.0 * PI))
     away = torch.complex(torch.log(torch.abs(v - pole)), above - 2.0 * PI * turns - theta)
-    return Lifted(lift, known, torch.complex(psi, phi - phi[0] - theta), away, z, corners, hand)
+    known = replace(known, centre=known.centre + complex(origin.detach()))
+    return Lifted(lift, known, torch.complex(psi, phi - phi[0] - theta), away, given, corners, hand)
 
 
 def _slit(z: Tensor, sharp: bool, base: list[int]) -> tuple[Tensor, Tensor]:

@@ -11,6 +11,7 @@ from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.naca import naca
 from geometry.sampling import Sampling
+from geometry.topology import straight
 from solvers.neural.operator import infer
 
 torch = pytest.importorskip("torch")
@@ -49,6 +50,23 @@ def test_a_mirrored_and_a_symmetric_body_are_those_of_numpy_in_one_batch() -> No
     mirrored = found[2:].flip(1) * torch.tensor([1.0, -1.0])
     np.testing.assert_allclose(mirrored, found[:2], rtol=0, atol=2e-11)
     np.testing.assert_allclose(found[0], infer(one, "airfoil-o", 1).grid.nodes, rtol=0, atol=2e-11)
+
+
+@pytest.mark.parametrize("designation", ["2412", "4412-sharp"])
+def test_a_section_far_from_the_origin_has_the_grid_of_the_same_one_near_it(designation: str) -> None:
+    """A thousand chords away its nodes are rounded to 1e-13; the grids differ by little more."""
+    near, away = airfoil(designation, 101, 30), np.array([1e3, -2e3])
+    south, north = near.south + away, near.north + away
+    cut = straight(south[0], north[0], 30)
+    there = Boundary(south, north, cut, cut, topology="o")
+    south, north = south - away, north - away  # rounded alike
+    cut = straight(south[0], north[0], 30)
+    here = infer(Boundary(south, north, cut, cut, topology="o"), "airfoil-o", 1).grid.nodes
+    for found in (
+        infer(there, "airfoil-o", 1).grid.nodes,
+        AirfoilGrids(polish=1)(*walls(there), 30)[0].numpy(),
+    ):
+        np.testing.assert_allclose(found - away, here, rtol=0, atol=1e-11)
 
 
 def test_walls_are_the_given_ones() -> None:
