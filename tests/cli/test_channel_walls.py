@@ -11,6 +11,15 @@ from formats.registry import read_grids
 HEIGHTS = {"south": 1e-4, "north": 2e-3, "west": 5e-3, "east": 1e-3}
 
 
+def refused(meshonet: Meshonet, source: Path, words: tuple[str, ...], told: str) -> None:
+    """Assert that solve-pde tells of `words` in one line and writes nothing."""
+    done = meshonet("solve-pde", source, *words, "-o", "g.vts")
+    assert done.code == 2
+    assert told in done.err
+    assert done.err.count("\n") == 1
+    assert not Path("g.vts").exists()
+
+
 @pytest.mark.parametrize("method", ["auto", "winslow", "variational", "thomas-middlecoff"])
 def test_first_cells_off_any_side_are_as_high_as_asked(
     meshonet: Meshonet, duct_h5: Path, method: str
@@ -97,18 +106,11 @@ def test_steger_sorenson_turns_the_lines_at_walls(meshonet: Meshonet, tmp_path: 
 def test_angles_that_make_no_sense_get_a_line(
     meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str
 ) -> None:
-    done = meshonet("solve-pde", duct_h5, *words, "-o", "g.vts")
-    assert done.code == 2
-    assert told in done.err
-    assert done.err.count("\n") == 1
-    assert not Path("g.vts").exists()
+    refused(meshonet, duct_h5, words, told)
 
 
 def test_no_body_slides(meshonet: Meshonet, body_h5: Path) -> None:
-    done = meshonet("solve-pde", body_h5, "--slide", "-o", "g.vts")
-    assert done.code == 2
-    assert "walls of topology o cannot slide; slide those of channels" in done.err
-    assert not Path("g.vts").exists()
+    refused(meshonet, body_h5, ("--slide",), "walls of topology o cannot slide; slide those of channels")
 
 
 def test_growth_in_a_channel_takes_the_rows_it_needs(meshonet: Meshonet, tmp_path: Path) -> None:
@@ -153,18 +155,12 @@ def test_growth_in_a_channel_takes_the_rows_it_needs(meshonet: Meshonet, tmp_pat
 def test_heights_that_make_no_sense_get_a_line(
     meshonet: Meshonet, duct_h5: Path, words: tuple[str, ...], told: str
 ) -> None:
-    done = meshonet("solve-pde", duct_h5, *words, "-o", "g.vts")
-    assert done.code == 2
-    assert told in done.err
-    assert done.err.count("\n") == 1
-    assert not Path("g.vts").exists()
+    refused(meshonet, duct_h5, words, told)
 
 
 def test_a_body_has_one_wall(meshonet: Meshonet, body_h5: Path) -> None:
-    done = meshonet("solve-pde", body_h5, "--spacing-north", "1e-3", "-o", "g.vts")
-    assert done.code == 2
-    assert "--spacing-north: a height off a single side, around a body (topology o); use" in done.err
-    assert not Path("g.vts").exists()
+    told = "--spacing-north: a height off a single side, around a body (topology o); use"
+    refused(meshonet, body_h5, ("--spacing-north", "1e-3"), told)
 
 
 @pytest.mark.parametrize("lean", [(-14.0, 14.0), (14.0, 14.0)])

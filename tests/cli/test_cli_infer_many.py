@@ -20,6 +20,17 @@ def arches(meshonet: Meshonet) -> Path:
     return Path("arches.h5")
 
 
+@pytest.fixture
+def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many boundaries went into each call of the solver."""
+    counts: list[int] = []
+    monkeypatch.setattr(
+        "solvers.neural.quads.inference.in_batches",
+        lambda boundaries, threads: counts.append(len(boundaries)) or in_batches(boundaries, threads),
+    )
+    return counts
+
+
 @pytest.mark.parametrize("jobs", ["1", "2"])
 def test_a_dataset_has_the_grids_of_its_members_alone(
     meshonet: Meshonet, arches: Path, quad_model: str, jobs: str
@@ -54,13 +65,8 @@ def test_members_of_different_sizes_go_together(meshonet: Meshonet, arches: Path
 
 
 def test_only_members_without_a_file_are_solved(
-    meshonet: Meshonet, arches: Path, quad_model: str, monkeypatch: pytest.MonkeyPatch
+    meshonet: Meshonet, arches: Path, quad_model: str, solved: list[int]
 ) -> None:
-    solved: list[int] = []
-    monkeypatch.setattr(
-        "solvers.neural.quads.inference.in_batches",
-        lambda boundaries, threads: solved.append(len(boundaries)) or in_batches(boundaries, threads),
-    )
     words = ("infer", arches, "--model", quad_model, "-o", "{index}.vts", "--skip-existing")
     meshonet(*words)
     Path("1.vts").unlink()
@@ -70,13 +76,12 @@ def test_only_members_without_a_file_are_solved(
 
 
 def test_large_grids_are_solved_a_few_at_a_time(
-    meshonet: Meshonet, arches: Path, quad_model: str, monkeypatch: pytest.MonkeyPatch
+    meshonet: Meshonet,
+    arches: Path,
+    quad_model: str,
+    solved: list[int],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    solved: list[int] = []
-    monkeypatch.setattr(
-        "solvers.neural.quads.inference.in_batches",
-        lambda boundaries, threads: solved.append(len(boundaries)) or in_batches(boundaries, threads),
-    )
     monkeypatch.setattr("meshonet_cli.together.NODES", 2 * 21 * 17)
     meshonet("infer", arches, "--model", quad_model, "-o", "{index}.vts")
     assert solved == [2, 2, 1]

@@ -33,6 +33,7 @@ def test_order_pairs_what_has_no_names_in_common() -> None:
     assert places(Partners(grids("a", "b", "c")), "x", "b", "a") == [0, 1, 2]
     assert places(Partners(grids("", "", "")), "x", "y") == [0, 1]
     assert places(Partners(grids("same", "same")), "same", "same") == [0, 1]
+    assert places(Partners(grids("same", "same", "b")), "b") == [0]  # such names are nobody's own
     assert places(Partners(grids("a", "b"), "order"), "b", "a") == [0, 1]
 
 

@@ -4,8 +4,21 @@ from __future__ import annotations
 
 import os
 import shutil
+from collections.abc import Iterator
 
 import pytest
+
+
+@pytest.fixture
+def silent_gmsh() -> Iterator[None]:
+    """Gmsh itself, which prints nothing."""
+    import gmsh
+
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    gmsh.option.setNumber("General.AbortOnError", 2)
+    yield
+    gmsh.finalize()
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import gmsh
@@ -15,16 +15,6 @@ from formats.gmsh import write_grids
 from formats.registry import format_named
 from geometry.grid import Grid
 from geometry.parts import Part
-
-
-@pytest.fixture
-def client() -> Iterator[None]:
-    """Gmsh itself, silent."""
-    gmsh.initialize(interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.option.setNumber("General.AbortOnError", 2)
-    yield
-    gmsh.finalize()
 
 
 def groups(dimension: int) -> dict[str, int]:
@@ -49,7 +39,7 @@ VERSIONS = pytest.mark.parametrize("version", ["gmsh", "gmsh-ascii", "gmsh41", "
 
 @VERSIONS
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
-@pytest.mark.usefixtures("client")
+@pytest.mark.usefixtures("silent_gmsh")
 def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], version: str, tmp_path: Path) -> None:
     grid = make()
     writer = format_named(version).write_grids
@@ -68,7 +58,7 @@ def test_gmsh_sees_cells_and_named_boundaries(make: type[Grid], version: str, tm
 
 @VERSIONS
 @pytest.mark.parametrize(("make", "layers"), [(channel, 3), (ring, 1), (c_grid, 1)])
-@pytest.mark.usefixtures("client")
+@pytest.mark.usefixtures("silent_gmsh")
 def test_gmsh_sees_layers_of_right_handed_hexahedra(
     make: type[Grid], layers: int, version: str, tmp_path: Path
 ) -> None:
@@ -101,7 +91,7 @@ def test_meshio_reads_the_names_back(write: Callable[[Path, list[Grid]], None], 
     }  # fmt: skip
 
 
-@pytest.mark.usefixtures("client")
+@pytest.mark.usefixtures("silent_gmsh")
 def test_a_part_may_be_called_as_the_cells_or_hold_quotes(tmp_path: Path) -> None:
     parts = (Part("fluid", "south", 0, 12), Part('a "b"', "north", 0, 12))
     write_grids(tmp_path / "g.msh", [Grid(ring().nodes, "o", parts)])

@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import gmsh
@@ -13,18 +12,8 @@ from formats.gmsh_geo import write_grids
 from geometry.grid import Grid
 
 
-@pytest.fixture
-def client() -> Iterator[None]:
-    """Gmsh itself, silent."""
-    gmsh.initialize(interruptible=False)
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.option.setNumber("General.AbortOnError", 2)
-    yield
-    gmsh.finalize()
-
-
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
-@pytest.mark.usefixtures("client")
+@pytest.mark.usefixtures("silent_gmsh")
 def test_gmsh_meshes_it_with_the_same_counts_names_and_outer_nodes(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
     write_grids(tmp_path / "g.geo", [grid])

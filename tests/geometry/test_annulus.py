@@ -23,6 +23,17 @@ def test_corners_of_the_far_field_are_nodes(ni: int) -> None:
     np.testing.assert_array_equal(found.north[0], found.north[-1])
 
 
+def test_a_far_field_begins_where_its_body_does_wherever_both_are() -> None:
+    place = np.array([7.0, -3.0])
+    here = Annulus(DISC, Curve(SQUARE, closed=True)).boundary(Sampling(33, 9))
+    there = Annulus(Outline(DISC.curve.points + place), Curve(SQUARE + place, closed=True)).boundary(
+        Sampling(33, 9)
+    )
+    np.testing.assert_allclose(there.north, here.north + place, atol=1e-12)
+    off = here.north[0] / np.hypot(*here.north[0]) - here.south[0] / np.hypot(*here.south[0])
+    np.testing.assert_allclose(off, 0.0, atol=2e-3)
+
+
 def test_fewer_nodes_than_corners_are_refused() -> None:
     star = np.stack([(2.0 + np.cos(20 * T)) * np.cos(T), (2.0 + np.cos(20 * T)) * np.sin(T)], axis=1)
     outer = Curve(star, closed=True, corners=np.arange(0, 80, 4))

@@ -45,11 +45,11 @@ def test_grids_of_other_sizes_are_refused() -> None:
 
 def test_near_the_wall_is_the_first_tenth_of_the_rows() -> None:
     moved = lattice(5, 30)
-    moved[:, :3] += [0.3, 0.4]
+    moved[:, 2:4] += [0.3, 0.4]  # the last of these rows, and one that is none of them
     difference = compare(Grid(moved), Grid(lattice(5, 30)))
     spread = np.sqrt((np.arange(5.0).var()) + np.arange(30.0).var())
-    assert difference.near_wall == pytest.approx(0.5 / spread)
-    assert difference.relative_l2 == pytest.approx(0.5 / spread / np.sqrt(10))
+    assert difference.near_wall == pytest.approx(0.5 / spread / np.sqrt(3))
+    assert difference.relative_l2 == pytest.approx(0.5 / spread / np.sqrt(15))
     further = lattice(5, 30)
     further[:, 3:] += [0.3, 0.4]
     assert compare(Grid(further), Grid(lattice(5, 30))).near_wall == 0

@@ -135,6 +135,16 @@ def folded(nodes: Floats) -> int:
     return int((corner_jacobians(nodes).min(axis=0) <= 0).sum())
 
 
+def meets(nodes: Floats, boundary: Boundary) -> bool:
+    """Whether the rim is that of the boundary, bit for bit; the cut of an O grid need only close."""
+    given = [(nodes[:, 0], boundary.south), (nodes[:, -1], boundary.north)]
+    if boundary.topology == "o":
+        given += [(nodes[0], nodes[-1])]
+    else:
+        given += [(nodes[0], boundary.west), (nodes[-1], boundary.east)]
+    return all(np.array_equal(side, wanted) for side, wanted in given)
+
+
 def corner_jacobians(nodes: Floats) -> Floats:
     """(4, ni-1, nj-1) Jacobians at the cells' corners."""
     a, b, c, d = nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]
