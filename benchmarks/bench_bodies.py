@@ -211,7 +211,29 @@ angles all were valid after the steps, and nearly as near to right angles as the
 
 `solvers.neural.quads.differentiable_around.BodyGrids` is the same in torch, equal to 1e-12, with gradients
 from every node to the nodes of body and far field, which finite differences confirm; on a GPU with
-`device="cuda"`, as `infer --device cuda` has it.
+`device="cuda"`, as `infer --device cuda` has it. Where the hole is that a given grid was made around:
+
+```python
+import torch
+from geometry.families.family import family
+from solvers.neural.quads.differentiable_around import BodyGrids
+
+edges, grids = family("hole").boundary(0.3, 65, 33), BodyGrids()
+hole, square = (torch.tensor(side)[None] for side in (edges.south, edges.north))
+wanted = grids(hole + torch.tensor([0.1, -0.2]), square, 33)
+place = torch.zeros(2, dtype=torch.float64, requires_grad=True)
+optimiser = torch.optim.LBFGS([place], line_search_fn="strong_wolfe")
+
+def missed():
+    optimiser.zero_grad()
+    loss = (grids(hole + place, square, 33) - wanted).square().mean()
+    loss.backward()
+    return loss
+
+for _ in range(2):
+    optimiser.step(missed)
+print(place.tolist())  # about 0.1 and -0.2
+```
 """
 
 if __name__ == "__main__":
