@@ -101,3 +101,17 @@ def test_c_grids_without_a_first_cell_are_marched_and_the_report_says_so(meshone
     assert told["method"] == "hyperbolic"
     assert any("no shipped model makes c grids" in note for note in told["notes"])
     assert any("no first cell was asked for" in note for note in told["notes"])
+
+
+def test_a_bent_body_by_the_model_for_bodies(meshonet: Meshonet) -> None:
+    """Its centroid is outside it. The report says what unfolded the network's answer, if it was folded."""
+    bend = np.linspace(-2.2, 2.2, 40)
+    plate = np.concatenate([1.05 * np.exp(1j * bend), 0.95 * np.exp(-1j * bend)])
+    np.savetxt("clip.csv", np.stack([plate.real, plate.imag], 1)[np.r_[:80, 0]], delimiter=",")
+    words = ("infer", "clip.csv", "--topology", "o", "--res", "129x33", "--model", "hole-o", "--json")
+    alone = meshonet(*words, "--polish", "off", "-o", "alone.vts").only
+    assert (alone["model"], alone["folded"]) == ("hole-o", 0)
+    assert alone["path"] in (["repair"], [])
+    after = meshonet(*words, "-o", "after.vts").only
+    assert (after["model"], after["folded"], after["path"]) == ("hole-o", 0, [])
+    assert after["quality"]["max_angle"]["mean"] < alone["quality"]["max_angle"]["mean"]
