@@ -102,11 +102,21 @@ MESHONET_INLINE void leave(const Evaluation *e, const Corners *edges, double *re
             fields[c * size + k] *= share[k];
 }
 
-/* out (count) = f at places along a row + what its second derivatives add; four runs of weights. */
-MESHONET_INLINE void spread(const double *f, const double *second, const ptrdiff_t *restrict first,
+/* out (count) = f (n) at places along a row + what its second derivatives add; four runs of weights. */
+MESHONET_INLINE void spread(const double *f, const double *second, ptrdiff_t n, const ptrdiff_t *restrict first,
                             const double *restrict weights, ptrdiff_t count, double *restrict out)
 {
     const double *restrict w0 = weights, *restrict w1 = w0 + count, *restrict w2 = w1 + count, *restrict w3 = w2 + count;
+    if (count == 2 * n - 1) { /* the nodes themselves and the middles between: nothing to look up */
+        const double a = w0[1], b = w1[1], c = w2[1], d = w3[1];
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t k = 0; k < n - 1; k++) {
+            out[2 * k] = f[k];
+            out[2 * k + 1] = (a * f[k] + b * f[k + 1]) + (c * second[k] + d * second[k + 1]);
+        }
+        out[count - 1] = f[n - 1];
+        return;
+    }
     MESHONET_INDEPENDENT
     for (ptrdiff_t j = 0; j < count; j++) {
         const ptrdiff_t k = first[j];
@@ -228,7 +238,8 @@ MESHONET_INLINE void prepare(const Evaluation *e, const double *coarse, const Co
             const ptrdiff_t row = side ? size - n : 0;
             const double *given = (side ? edges->east : edges->west) + c * nj;
             double *to = p->missed + (2 * side + c) * nj;
-            spread(coarse + c * size + row, p->bends + (3 * c + 1) * size + row, e->fine[1].first, p->weights, nj, to);
+            spread(coarse + c * size + row, p->bends + (3 * c + 1) * size + row, n,
+                   e->fine[1].first, p->weights, nj, to);
             for (ptrdiff_t j = 0; j < nj; j++)
                 to[j] = given[j] - to[j];
         }
@@ -241,8 +252,8 @@ MESHONET_INLINE void hold(const Evaluation *e, const double *coarse, Parts *p, p
     for (int c = 0; c < 2; c++) {
         const double *xi = p->bends + 3 * c * size + k * n, *eta = xi + size;
         double *to = p->rows + (4 * half + 2 * c) * nj;
-        spread(coarse + c * size + k * n, eta, columns, p->weights, nj, to);
-        spread(xi, eta + size, columns, p->weights, nj, to + nj);
+        spread(coarse + c * size + k * n, eta, n, columns, p->weights, nj, to);
+        spread(xi, eta + size, n, columns, p->weights, nj, to + nj);
     }
     for (int side = 0; side < 2; side++) {
         const double *along = p->tables + side * size + k * n, *across = along + 2 * size;
