@@ -104,6 +104,19 @@ def test_failure_counts_and_places_the_worst_cells(monkeypatch: pytest.MonkeyPat
     ) as caught:
         guard(solve(boundary).grid, boundary)
     assert 0 < len(caught.value.worst) <= 10
+    least = min(folded(solve(boundary).grid.nodes), folded(tfi(boundary).nodes))
+    assert str(caught.value).startswith(f"{least} of")  # those of the best try
+
+
+def test_winslows_equations_are_not_solved_again_for_their_own_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    boundary = wrench(60, 60)
+    grid, asked = solve(boundary).grid, []
+    monkeypatch.setattr("solvers.repair.repair", lambda nodes, *_: folded(nodes))
+    monkeypatch.setattr("solvers.elliptic.solve.solve", lambda *_, **__: asked.append(1) or solve(boundary))
+    for made, times in ((grid, 0), (tfi(boundary), 1)):
+        asked.clear()
+        guard(made, boundary, allow_invalid=True)
+        assert len(asked) == times
 
 
 def test_an_invalid_grid_may_be_asked_for() -> None:
