@@ -238,7 +238,9 @@ HEAD = """# The operator for four-sided domains
 
 `infer --model quad-general` makes the variational grid of any four-sided domain by one pass of a network on
 33 x 33 nodes, evaluated at any resolution; `quad-winslow` is the same network's other answer, Winslow's grid.
-`--polish N` takes N steps of descent after it (of multigrid for Winslow's).
+`--polish N` takes up to N steps of descent after it (of multigrid for Winslow's): of five the first three are
+steps of Newton's method on the network's own nodes, fewer where one gains little, the last two of L-BFGS on
+all.
 
 On these nodes four Picard steps from the harmonic grid go most of the way to Winslow's equations, with
 differences of nearly fourth order and sine transforms for an inverse: the row "4 Picard steps", a tenth of a

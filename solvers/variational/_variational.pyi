@@ -21,8 +21,10 @@ class Waves:
 
 Modes: TypeAlias = tuple[Waves, Waves]
 
+def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int) -> int: ...
+
 class Stiffness:
-    positive: bool
+    usable: bool
     def __init__(self, z: Floats, aspect: float, shape: float, smoothness: float) -> None: ...
 
 class Minimiser:

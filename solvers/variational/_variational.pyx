@@ -27,13 +27,16 @@ cdef extern from "variational_kernel.h":
         Transform eta
         const float *scale
         float rest
-    int SPACE
-    ctypedef struct Space:
+    ctypedef struct Band:
         Py_ssize_t mi
         Py_ssize_t mj
         Py_ssize_t width
-        double *band
-        double *unknowns
+        float *column
+    int SPACE
+    ctypedef struct Space:
+        Band band
+        float *unknowns
+        double unit
         const float *along
         const float *across
         const float *across_t
@@ -54,7 +57,10 @@ cdef extern from "variational_kernel.h":
     size_t variational_workspace(Py_ssize_t ni, Py_ssize_t nj) nogil
     double variational_energy(const double *x, const double *y, Py_ssize_t ni, Py_ssize_t nj, const Weights *weights,
                               double *gx, double *gy, double *smallest, double *work) nogil
-    int space_factor(const Space *space, double *z, const Weights *weights, double *room) nogil
+    size_t band_floats(Band *b, Py_ssize_t mi, Py_ssize_t mj) nogil
+    int band_factor(const Band *b, const double *z, const Weights *weights, double *unit) nogil
+    int newton_step(const Band *b, double *z, const Weights *weights, double *value, double *g, double *room,
+                    float *moves) nogil
     void descent_sizes(const Descent *d, size_t *doubles, size_t *floats) nogil
     void descent_place(Descent *d, double *doubles, float *floats) nogil
     void descent_start(Descent *d) nogil
@@ -93,33 +99,60 @@ def energy(const double[:, :, ::1] z, double aspect, double shape, double smooth
     return total, smallest
 
 
+def newton(double[:, :, ::1] z, double aspect, double shape, double smoothness, int most):
+    """Take steps of Newton's method from the planes z (2, ni, nj) of a valid grid, in place; return how many.
+
+    Of the Hessian as much is taken as makes it positive. There are `most` at the most, fewer where none helps.
+    """
+    cdef Py_ssize_t ni = z.shape[1], nj = z.shape[2], nodes = ni * nj
+    cdef Weights weights
+    cdef Band band
+    cdef double value, low = 0.0
+    cdef int done = 0
+    cdef float[::1] columns, moves
+    cdef double[::1] room
+    if z.shape[0] != 2 or ni < 3 or nj < 3:
+        raise ValueError("planes without inner nodes")
+    columns = np.empty(band_floats(&band, ni - 2, nj - 2), np.float32)
+    moves = np.empty(2 * band.mi * band.mj + band.width, np.float32)
+    room = np.empty(6 * nodes + variational_workspace(ni, nj))
+    band.column = &columns[0]
+    weights.aspect, weights.shape, weights.smoothness = aspect, shape, smoothness
+    weights.epsilon, weights.periodic, weights.relief = 0.0, 0, NULL
+    with nogil:
+        value = variational_energy(&z[0, 0, 0], &z[1, 0, 0], ni, nj, &weights, &room[0], &room[nodes], &low,
+                                   &room[6 * nodes])
+        while done < most and newton_step(&band, &z[0, 0, 0], &weights, &value, &room[0], &room[2 * nodes], &moves[0]):
+            done += 1
+    return done
+
+
 cdef class Stiffness:
     """The functional's Hessian at the planes z (2, ni, nj) of a grid of few nodes, fixed at its rim.
 
-    `positive` tells whether it can steer a descent on finer grids.
+    Of it as much is taken as makes it positive. `usable` tells whether that can steer a descent on finer grids; the
+    planes must not be folded.
     """
 
     cdef Space space
     cdef object held
-    cdef readonly bint positive
+    cdef readonly bint usable
 
-    def __init__(self, double[:, :, ::1] z, double aspect, double shape, double smoothness):
+    def __init__(self, const double[:, :, ::1] z, double aspect, double shape, double smoothness):
         cdef Py_ssize_t mi = z.shape[1] - 2, mj = z.shape[2] - 2
-        cdef double[::1] band, unknowns, room
-        cdef double[:, :, ::1] copy
+        cdef float[::1] columns, unknowns
         cdef Weights weights
-        self.positive = False
+        self.usable = False
         if mi < 1 or mj < 1 or max(mi, mj) > SPACE:
             return
-        self.space.mi, self.space.mj, self.space.width = mi, mj, 4 * mj + 1
-        band, unknowns = np.empty(2 * mi * mj * (4 * mj + 2)), np.empty(2 * mi * mj)
-        room, copy = np.empty(8 * (mi + 2) * (mj + 2) + variational_workspace(mi + 2, mj + 2)), np.array(z)
-        self.space.band, self.space.unknowns = &band[0], &unknowns[0]
+        columns = np.empty(band_floats(&self.space.band, mi, mj), np.float32)
+        unknowns = np.empty(2 * mi * mj + self.space.band.width, np.float32)
+        self.space.band.column, self.space.unknowns = &columns[0], &unknowns[0]
         weights.aspect, weights.shape, weights.smoothness = aspect, shape, smoothness
         weights.epsilon, weights.periodic, weights.relief = 0.0, 0, NULL
-        self.held = (band, unknowns)
+        self.held = (columns, unknowns)
         with nogil:
-            self.positive = space_factor(&self.space, &copy[0, 0, 0], &weights, &room[0])
+            self.usable = band_factor(&self.space.band, &z[0, 0, 0], &weights, &self.space.unit)
 
 
 cdef class Waves:
@@ -174,11 +207,11 @@ cdef class Minimiser:
         those of its inner nodes to all."""
         cdef Space *s = &self.state.space
         cdef float[:, ::1] first, second, turned
-        if not stiffness.positive:
+        if not stiffness.usable:
             raise ValueError("a Hessian that is not positive")
-        if along.shape != (self.state.spectrum.mi, stiffness.space.mi):
+        if along.shape != (self.state.spectrum.mi, stiffness.space.band.mi):
             raise ValueError("splines of another size")
-        if across.shape != (self.state.spectrum.mj, stiffness.space.mj):
+        if across.shape != (self.state.spectrum.mj, stiffness.space.band.mj):
             raise ValueError("splines of another size")
         first, second = _padded(along, SPACE), _padded(across, SPACE)
         turned = np.ascontiguousarray(np.asarray(second).T)

@@ -4,6 +4,7 @@
 #ifndef MESHONET_FRAME_H
 #define MESHONET_FRAME_H
 #include "coarse_space.h"
+#include "hessian.h"
 #include "spectral.h"
 
 /* Row i of the gradient in the frames of its nodes, as rows x and y. */
@@ -68,11 +69,11 @@ static void precondition(Descent *d, const double *restrict gradient, float *res
             out_of_frame(d, b[0], b[1], other, result);
     }
     const Space *space = &d->space;
-    if (space->mi == 0)
+    if (space->band.mi == 0)
         return;
     for (int c = 0; c < 2; c++)
         space_restrict(space, gradient + c * mi * mj, mi, mj, c, packed, space->unknowns);
-    solve_band(space->band, 2 * space->mi * space->mj, space->width, space->unknowns);
+    solve_band(&space->band, space->unknowns);
     for (int c = 0; c < 2; c++)
         from_space(space, space->unknowns, mi, mj, c, result + c * mi * mj);
 }

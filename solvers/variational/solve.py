@@ -19,8 +19,8 @@ from geometry.grid import Grid
 from geometry.quality import angles, count_folded, widest_cell
 from solvers.coarse import divided, evaluate, sweep_kinks, thinned
 from solvers.solution import Solution
-from solvers.variational._variational import Stiffness, energy, workspace
-from solvers.variational.descent import descend, in_cells, teller
+from solvers.variational._variational import energy, workspace
+from solvers.variational.descent import descend, in_cells, stiffness_of, teller
 from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.start import winslow_start
@@ -149,7 +149,7 @@ def _nested(
     most, moves = (limits[0], still) if last == 0 else (MOST, ROUGH * still if periodic else still)
     first = FIRST_AROUND if last > 0 and periodic else None
     nodes, weights, iterations, valid = _coarsest(levels[-1], weights, moves, most, easy, first)
-    stiffness = _stiffness(nodes, weights) if valid and last > 0 and not periodic else None
+    stiffness = stiffness_of(nodes, weights) if valid and last > 0 and not periodic else None
     counts = nodes.shape[0], nodes.shape[1]
     for k in range(last - 1, -1, -1):
         coarse, nodes = nodes, evaluate(nodes, levels[k])
@@ -231,12 +231,6 @@ def _worst_at_kink(nodes: Floats) -> bool:
     at = widest_cell(nodes)
     ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
     return ends[0] != ends[1]
-
-
-def _stiffness(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
-    """Return the Hessian at the minimum `nodes` of the coarsest level, and its counts, if it is positive."""
-    found = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
-    return (found, (nodes.shape[0], nodes.shape[1])) if found.positive else None
 
 
 def _inside(boundary: Boundary, initial: Grid) -> Floats:

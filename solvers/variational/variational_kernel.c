@@ -4,6 +4,7 @@
 #include "coarse_space.h"
 #include "frame.h"
 #include "functional.h"
+#include "hessian.h"
 #include "steps.h"
 
 #define TRIES 25  /* lengths of a step that are tried */
@@ -59,49 +60,70 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
     return isfinite(energy) ? energy : INFINITY;
 }
 
-/* The column of H for coordinate c of unknown (i, j), from its row down: what the move has changed of the gradient at
-   the nodes that share terms with it. */
-MESHONET_INLINE void set_column(const Space *space, ptrdiff_t i, ptrdiff_t j, int c, const double *g,
-                                const double *moved, double step)
+/* The factor to the minimum of the parabola through both values and the slope, .1 to .5. */
+static double shorter(double rise, double slope)
 {
-    const ptrdiff_t mj = space->mj, width = space->width, nj = mj + 2, nodes = (space->mi + 2) * nj;
-    const ptrdiff_t column = 2 * (i * mj + j) + c;
-    for (ptrdiff_t p = i; p < space->mi && p <= i + 2; p++) {
-        const ptrdiff_t reach = 2 - (p - i);
-        for (ptrdiff_t q = j > reach ? j - reach : 0; q < mj && q <= j + reach; q++)
-            for (int r = 0; r < 2; r++) {
-                const ptrdiff_t row = 2 * (p * mj + q) + r, at = r * nodes + (p + 1) * nj + q + 1;
-                if (row >= column && row - column <= width)
-                    space->band[row * (width + 1) + width + column - row] = (moved[at] - g[at]) / step;
-            }
-    }
+    if (!isfinite(rise))
+        return 0.5;
+    const double factor = -0.5 * slope / (rise - slope);
+    return factor < 0.1 ? 0.1 : factor > 0.5 ? 0.5 : factor;
 }
 
-MESHONET_CLONES
-int space_factor(const Space *space, double *z, const Weights *weights, double *room)
+/* Of a number of the unknowns, the place in planes of nodes. */
+MESHONET_INLINE ptrdiff_t place_of(const Band *b, ptrdiff_t k)
 {
-    const ptrdiff_t mi = space->mi, mj = space->mj, width = space->width, nj = mj + 2, nodes = (mi + 2) * nj;
-    double *g = room, *moved = room + 2 * nodes, *work = room + 4 * nodes, low;
-    const double *far = z + (mi + 1) * nj + mj + 1;
-    const double step = STEP * hypot((far[0] - z[0]) / (double)(mi + 1), (far[nodes] - z[nodes]) / (double)(mj + 1));
-    memset(space->band, 0, (size_t)(2 * mi * mj * (width + 1)) * sizeof(double));
-    variational_energy(z, z + nodes, mi + 2, nj, weights, g, g + nodes, &low, work);
-    for (int colour = 0; colour < 2 * COLOURS; colour++) {
-        const int c = colour % 2;
-        for (int back = 0; back < 2; back++) {
-            for (ptrdiff_t i = 0; i < mi; i++)
-                for (ptrdiff_t j = 0; j < mj; j++)
-                    if (COLOUR(i, j) == colour / 2)
-                        z[c * nodes + (i + 1) * nj + j + 1] += back ? -step : step;
-            if (!back)
-                variational_energy(z, z + nodes, mi + 2, nj, weights, moved, moved + nodes, &low, work);
-        }
-        for (ptrdiff_t i = 0; i < mi; i++)
-            for (ptrdiff_t j = 0; j < mj; j++)
-                if (COLOUR(i, j) == colour / 2)
-                    set_column(space, i, j, c, g, moved, step);
+    const ptrdiff_t node = k / 2, nj = b->mj + 2;
+    return k % 2 * (b->mi + 2) * nj + (node / b->mj + 1) * nj + node % b->mj + 1;
+}
+
+size_t band_floats(Band *b, ptrdiff_t mi, ptrdiff_t mj)
+{
+    b->mi = mi, b->mj = mj, b->width = 4 * mj + 1, b->stride = b->width + TOGETHER + LANES;
+    return (size_t)(2 * mi * mj * b->stride);
+}
+
+int band_factor(const Band *b, const double *z, const Weights *weights, double *unit)
+{
+    const ptrdiff_t nj = b->mj + 2, nodes = (b->mi + 2) * nj;
+    double squares = 0.0; /* of steps along eta */
+    for (ptrdiff_t k = 1; k < nodes; k++) {
+        const double dx = z[k] - z[k - 1], dy = z[nodes + k] - z[nodes + k - 1];
+        squares += k % nj ? dx * dx + dy * dy : 0.0;
     }
-    return factorise(space->band, 2 * mi * mj, width);
+    *unit = squares / (double)nodes;
+    for (int k = 0; k < 3; k++) {
+        hessian(z, z + nodes, weights, *unit, 1.0 - 0.5 * k, b);
+        if (factorise(b))
+            return 1;
+    }
+    return 0;
+}
+
+int newton_step(const Band *b, double *z, const Weights *weights, double *value, double *g, double *room, float *moves)
+{
+    const ptrdiff_t ni = b->mi + 2, nj = b->mj + 2, nodes = ni * nj, n = 2 * b->mi * b->mj;
+    double *at = room, *fresh = room + 2 * nodes, *work = room + 4 * nodes, unit, slope = 0.0, factor = 1.0, low;
+    if (!isfinite(*value) || !band_factor(b, z, weights, &unit))
+        return 0;
+    for (ptrdiff_t k = 0; k < n; k++)
+        moves[k] = (float)(-unit * g[place_of(b, k)]);
+    solve_band(b, moves);
+    for (ptrdiff_t k = 0; k < n; k++)
+        slope += (double)moves[k] * g[place_of(b, k)];
+    for (int tries = 0; slope < 0.0 && tries < TRIES; tries++) {
+        memcpy(at, z, 2 * (size_t)nodes * sizeof *z);
+        for (ptrdiff_t k = 0; k < n; k++)
+            at[place_of(b, k)] += factor * (double)moves[k];
+        const double found = variational_energy(at, at + nodes, ni, nj, weights, fresh, fresh + nodes, &low, work);
+        if (found <= *value + 1e-4 * factor * slope) {
+            *value = found;
+            memcpy(z, at, 2 * (size_t)nodes * sizeof *z);
+            memcpy(g, fresh, 2 * (size_t)nodes * sizeof *g);
+            return 1;
+        }
+        factor *= shorter(found - *value, factor * slope);
+    }
+    return 0;
 }
 
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
@@ -159,15 +181,6 @@ static void move(const Descent *d, double factor, double *restrict to)
         if (d->weights.periodic)
             memcpy(to + c * nodes + (d->ni - 1) * nj, to + c * nodes, (size_t)nj * sizeof *to);
     }
-}
-
-/* The factor to the minimum of the parabola through both values and the slope, .1 to .5. */
-static double shorter(double rise, double slope)
-{
-    if (!isfinite(rise))
-        return 0.5;
-    const double factor = -0.5 * slope / (rise - slope);
-    return factor < 0.1 ? 0.1 : factor > 0.5 ? 0.5 : factor;
 }
 
 int descent_step(Descent *d)

@@ -33,13 +33,19 @@ typedef struct {
     float rest;
 } Spectrum;
 
-/* Moves of mi x mj inner nodes of a coarse grid, SPACE each at the most; see coarse_space.h. Unknowns by rows, x
-   beside y. */
+/* A banded matrix for the moves of mi x mj inner nodes, by rows of these, x beside y: column c holds H(c, c) to
+   H(c + width, c), and zeros up to the stride; see hessian.h. */
+typedef struct {
+    ptrdiff_t mi, mj, width, stride;
+    float *column;
+} Band;
+
+/* Moves of inner nodes of a coarse grid, SPACE along a direction at the most; see coarse_space.h. */
 #define SPACE 16
 typedef struct {
-    ptrdiff_t mi, mj, width; /* no unknowns: none of this */
-    double *band;            /* the factor, (2 mi mj, width + 1) */
-    double *unknowns;
+    Band band;       /* the factor; no nodes: none of this */
+    float *unknowns; /* a vector of it */
+    double unit;     /* what the factor's Hessian was multiplied by */
     const float *along, *across, *across_t; /* splines, (mi or mj fine, SPACE) and (SPACE, mj fine) */
 } Space;
 
@@ -68,9 +74,16 @@ size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj);
 double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
                           double *gx, double *gy, double *smallest, double *work);
 
-/* Fill the band of `space` with the factor of the Hessian at z (2, mi + 2, mj + 2), which is used as room too; return
-   0 when it is not positive. `room` holds twice as much as z and the workspace. */
-int space_factor(const Space *space, double *z, const Weights *weights, double *room);
+/* Shape the band, and return how many floats its columns take; vectors take 2 mi mj + width. */
+size_t band_floats(Band *b, ptrdiff_t mi, ptrdiff_t mj);
+
+/* Fill the band with the factor of the Hessian at z (2, mi + 2, mj + 2), or of as much of it as is positive, times
+   `unit`; return 0 when z is folded. */
+int band_factor(const Band *b, const double *z, const Weights *weights, double *unit);
+
+/* A step of Newton's method from z (2, mi + 2, mj + 2) with its value and gradient g, all replaced; return 0 when there
+   is none. `room` holds twice as much as z and the workspace, `moves` a vector of the band. */
+int newton_step(const Band *b, double *z, const Weights *weights, double *value, double *g, double *room, float *moves);
 
 /* Doubles and floats that a descent needs, and their places in it. */
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats);

@@ -33,7 +33,7 @@ from solvers.elliptic.solve import solve as winslow
 from solvers.tfi import tfi
 from solvers.variational import descent as descent_module
 from solvers.variational import solve as module
-from solvers.variational.descent import descend
+from solvers.variational.descent import descend, stiffness_of
 from solvers.variational.functional import Weights, aspect_of, energy
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.solve import solve
@@ -194,7 +194,7 @@ def test_smooth_moves_follow_the_coarsest_level() -> None:
     start, coarse = winslow(boundary).grid.nodes, solve(thinned(boundary, 17, 17)).grid.nodes
     aspect = aspect_of(start)
     reached = []
-    for stiffness in (module._stiffness(coarse, weights), None):
+    for stiffness in (stiffness_of(coarse, weights), None):
         nodes = start.copy(order="K")
         descend(nodes, weights, 1e-9, 15, stiffness=stiffness)
         reached.append(energy(nodes, aspect, weights))

@@ -126,11 +126,10 @@ def test_scale_turn_and_place_do_not_matter(scale: float) -> None:
 
 def test_a_hessian_that_is_not_positive_steers_nothing() -> None:
     weights, turned = Weights(), np.stack(np.meshgrid(np.arange(5.0), np.arange(5.0), indexing="ij"))
-    assert Stiffness(turned, 1.0, weights.shape, weights.smoothness).positive
-    turned[:, 2, 2] = 3.9, 3.9  # folded
-    bad = Stiffness(turned, 1.0, weights.shape, weights.smoothness)
-    assert not bad.positive
-    with pytest.raises(ValueError, match="not positive"):
+    assert Stiffness(turned, 1.0, weights.shape, weights.smoothness).usable
+    bad = Stiffness(np.full_like(turned, np.nan), 1.0, weights.shape, weights.smoothness)
+    assert not bad.usable
+    with pytest.raises(ValueError, match="Hessian"):
         minimiser(9, 9, False, 1.0, weights).steer(bad, np.ones((7, 3)), np.ones((7, 3)))
 
 

@@ -19,6 +19,7 @@ from solvers.neural.operator import Polish
 from solvers.neural.quads import around
 from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import WINSLOW
+from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, load_quads
 from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from solvers.neural.quads.own_frame import OwnFrame
@@ -38,9 +39,11 @@ DESCENDED, OTHERWISE = 513, 257
 """Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
 
 LAST = 2
-"""Steps of a descent that are taken at full resolution; those before, on the network's own grid.
+"""Steps that are taken at full resolution at the most; those before, on the network's own grid.
 
-There they gain most of the angles in the mean; the last take out folds and kinks between its nodes.
+There they gain most of the angles in the mean, above all as steps of Newton's method, which four-sided
+domains have: where the network is far off, dozens of others would not do. The last, a descent that follows
+the own grid's Hessian in smooth moves, take out folds and kinks between its nodes.
 """
 
 STILL = 1e-4
@@ -132,12 +135,17 @@ def _polished(
     coarse = grids(head, dtype)
     if not steps:
         return evaluated(coarse, given), [0] * len(boundaries)
-    last = steps if head == WINSLOW else min(steps, LAST)
-    taken = [_descent(one, steps - last, model.topology) for one in coarse]
+    newton = head != WINSLOW and model.topology == "quad"
+    last = steps if head == WINSLOW else min((steps + 1) // 2 if newton else steps, LAST)
+    begin = _newton if newton else _descent
+    taken = [begin(one, steps - last, model.topology) for one in coarse]
     ni, nj = (_polished_on(n, head) for n in given)
     planes = evaluated(coarse, (ni, nj))
     for k, one in enumerate(planes):
-        taken[k] += (_cycles if head == WINSLOW else _descent)(one, last, model.topology)
+        if head == WINSLOW:
+            taken[k] += _cycles(one, last, model.topology)
+        else:
+            taken[k] += _descent(one, last, model.topology, coarse[k] if newton else None)
     return (planes if (ni, nj) == given else evaluated(planes, given)), taken
 
 
@@ -168,15 +176,38 @@ def _polished_on(n: int, head: int) -> int:
     return n if n <= DESCENDED else OTHERWISE
 
 
-def _descent(planes: Floats, steps: int, topology: Topology) -> int:
-    """Descend from the planes (2, m, n) in place; return the steps taken."""
+def _newton(planes: Floats, steps: int, topology: Topology) -> int:
+    """Take steps of Newton's method from the planes (2, m, n) in place; return how many.
+
+    In the domain's own frame: the rounding of their single precision is then the same however it is turned.
+    """
     if not steps:
         return 0
-    from solvers.variational.descent import descend
-    from solvers.variational.functional import AROUND, Weights
+    from solvers.variational.descent import newton
+    from solvers.variational.solve import WEIGHTS
 
-    weights, nodes = Weights() if topology == "quad" else AROUND, np.moveaxis(planes, 0, -1)
-    return descend(nodes, weights, STILL, steps, periodic=topology == "o")[0]
+    z = planes[0] + 1j * planes[1]
+    middle, factor = (value[0] for value in frame(z[None], np))
+    z = (z - middle) * factor
+    own = np.stack([z.real, z.imag])
+    taken = newton(np.moveaxis(own, 0, -1), WEIGHTS[topology], steps)
+    moved = (own[0] + 1j * own[1] - z) / factor
+    planes += np.stack([moved.real, moved.imag])
+    return taken
+
+
+def _descent(planes: Floats, steps: int, topology: Topology, own: Floats | None = None) -> int:
+    """Descend from the planes (2, m, n) in place, steered by the network's `own`; return the steps taken."""
+    if not steps:
+        return 0
+    from solvers.variational.descent import descend, stiffness_of
+    from solvers.variational.solve import WEIGHTS
+
+    weights = WEIGHTS[topology]
+    every_second = None if own is None else np.moveaxis(own[:, ::2, ::2].copy(), 0, -1)
+    stiffness = None if every_second is None else stiffness_of(every_second, weights)
+    nodes = np.moveaxis(planes, 0, -1)
+    return descend(nodes, weights, STILL, steps, periodic=topology == "o", stiffness=stiffness)[0]
 
 
 def _cycles(planes: Floats, steps: int, topology: Topology) -> int:
