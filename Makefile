@@ -88,11 +88,17 @@ train-airfoils: $(VENV)/.developing
 # Winslow's equations have no valid grid for every third one: what the guard would make of these teaches nothing
 BARE := --no-repair --allow-invalid --tol 1e-6
 SEEDED := sample-boundary --family four-sided --count 36000 --seed 1
-train-quads: train/winslow.h5 train/variational.h5
-	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o train/quad-general.safetensors \
-	  --epochs 20 --seed 0 --resume --log-csv train/quad-general.csv
+# a second, short run, in which folds count more, goes on from the first
+train-quads: train/quad-first.safetensors
+	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad --initial train/quad-first.safetensors \
+	  -o train/quad-general.safetensors --set angles=3 --set folds=3 \
+	  --epochs 6 --rate 0.001 --seed 0 --resume --log-csv train/quad-general.csv
 	cp train/quad-general.safetensors $(MODELS)
-	cp train/quad-general.csv docs/curves
+	cp train/quad-first.csv train/quad-general.csv docs/curves
+
+train/quad-first.safetensors: train/winslow.h5 train/variational.h5
+	$(BIN)/meshonet train train/variational.h5 train/winslow.h5 --model quad -o $@ \
+	  --epochs 20 --seed 0 --resume --log-csv train/quad-first.csv
 
 train/winslow.h5: | $(VENV)/.developing
 	@mkdir -p train
@@ -110,8 +116,8 @@ train/variational.h5: | $(VENV)/.developing
 # the quad network taught on, around bodies; Winslow's grids again with twice the nodes
 train-holes: train/holes/winslow.h5 train/holes/variational.h5
 	$(BIN)/meshonet train train/holes/variational.h5 train/holes/winslow.h5 --model quad --initial quad-general \
-	  -o train/hole-o.safetensors --epochs 6 --batch 16 --rate 0.001 --held-out 60 --seed 0 --resume \
-	  --log-csv train/hole-o.csv
+	  -o train/hole-o.safetensors --set angles=3 --set folds=3 --epochs 6 --batch 16 --rate 0.001 --held-out 60 \
+	  --seed 0 --resume --log-csv train/hole-o.csv
 	cp train/hole-o.safetensors $(MODELS)
 	cp train/hole-o.csv docs/curves
 

@@ -48,7 +48,8 @@ def models_page() -> str:
         "# Shipped models\n",
         "<!-- made by python docs/make_pages.py; a test keeps it current -->\n",
         "`meshonet models` lists them. Each is a safetensors file in `solvers/neural/pretrained/` that",
-        "carries its recipe and held-out figures; `make train` makes it again, and its curve of losses.\n",
+        "carries its recipe and held-out figures; `make train` makes it again, and its curve of losses\n"
+        "(`docs/curves`; quad-first is the first of two runs for `quad-general`).\n",
     ]
     for name in shipped():
         if name in SECOND:

@@ -120,7 +120,9 @@ def _train_strip(
     from solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
     from solvers.neural.strips import solve_strips
 
-    _refuse_settings(run, "strip")
+    if run.settings:
+        raise InputError("the strip operator takes no --set", "leave it out, or choose another --model")
+    _refuse_splits(run, "strip")
     plan = _planned(PLAN, run.plan, long=False)
     strips = solve_strips(_boundaries(sources, fmt), _counted(session))
     session.note(f"{len(strips)} shapes lifted and solved")
@@ -141,7 +143,7 @@ def _train_quads(
     from solvers.neural.quads.model import load_quads
     from solvers.neural.weights import model_path
 
-    _refuse_settings(run, "quad")
+    _refuse_splits(run, "quad")
     plan = _planned(PLAN, run.plan, long=False)
     initial = None if run.initial is None else load_quads(model_path(run.initial))
     solved = dict(_by_method(source, fmt) for source in sources)
@@ -154,7 +156,7 @@ def _train_quads(
     session.note(f"{len(given)} domains solved by both methods")
     held_out = HELD_OUT if run.held_out is None else run.held_out
     log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
-    rest |= {"held_out": held_out, "initial": initial, "report": log}
+    rest |= {"held_out": held_out, "initial": initial, "weights": _settings(run.settings), "report": log}
     figures = train_quads(given, Path(run.output), plan, fellows, **rest)
     for head in HEADS:
         told = (
@@ -164,10 +166,10 @@ def _train_quads(
     return {"shapes": len(given), "figures": figures}
 
 
-def _refuse_settings(run: Run, name: str) -> None:
+def _refuse_splits(run: Run, name: str) -> None:
     """Refuse what only models of the registry take."""
-    if run.settings or run.split or run.plan.get("points"):
-        told = f"the {name} operator takes no --set, --split or --points"
+    if run.split or run.plan.get("points"):
+        told = f"the {name} operator takes no --split or --points"
         raise InputError(told, "leave them out, or choose another --model")
 
 

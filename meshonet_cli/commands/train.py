@@ -44,7 +44,8 @@ Settings = Annotated[
     list[str] | None,
     typer.Option(
         "--set", metavar="NAME=VALUE", show_default=False,
-        help="Setting of the model, e.g. sensors=80; repeatable. The page docs/paper-models.md lists them.",
+        help="Setting of the model, e.g. sensors=80, or a weight of the quad operator's loss, e.g. folds=3; "
+        "repeatable. The page docs/paper-models.md lists them.",
     ),
 ]
 Epochs = Annotated[

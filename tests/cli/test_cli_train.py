@@ -192,7 +192,8 @@ def test_a_model_of_one_family_is_not_for_another_topology(meshonet: Meshonet, a
         (("--rate", "7"), "--rate: 7 is no learning rate"),
         (("--patience", "3"), "--patience: stopping early needs shapes held out; use --held-out"),
         (("--held-out", "9"), "grids to train on; give at least 2, or hold fewer out"),
-        (("--model", "strip"), "the strip operator takes no --set, --split or --points; leave them out"),
+        (("--model", "strip"), "the strip operator takes no --split or --points; leave them out"),
+        (("--model", "strip", "--set", "folds=3"), "the strip operator takes no --set; leave it out"),
     ],
 )
 def test_mistakes_about_grids_get_a_line(
@@ -242,7 +243,7 @@ def test_the_quad_operator_learns_from_grids_by_both_methods(meshonet: Meshonet)
     for method in ("winslow", "variational"):
         words = ("solve-pde", "b.h5", "--method", method, "--allow-invalid", "-q", "-o", f"{method}.h5")
         assert meshonet(*words).code == 0
-    words = ("--model", "quad", "--epochs", "1", "--held-out", "4", "-o", "q.safetensors")
+    words = ("--model", "quad", "--epochs", "1", "--held-out", "4", "--set", "folds=3", "-o", "q.safetensors")
     done = meshonet("train", "winslow.h5", "variational.h5", *words)
     assert done.code == 0, done.err
     assert "72 domains solved by both methods" in done.err

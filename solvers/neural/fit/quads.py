@@ -13,6 +13,7 @@ import torch
 from torch import Tensor
 
 from geometry.arrays import Complexes, Floats, Topology
+from geometry.errors import InputError
 from solvers.neural.fit.angles import excess
 from solvers.neural.fit.checkpoint import beside
 from solvers.neural.fit.loop import Progress, fit
@@ -38,7 +39,8 @@ AVERAGED = 0.999
 """Of the running mean of the weights, whose answers count, each step keeps so much."""
 
 PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
-"""Weights of the loss's parts. Picard steps are all but Winslow's grids: there little is left to learn."""
+"""Weights of the loss's parts: the distances from Winslow's and from variational grids, then the mean angle,
+the largest and the folds of the variational answer. Picard steps are all but Winslow's grids."""
 
 COMES = (0.1, 0.3)
 """Between these shares of the steps angles and folds come into the loss."""
@@ -67,14 +69,22 @@ class QuadTask(Task):
     sizes : of the network.
     steps : in the whole run.
     device : to compute on.
+    weights : of the parts of the loss, by name.
     """
 
     parts: ClassVar[tuple[str, ...]] = tuple(PARTS)
 
     def __init__(
-        self, training: Quads, held_out: Quads, sizes: Sizes, steps: int, device: torch.device
+        self,
+        training: Quads,
+        held_out: Quads,
+        sizes: Sizes,
+        steps: int,
+        device: torch.device,
+        weights: Mapping[str, float] = PARTS,
     ) -> None:
         super().__init__()
+        self.weights = [weights[part] for part in PARTS]
         self.training_set, self.held_out, self.steps = training, held_out, steps
         self.around = training.around
         self.net = QuadUNet(sizes.widths, sizes.blocks, self.around)
@@ -99,12 +109,12 @@ class QuadTask(Task):
         found = self._found(self.net, base, last)
         comes = float(np.interp(step / self.steps, COMES, (0.0, 1.0)))
         angles = excess(found[:, 1], variational)
-        parts = (
+        values = (
             _missed(found[:, 0], winslow) + _away(found[:, 0], winslow),
             _missed(found[:, 1], variational),
             *(comes * angle.mean() for angle in angles),
         )
-        return torch.stack([weight * part for weight, part in zip(PARTS.values(), parts, strict=True)])
+        return torch.stack([weight * value for weight, value in zip(self.weights, values, strict=True)])
 
     def _found(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
         """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
@@ -172,6 +182,7 @@ def train_quads(
     held_out: int = HELD_OUT,
     sizes: Sizes | None = None,
     initial: QuadModel | None = None,
+    weights: Mapping[str, float] | None = None,
     recipe: Mapping[str, Any],
     resume: bool = False,
     report: Callable[[Progress], None] | None = None,
@@ -182,11 +193,13 @@ def train_quads(
     ----------
     held_out : domains, the last ones, that are never trained on.
     initial : the model whose weights are the first, and whose sizes count.
+    weights : of parts of the loss, by name, other than those of `PARTS`.
 
     Raises
     ------
     InputError
-        fewer domains than one batch beside those held out; a checkpoint of other settings.
+        fewer domains than one batch beside those held out; a checkpoint of other settings; a weight of no
+        part, or one that is no number from 0 on.
     SolverError
         as `solvers.neural.fit.loop.fit`.
     """
@@ -195,13 +208,14 @@ def train_quads(
         sizes = Sizes(initial.widths, initial.blocks)
     torch.manual_seed(plan.seed)
     steps = plan.epochs * -(-kept // plan.batch)
-    task = QuadTask(given[:kept], given[kept:], sizes, steps, team.device)
+    parts = _weights(weights or {})
+    task = QuadTask(given[:kept], given[kept:], sizes, steps, team.device, parts)
     if initial is not None:
         task.begin(initial.weights)
     told = ("epochs", "batch", "rate", "warm_up", "weight_decay", "clip", "seed")
     facts = {key: getattr(plan, key) for key in told}
     facts |= {key: list(value) for key, value in asdict(sizes).items()}
-    facts |= {"held_out": held_out, "domains": len(given)}
+    facts |= {"weights": parts, "held_out": held_out, "domains": len(given)}
     facts |= {"initial": initial.name} if initial is not None else {}
     checkpoint = beside(output)
     fit(
@@ -218,6 +232,17 @@ def train_quads(
         )
         checkpoint.unlink(missing_ok=True)
     return figures
+
+
+def _weights(given: Mapping[str, float]) -> dict[str, float]:
+    """Return the weights of all parts of the loss, with those that are given."""
+    for part, weight in given.items():
+        if part not in PARTS:
+            told = f"the quad operator's loss has no part {part!r}"
+            raise InputError(told, "use one of " + ", ".join(PARTS), source="--set")
+        if not (isinstance(weight, int | float) and 0 <= weight < np.inf):
+            raise InputError(f"{part}={weight} is no weight", "use a number from 0 on", source="--set")
+    return {**PARTS, **given}
 
 
 def _in_plane(z: Tensor) -> Complexes:

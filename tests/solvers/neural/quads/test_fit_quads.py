@@ -15,7 +15,7 @@ from solvers.elliptic.solve import solve as winslow
 from solvers.neural.fit.loop import Progress
 from solvers.neural.fit.plan import Plan
 from solvers.neural.fit.quad_grids import Quads, quads
-from solvers.neural.fit.quads import Sizes, train_quads
+from solvers.neural.fit.quads import PARTS, Sizes, train_quads
 from solvers.neural.fit.team import Team
 from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.approach import approach
@@ -98,6 +98,29 @@ def test_the_loss_falls(given: Quads, tmp_path: Path) -> None:
     assert header["kind"] == "meshonet quad operator"
     assert header["figures"]["domains"] == 4
     assert tensors["project"].shape == (2, 2, 1)
+
+
+def test_parts_of_the_loss_are_weighed(given: Quads, tmp_path: Path) -> None:
+    reports: list[Progress] = []
+    for weights in ({}, {"folds": 0.0, "winslow": 2 * PARTS["winslow"]}):
+        output, plan = tmp_path / "m.safetensors", replace(SMALL, epochs=1, batch=12)
+        known = {"held_out": 4, "sizes": SIZES, "recipe": {}}
+        train_quads(given, output, plan, ALONE, weights=weights, report=reports.append, **known)  # type: ignore[arg-type]
+    assert reports[1].parts["winslow"] == pytest.approx(2 * reports[0].parts["winslow"], rel=1e-6)
+    assert reports[1].parts["variational"] == reports[0].parts["variational"]
+    recipe = read_tensors(tmp_path / "m.safetensors")[0]["recipe"]
+    assert recipe["weights"] == {**PARTS, "folds": 0.0, "winslow": 0.4}
+
+
+@pytest.mark.parametrize(
+    ("weights", "told"),
+    [({"fold": 1.0}, "has no part 'fold'"), ({"folds": -1.0}, "no weight"), ({"folds": "much"}, "no weight")],
+)
+def test_weights_of_no_part_are_refused(
+    given: Quads, tmp_path: Path, weights: dict[str, float], told: str
+) -> None:
+    with pytest.raises(InputError, match=told):
+        train_quads(given, tmp_path / "m", SMALL, ALONE, held_out=4, weights=weights, recipe={})
 
 
 def test_the_same_seed_gives_the_same_weights_cut_or_not(given: Quads, tmp_path: Path) -> None:
