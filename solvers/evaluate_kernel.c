@@ -49,6 +49,7 @@ MESHONET_INLINE void bend(const double *restrict f, ptrdiff_t m, ptrdiff_t n, do
         memset(second, 0, (size_t)(m * n) * sizeof *second);
         return;
     }
+    memset(second, 0, (size_t)n * sizeof *second); /* not a number, times 0, would stay */
     for (ptrdiff_t k = 1; k < m - 1; k++) {
         const double *restrict at = f + k * n, *restrict before = second + (k - 1) * n;
         double *restrict row = second + k * n;
@@ -64,10 +65,10 @@ MESHONET_INLINE void bend(const double *restrict f, ptrdiff_t m, ptrdiff_t n, do
         for (ptrdiff_t j = 0; j < n; j++)
             row[j] -= share[k] * after[j];
     }
-    const ptrdiff_t inner = m > 3, last = (m - 1) * n;
+    const ptrdiff_t more = m > 3 ? n : 0, last = (m - 1) * n; /* of three rows all have the second derivative of one */
     for (ptrdiff_t j = 0; j < n; j++) {
-        second[j] = (1.0 + (double)inner) * second[n + j] - (double)inner * second[2 * n + j];
-        second[last + j] = (1.0 + (double)inner) * second[last - n + j] - (double)inner * second[last - 2 * n + j];
+        second[j] = 2.0 * second[n + j] - second[n + more + j];
+        second[last + j] = 2.0 * second[last - n + j] - second[last - n - more + j];
     }
 }
 
