@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -18,6 +19,7 @@ from solvers.neural.quads.evaluated import between, evaluated
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, load_quads
+from solvers.neural.quads.part_of_the_way import share
 from solvers.neural.tensors import check_sides
 from solvers.neural.weights import model_path
 
@@ -81,8 +83,18 @@ class QuadGrids:
         middle, factor = (value[:, None, None] for value in frame(z, torch))
         z = (z - middle) * factor
         near, step = approach(z, torch)
-        found = near + SCALE * self._network(features(near, step, torch))[:, self._head]
+        by = SCALE * self._network(features(near, step, torch))[:, self._head]
+        found = near + (by if self._head == WINSLOW else _shares(near, by) * by)
         return _moved(base, (found - z) / factor)
+
+
+def _shares(near: Tensor, by: Tensor) -> Tensor:
+    """Return how much (batch, 1, 1) of moves `by` to take from grids `near`; no gradients go through it."""
+    planes = [
+        torch.stack([z.real, z.imag], 1).detach().cpu().numpy().astype(np.float64) for z in (near, near + by)
+    ]
+    found = [share(start, answer) for start, answer in zip(*planes, strict=True)]
+    return near.real.new_tensor(found)[:, None, None]
 
 
 def _nearer(coarse: Tensor, sides: Sides) -> Tensor:

@@ -1,12 +1,12 @@
-/* Features of a grid and its last step at every node, those of features.py in its order, into real type T with
-   logarithm LOG. */
+/* Features of a grid and its last step at every node, those of features.py in its order: differences in double, what is
+   made of them in real type T with logarithm LOG and square root ROOT. */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)
 
 MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, const double *restrict dx,
                                     const double *restrict dy, double size, ptrdiff_t n, ptrdiff_t i,
-                                    double (*restrict row)[LOOK_MOST], T *restrict out)
+                                    T (*restrict row)[LOOK_MOST], T *restrict out)
 {
     const double cells = (double)(n - 1);
     const ptrdiff_t before = i > 0 ? -n : 0, after = i < n - 1 ? n : 0;
@@ -31,31 +31,32 @@ MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *rest
         row[1][j] = cells * (x[k + 1] - x[k]), row[3][j] = cells * (y[k + 1] - y[k]);
         row[5][j] = row[7][j] = 0.0;
     }
+    const T one = 1, tiny = (T)LOOK_TINY, grow = (T)(1.0 / size);
     for (ptrdiff_t j = 0; j < n; j++) {
-        const double ur = row[0][j], vr = row[1][j], ui = row[2][j], vi = row[3][j];
-        const double u = sqrt(ur * ur + ui * ui), v = sqrt(vr * vr + vi * vi), w = 1.0 / (u * v + LOOK_TINY);
-        const double dot = ur * vr + ui * vi, cross = ur * vi - ui * vr, area = fabs(cross);
-        row[8][j] = u + LOOK_FLOOR, row[9][j] = v + LOOK_FLOOR;
+        const T ur = row[0][j], vr = row[1][j], ui = row[2][j], vi = row[3][j];
+        const T u = ROOT(ur * ur + ui * ui), v = ROOT(vr * vr + vi * vi), w = one / (u * v + tiny);
+        const T dot = ur * vr + ui * vi, cross = ur * vi - ui * vr, area = cross < 0 ? -cross : cross;
+        row[8][j] = u + (T)LOOK_FLOOR, row[9][j] = v + (T)LOOK_FLOOR;
         row[12][j] = dot * w, row[13][j] = cross * w;
-        row[14][j] = area + sqrt(cross * cross + 1.0);
+        row[14][j] = area + ROOT(cross * cross + one);
     }
     for (ptrdiff_t j = 0; j < n; j++) {
-        const double length = sqrt(dx[j] * dx[j] + dy[j] * dy[j] + LOOK_TINY * LOOK_TINY) / size;
-        const double drawn = LOOK_STRETCH * length;
-        row[17][j] = dx[j] / (2.0 * size * length), row[18][j] = dy[j] / (2.0 * size * length);
-        row[19][j] = drawn + sqrt(drawn * drawn + 1.0);
+        const T p = (T)dx[j], q = (T)dy[j], length = ROOT(p * p + q * q + tiny * tiny), inverse = one / length;
+        const T drawn = (T)LOOK_STRETCH * grow * length;
+        row[17][j] = p * ((T)0.5 * inverse), row[18][j] = q * ((T)0.5 * inverse);
+        row[19][j] = drawn + ROOT(drawn * drawn + one);
     }
     T logs[4][LOOK_MOST]; /* the last two: of inverse hyperbolic sines without their signs */
     const int where[4] = {8, 9, 14, 19};
     for (int k = 0; k < 4; k++)
         for (ptrdiff_t j = 0; j < n; j++)
-            logs[k][j] = LOG((T)row[where[k]][j]);
+            logs[k][j] = LOG(row[where[k]][j]);
     for (ptrdiff_t j = 0; j < n; j++)
-        logs[2][j] = row[13][j] < 0.0 ? -logs[2][j] : logs[2][j];
+        logs[2][j] = row[13][j] < 0 ? -logs[2][j] : logs[2][j];
     const T told = (T)(log10(size) + 2.0);
     for (ptrdiff_t j = 0; j < n; j++, out += LOOK_FEATURES) {
         for (int k = 0; k < LOOK_FEATURES; k++)
-            out[k] = (T)row[k][j];
+            out[k] = row[k][j];
         out[8] = logs[0][j], out[9] = logs[1][j], out[14] = logs[2][j];
         out[17] *= logs[3][j], out[18] *= logs[3][j], out[19] = told;
     }
@@ -64,7 +65,7 @@ MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *rest
 MESHONET_CLONES
 void NAME(network_look)(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, T *out)
 {
-    double row[LOOK_FEATURES][LOOK_MOST];
+    T row[LOOK_FEATURES][LOOK_MOST];
     const ptrdiff_t plane = n * n;
     for (ptrdiff_t b = 0; b < batch; b++, planes += 2 * plane, steps += 2 * plane) {
         double square = 0.0;

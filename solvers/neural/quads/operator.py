@@ -3,7 +3,7 @@
 ::
 
     edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> towards Winslow's grid
-          -> features -> network -> 33 x 33 grid, its rim that of the edges
+          -> features -> network -> 33 x 33 grid, its rim that of the edges; part of the way to it if it folds
           -> splines -> grid at the edges' own counts
 
 Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations. The last step is
@@ -28,6 +28,7 @@ from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from solvers.neural.quads.features import FEATURES
 from solvers.neural.quads.model import QuadModel
 from solvers.neural.quads.network import CHUNK, rim_factor
+from solvers.neural.quads.part_of_the_way import share
 from solvers.spline import places
 
 BATCH = 64
@@ -52,7 +53,11 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
         near = unit.copy()
         step, seen = step_all(near), room[: len(near)]
         look(near, step, seen)
+        start = near.copy()
         add(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
+        for one, other in zip(near, start, strict=True):
+            if head != WINSLOW and (part := share(other, one)) < 1.0:
+                one[:] = other + part * (one - other)
         put_back(planes, near, unit, factors)
     return _nearer(base, edges) if head == WINSLOW else base
 

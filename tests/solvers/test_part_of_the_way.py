@@ -1,0 +1,40 @@
+"""A folded answer is taken part of the way, where that is valid."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from random_quads import random_quad
+
+from geometry.arrays import Floats
+from geometry.quality import count_folded
+from solvers.neural.quads.differentiable import QuadGrids
+from solvers.neural.quads.inference import infer_quads
+from solvers.neural.quads.part_of_the_way import share
+
+
+def pushed(by: float) -> Floats:
+    """Return planes (2, 9, 9) of squares, one node of which is moved by so many cells along the diagonal."""
+    t = np.linspace(0.0, 8.0, 9)
+    planes = np.array(np.meshgrid(t, t, indexing="ij"))
+    planes[:, 4, 4] += by
+    return planes
+
+
+@pytest.mark.parametrize(("by", "part"), [(0.4, 1.0), (0.51, 0.95), (0.55, 0.9), (0.6, 0.8), (0.9, 1.0)])
+def test_the_first_share_without_folds_is_taken_or_all(by: float, part: float) -> None:
+    assert share(pushed(0.0), pushed(by)) == part  # a cell folds when its corner passes the diagonal, at half
+
+
+@pytest.mark.parametrize("seed", [20019, 20192])
+def test_grids_that_would_fold_are_valid_in_torch_too(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    boundary = random_quad(seed, 65, 65)
+    assert boundary is not None
+    (found,) = infer_quads([boundary], "quad-general", "off")
+    assert count_folded(found.grid.nodes) == 0
+    sides = (boundary.south, boundary.north, boundary.west, boundary.east)
+    (nodes,) = QuadGrids()(*(torch.from_numpy(np.ascontiguousarray(side))[None] for side in sides)).numpy()
+    assert np.abs(nodes - found.grid.nodes).max() < 1e-12 * np.ptp(found.grid.nodes)
+    monkeypatch.setattr("solvers.neural.quads.operator.share", lambda *_: 1.0)
+    assert count_folded(infer_quads([boundary], "quad-general", "off")[0].grid.nodes) > 0
