@@ -198,14 +198,15 @@ TAIL = """
 ## Which to use
 
 `infer` without a model gives `hole-o` the compact bodies that the airfoil operator refuses, unless its
-answer on 65 x 33 nodes has folds; then the elliptic solver makes the grid. With its five steps it is valid
-where a quarter of Winslow's grids are folded before the guard, and nearer to right angles, in up to four
-times the time; alone, none of these folds. `solve-pde --method variational` has the best of all, in four times
-the time again. What both pay is evenness: they draw lines together where a body stands near its far field.
-Smooth bodies in round far fields stay with `airfoil-o`, as do thin ones. A body whose centroid lies outside
-it (a clip, a crescent, an angle) is seen from where it is thickest. No such body was shown to the network:
-its answer often folds, and the five steps, or the guard's repair, unfold it; of 25 plates, crescents and
-angles all were valid after the steps, and nearly as near to right angles as the variational grids.
+answer on 65 x 33 nodes has folds; then the elliptic solver makes the grid. With its five steps it is
+valid where a quarter of Winslow's grids are folded before the guard, and nearer to right angles, in up to
+four times the time; alone, none of these folds. `solve-pde --method variational` has the best of all, in
+four times the time again. What both pay is evenness: they draw lines together where a body stands near
+its far field. Smooth bodies in round far fields stay with `airfoil-o`, as do thin ones. A body whose
+centroid lies outside it (a clip, a crescent, an angle) is seen from where it is thickest. No such body
+was shown to the network: its answer often folds, and the five steps, or the guard's repair, unfold it; of
+25 plates, crescents and angles all were valid after the steps, and nearly as near to right angles as the
+variational grids.
 
 ## Gradients
 

@@ -19,10 +19,10 @@ from solvers.neural.operator import Polish
 from solvers.neural.quads import around
 from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import WINSLOW
-from solvers.neural.quads.frame import frame
 from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, load_quads
 from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from solvers.neural.quads.own_frame import OwnFrame
+from solvers.neural.quads.own_sides import OwnSides
 from solvers.neural.weights import model_path
 from solvers.solution import Solution
 
@@ -111,7 +111,7 @@ def _solved(
 ) -> list[Solution]:
     """Return the solutions of boundaries with equal counts, made together."""
     begun = time.perf_counter()
-    frames = [OwnFrame.of(one) for one in boundaries] if steps and model.topology == "o" else []
+    frames = _frames(boundaries, model, head) if steps else []
     planes, taken = _polished([one.boundary for one in frames] or boundaries, model, head, steps, dtype)
     if frames:
         planes = np.stack([frame.back(one) for frame, one in zip(frames, planes, strict=True)])
@@ -124,6 +124,13 @@ def _solved(
         grid = Grid(nodes, model.topology, boundary.parts, boundary.name, facts, finite=finite)
         solutions.append(Solution(grid, "operator", model=name, cycles=cycles, seconds={"grid": spent}))
     return solutions
+
+
+def _frames(boundaries: Sequence[Boundary], model: QuadModel, head: int) -> Sequence[OwnFrame | OwnSides]:
+    """Return frames of the boundaries' own, in which descents take the same steps wherever they lie."""
+    if model.topology == "o":
+        return [OwnFrame.of(one) for one in boundaries]
+    return [OwnSides.of(one) for one in boundaries] if head != WINSLOW else []
 
 
 def _polished(
@@ -177,23 +184,13 @@ def _polished_on(n: int, head: int) -> int:
 
 
 def _newton(planes: Floats, steps: int, topology: Topology) -> int:
-    """Take steps of Newton's method from the planes (2, m, n) in place; return how many.
-
-    In the domain's own frame: the rounding of their single precision is then the same however it is turned.
-    """
+    """Take steps of Newton's method from the planes (2, m, n) in place; return how many."""
     if not steps:
         return 0
     from solvers.variational.descent import newton
     from solvers.variational.solve import WEIGHTS
 
-    z = planes[0] + 1j * planes[1]
-    middle, factor = (value[0] for value in frame(z[None], np))
-    z = (z - middle) * factor
-    own = np.stack([z.real, z.imag])
-    taken = newton(np.moveaxis(own, 0, -1), WEIGHTS[topology], steps)
-    moved = (own[0] + 1j * own[1] - z) / factor
-    planes += np.stack([moved.real, moved.imag])
-    return taken
+    return newton(np.moveaxis(planes, 0, -1), WEIGHTS[topology], steps)
 
 
 def _descent(planes: Floats, steps: int, topology: Topology, own: Floats | None = None) -> int:
