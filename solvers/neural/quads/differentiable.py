@@ -94,7 +94,7 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
         torch.stack([z.real, z.imag], 1).detach().cpu().numpy().astype(np.float64) for z in (near, near + by)
     ]
     found = [share(start, answer) for start, answer in zip(*planes, strict=True)]
-    return near.real.new_tensor(found)[:, None, None]
+    return torch.tensor(found, dtype=near.real.dtype, device=near.device)[:, None, None]
 
 
 def _nearer(coarse: Tensor, sides: Sides) -> Tensor:
