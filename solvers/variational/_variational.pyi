@@ -21,7 +21,7 @@ class Waves:
 
 Modes: TypeAlias = tuple[Waves, Waves]
 
-def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int) -> int: ...
+def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int, won: float = 0.0) -> int: ...
 
 class Stiffness:
     usable: bool

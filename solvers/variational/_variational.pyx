@@ -99,15 +99,16 @@ def energy(const double[:, :, ::1] z, double aspect, double shape, double smooth
     return total, smallest
 
 
-def newton(double[:, :, ::1] z, double aspect, double shape, double smoothness, int most):
+def newton(double[:, :, ::1] z, double aspect, double shape, double smoothness, int most, double won=0.0):
     """Take steps of Newton's method from the planes z (2, ni, nj) of a valid grid, in place; return how many.
 
-    Of the Hessian as much is taken as makes it positive. There are `most` at the most, fewer where none helps.
+    Of the Hessian as much is taken as makes it positive. There are `most` at the most, fewer where none helps
+    or after one that lowers the functional by less than `won` of it.
     """
     cdef Py_ssize_t ni = z.shape[1], nj = z.shape[2], nodes = ni * nj
     cdef Weights weights
     cdef Band band
-    cdef double value, low = 0.0
+    cdef double value, before, low = 0.0
     cdef int done = 0
     cdef float[::1] columns, moves
     cdef double[::1] room
@@ -122,8 +123,12 @@ def newton(double[:, :, ::1] z, double aspect, double shape, double smoothness, 
     with nogil:
         value = variational_energy(&z[0, 0, 0], &z[1, 0, 0], ni, nj, &weights, &room[0], &room[nodes], &low,
                                    &room[6 * nodes])
+        before = value
         while done < most and newton_step(&band, &z[0, 0, 0], &weights, &value, &room[0], &room[2 * nodes], &moves[0]):
             done += 1
+            if before - value < won * before:
+                break
+            before = value
     return done
 
 

@@ -14,7 +14,7 @@ from geometry.quality import count_folded
 from solvers.progress import heard, tell
 from solvers.repair import repair
 from solvers.spline import spline_matrix
-from solvers.variational._variational import Minimiser, Stiffness, energy, workspace
+from solvers.variational._variational import Minimiser, Stiffness
 from solvers.variational._variational import newton as newton_steps
 from solvers.variational.functional import Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
@@ -86,18 +86,8 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
-    z, terms = np.moveaxis(nodes, -1, 0), (aspect_of(nodes), weights.shape, weights.smoothness)
-    gradient, room = np.empty_like(z), np.empty(workspace(*nodes.shape[:2]))
-
-    def value() -> float:
-        return energy(z, *terms, 0.0, False, None, gradient, room)[0]
-
-    now, done = value(), 0
-    while done < most and newton_steps(z, *terms, 1):
-        before, now, done = now, value(), done + 1
-        if before - now < WON * now:
-            break
-    return done
+    z = np.moveaxis(nodes, -1, 0)
+    return newton_steps(z, aspect_of(nodes), weights.shape, weights.smoothness, most, WON)
 
 
 def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int, int]] | None:
