@@ -163,9 +163,8 @@ def walls(boundary: Boundary) -> Walls:
     """Return the walls of an O boundary in the strip. Raises InputError when the body cannot be lifted."""
     z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
     hand, (point, direction) = handedness(z, far)
-    lift, w, corners = lift_body(
-        z - z[0], swap=hand < 0
-    )  # the map's branch points feel what far places round off
+    # near the origin: the map's branch points feel what far places round off
+    lift, w, corners = lift_body(z - z[0], swap=hand < 0)
     theta = 2.0 * np.pi * np.arange(len(z)) / len(z)
     away = lift.to_strip(far - z[0])
     lift = replace(lift, centre=lift.centre + z[0])

@@ -7,21 +7,18 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.errors import InputError
-from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.approach import AFTER, approach, nodes_after
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
-from solvers.neural.quads.evaluated import between, evaluated
+from solvers.neural.quads.evaluated import arrays, between, evaluated, folded
 from solvers.neural.quads.features import features
 from solvers.neural.quads.frame import frame
-from solvers.neural.quads.model import ANSWERS, load_quads
+from solvers.neural.quads.in_torch import loaded
+from solvers.neural.quads.model import ANSWERS
 from solvers.neural.quads.part_of_the_way import share
 from solvers.neural.tensors import check_sides
-from solvers.neural.weights import model_path
 
 Sides = tuple[Tensor, Tensor, Tensor, Tensor]
 """South, north (batch, 2, ni), west and east (batch, 2, nj)."""
@@ -45,16 +42,9 @@ class QuadGrids:
     def __init__(
         self, model: str = ANSWERS[-1], device: str = "cpu", dtype: torch.dtype = torch.float64
     ) -> None:
-        held = load_quads(model_path(model))
-        if held.topology != "quad":
-            raise InputError(
-                f"model {model} makes {held.topology} grids", "use one of four-sided domains, or BodyGrids"
-            )
         self._dtype = dtype
-        self._network = QuadUNet(held.widths, held.blocks)
-        self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
-        self._network.to(device=device, dtype=dtype).requires_grad_(False)
-        self._head = ANSWERS.index(model) if model in ANSWERS else len(ANSWERS) - 1
+        remedy = "use one of four-sided domains, or BodyGrids"
+        self._network, self._head = loaded(model, "quad", device, dtype, remedy)
 
     def __call__(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of grids inside four edges each.
@@ -90,11 +80,11 @@ class QuadGrids:
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:
     """Return how much (batch, 1, 1) of moves `by` to take from grids `near`; no gradients go through it."""
-    planes = [
-        torch.stack([z.real, z.imag], 1).detach().cpu().numpy().astype(np.float64) for z in (near, near + by)
-    ]
-    found = [share(start, answer) for start, answer in zip(*planes, strict=True)]
-    return torch.tensor(found, dtype=near.real.dtype, device=near.device)[:, None, None]
+    start, answer = (torch.stack([z.real, z.imag], 1).detach() for z in (near, near + by))
+    where = folded(answer).nonzero()[:, 0]
+    parts = [share(*one) for one in zip(arrays(start[where]), arrays(answer[where]), strict=True)]
+    few = torch.tensor(parts, dtype=start.dtype, device=start.device)
+    return torch.ones_like(start[:, 0, 0, 0]).index_copy(0, where, few)[:, None, None]
 
 
 def _nearer(coarse: Tensor, sides: Sides) -> Tensor:

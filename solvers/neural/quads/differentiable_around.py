@@ -13,17 +13,17 @@ import torch
 from torch import Tensor
 
 from geometry.errors import InputError
+from solvers import acute
 from solvers.coarse_around import FLAT, SQUARINGS, STEEP
-from solvers.neural.models.quad_unet import QuadUNet
 from solvers.neural.quads.approach import AFTER, approach
 from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
-from solvers.neural.quads.evaluated import between, hats, matrix
+from solvers.neural.quads.evaluated import between, matrix
 from solvers.neural.quads.features import features
+from solvers.neural.quads.in_torch import loaded
 from solvers.neural.quads.inside import inside, slope
-from solvers.neural.quads.model import ANSWERS_AROUND, load_quads
+from solvers.neural.quads.model import ANSWERS_AROUND
 from solvers.neural.quads.unrolled import AROUND, TURN
 from solvers.neural.tensors import check_sides
-from solvers.neural.weights import model_path
 from solvers.spline import bending, places, spline_matrix
 
 
@@ -45,15 +45,8 @@ class BodyGrids:
     def __init__(
         self, model: str = ANSWERS_AROUND[-1], device: str = "cpu", dtype: torch.dtype = torch.float64
     ) -> None:
-        held = load_quads(model_path(model))
-        if held.topology != "o":
-            raise InputError(f"model {model} makes {held.topology} grids", "use one for bodies")
         self._dtype = dtype
-        self._network = QuadUNet(held.widths, held.blocks, around=True)
-        self._network.load_state_dict({name: torch.from_numpy(one) for name, one in held.weights.items()})
-        self._network.to(device=device, dtype=dtype).requires_grad_(False)
-        known = ANSWERS_AROUND
-        self._head = known.index(model) if model in known else len(known) - 1
+        self._network, self._head = loaded(model, "o", device, dtype, "use one for bodies")
 
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
@@ -144,7 +137,7 @@ def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
     """Return the nodes (batch, ni, nj), as `solvers.coarse_around.evaluate_around`; the rim is not theirs."""
     m, ni = coarse.shape[1], south.shape[1]
     lines, share = _along_lines(coarse, nj)
-    shares = matrix(hats, m, ni, share) @ share
+    shares = matrix(acute.linear, m, ni, share) @ share
     near_south, near_north = 1.0 - shares, shares
     for _ in range(SQUARINGS):
         near_south, near_north = near_south**2, near_north**2

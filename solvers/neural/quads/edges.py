@@ -60,12 +60,8 @@ class Edges:
     def interpolated(self, laws: Sides) -> Floats:
         """Return the planes (batch, 2, ni, nj) of transfinite interpolation with `laws` along the edges."""
         nodes = np.empty((len(self), 2, *self.counts))
-        self.interpolate(laws, nodes)
-        return nodes
-
-    def interpolate(self, laws: Sides, nodes: Floats) -> None:
-        """Fill the planes `nodes` (batch, 2, ni, nj) as `interpolated` does."""
         fill_all(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
+        return nodes
 
 
 def rims(planes: Floats) -> Sides:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -23,17 +22,17 @@ def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
     sides : south, north (batch, 2, ni), west, east (batch, 2, nj).
     """
     nodes = _evaluated(coarse, sides)
-    folded = _folded(nodes.detach()).nonzero()[:, 0]
-    if len(folded) == 0:
+    where = folded(nodes.detach()).nonzero()[:, 0]
+    if len(where) == 0:
         return nodes
-    few, some = coarse[folded], tuple(side[folded] for side in sides)
+    few, some = coarse[where], tuple(side[where] for side in sides)
     straight = [
         mended(planes[0], planes[1:-1], planes[-1])
-        for planes in zip(*(_arrays(one) for one in (few, *some, nodes[folded])), strict=True)
+        for planes in zip(*(arrays(one) for one in (few, *some, nodes[where])), strict=True)
     ]
     curved = np.stack([np.ones(few.shape[2:]) if one is None else 1.0 - one for one in straight])
     kept = torch.as_tensor(curved, dtype=coarse.dtype, device=coarse.device)
-    return nodes.index_copy(0, folded, _evaluated(few, some, kept[:, None]))
+    return nodes.index_copy(0, where, _evaluated(few, some, kept[:, None]))
 
 
 def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None = None) -> Tensor:
@@ -45,8 +44,9 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
     along, across = (
         torch.as_tensor(bending(k, False), dtype=coarse.dtype, device=coarse.device) for k in (m, n)
     )
+    makers = acute.linear, acute.cubic
     (low, high), (line, curve) = (
-        [matrix(make, k, full, coarse) for make in (hats, acute.cubic)] for k, full in ((m, ni), (n, nj))
+        [matrix(make, k, full, coarse) for make in makers] for k, full in ((m, ni), (n, nj))
     )
     second = along @ coarse
     values = coarse @ line.mT + (kept * (coarse @ across.mT)) @ curve.mT
@@ -63,7 +63,7 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
     return torch.cat([west[:, :, None], inner, east[:, :, None]], 2)
 
 
-def _folded(nodes: Tensor) -> Tensor:
+def folded(nodes: Tensor) -> Tensor:
     """Return which of the planes (batch, 2, ni, nj) have folded cells, (batch,)."""
     along, across = nodes[:, :, 1:] - nodes[:, :, :-1], nodes[..., 1:] - nodes[..., :-1]
     valid = torch.ones(len(nodes), dtype=torch.bool, device=nodes.device)
@@ -73,22 +73,15 @@ def _folded(nodes: Tensor) -> Tensor:
     return ~valid
 
 
-def _arrays(planes: Tensor) -> Any:
+def arrays(planes: Tensor) -> Any:
+    """Return `planes` as arrays of numpy, in float64."""
     return planes.detach().cpu().double().contiguous().numpy()
 
 
 def between(values: Tensor, n: int) -> Tensor:
     """Return (..., n), linear between the last axis' `values` (..., m), as `solvers.spline.between`."""
     m = values.shape[-1]
-    return values if m == n else values @ matrix(hats, m, n, values).mT
-
-
-@lru_cache(maxsize=16)
-def hats(m: int, n: int) -> Any:
-    """Return the matrix (n, m) of linear interpolation from m uniform knots to n uniform places."""
-    at = np.arange(n) * ((m - 1) / (n - 1))
-    at[-1] = m - 1
-    return np.maximum(0.0, 1.0 - np.abs(at[:, None] - np.arange(m)))
+    return values if m == n else values @ matrix(acute.linear, m, n, values).mT
 
 
 def matrix(make: Any, m: int, n: int, like: Tensor) -> Tensor:

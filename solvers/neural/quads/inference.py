@@ -19,7 +19,7 @@ from solvers.neural.operator import Polish
 from solvers.neural.quads import around
 from solvers.neural.quads.edges import Edges
 from solvers.neural.quads.encoding import WINSLOW
-from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, load_quads
+from solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, head_of, load_quads
 from solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from solvers.neural.quads.own_frame import OwnFrame
 from solvers.neural.quads.own_sides import OwnSides
@@ -88,7 +88,7 @@ def infer_quads(
             told = f"model {model} makes {held.topology} grids, and this boundary is {boundary.topology}"
             raise InputError(told, "use another model", source=boundary.name)
     known = ANSWERS if held.topology == "quad" else ANSWERS_AROUND
-    head = known.index(model) if model in known else len(known) - 1
+    head = head_of(model, held.topology)
     held.network(dtype)  # made once a process: no part of a grid's time
     name = model if model in known else held.name
     steps = AUTO[head] if polish == "auto" else 0 if polish == "off" else polish

@@ -51,6 +51,12 @@ class QuadModel:
         return self._made[dtype]
 
 
+def head_of(model: str, topology: Topology) -> int:
+    """Return the number of the answer that `model` names; of the path of a file it is the variational one."""
+    known = ANSWERS if topology == "quad" else ANSWERS_AROUND
+    return known.index(model) if model in known else len(known) - 1
+
+
 @lru_cache(maxsize=4)
 def load_quads(path: Path) -> QuadModel:
     """Return the model of a file.

@@ -55,8 +55,8 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
         look(near, step, seen)
         start = near.copy()
         add(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
-        for one, other in zip(near, start, strict=True):
-            if head != WINSLOW and (part := share(other, one)) < 1.0:
+        for one, other in () if head == WINSLOW else zip(near, start, strict=True):
+            if (part := share(other, one)) < 1.0:
                 one[:] = other + part * (one - other)
         put_back(planes, near, unit, factors)
     return _nearer(base, edges) if head == WINSLOW else base

@@ -39,9 +39,9 @@ class OwnFrame:
     @classmethod
     def of(cls, given: Boundary) -> OwnFrame:
         """Return the frame of `given`."""
-        walls = np.stack([_complex(given.south), _complex(given.north)])
+        walls = np.stack([complex_edge(given.south), complex_edge(given.north)])
         walls = (walls - walls[0, 0]) / (walls[1, 0] - walls[0, 0])
-        step = STEP * 2.0 ** np.ceil(np.log2(np.abs(walls).max()))
+        step = rounding(np.abs(walls).max())
         rounded = step * np.round(np.stack([walls.imag, walls.real], axis=-1) / step) + 0.0  # no -0
         image = rounded[:, ::-1] * [-1.0, 1.0] + 0.0
         apart = np.flatnonzero(rounded.ravel() != image.ravel())
@@ -60,12 +60,18 @@ class OwnFrame:
             z = both if folded <= count_folded(np.moveaxis(planes, 0, -1)) else z
         elif self.mirrored:
             z = z[::-1].conj()
-        south, north = _complex(self.given.south), _complex(self.given.north)
+        south, north = complex_edge(self.given.south), complex_edge(self.given.north)
         z = south[0] + (north[0] - south[0]) * z
         z[:, 0], z[:, -1] = south, north
         z[-1] = z[0]
         return np.stack([z.real, z.imag])
 
 
-def _complex(edge: Floats) -> Complexes:
+def rounding(size: float) -> float:
+    """Return what numbers up to `size` are rounded to multiples of."""
+    return float(STEP * 2.0 ** np.ceil(np.log2(size)))
+
+
+def complex_edge(edge: Floats) -> Complexes:
+    """Return nodes (n, 2) as x + iy."""
     return np.asarray(edge[:, 0] + 1j * edge[:, 1])

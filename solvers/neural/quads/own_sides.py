@@ -15,7 +15,7 @@ import numpy as np
 from geometry.arrays import Complexes, Floats
 from geometry.boundary import Boundary
 from geometry.errors import InputError
-from solvers.neural.quads.own_frame import STEP
+from solvers.neural.quads.own_frame import complex_edge, rounding
 
 Element = tuple[bool, bool, bool]
 """A relabelling: xi runs the other way, then eta does, then both change places."""
@@ -47,7 +47,7 @@ class OwnSides:
     @classmethod
     def of(cls, given: Boundary) -> OwnSides:
         """Return the frame of `given`: where it cannot be rounded, that of all."""
-        sides = tuple(_complex(side) for side in (given.south, given.north, given.west, given.east))
+        sides = tuple(complex_edge(side) for side in (given.south, given.north, given.west, given.east))
         transposed = (False, True) if given.ni == given.nj else (False,)
         found = [(*_framed(sides, one), one) for one in product((False, True), (False, True), transposed)]
         rounded, origin, unit, element = min(found, key=lambda one: b"".join(s.tobytes() for s in one[0]))
@@ -65,9 +65,9 @@ class OwnSides:
         z = z.T if turned else z
         z = z[:: -1 if along else 1, :: -1 if across else 1]
         z = self.origin + self.unit * (z.conj() if _mirrors(self.element) else z)
-        south, north = _complex(self.given.south), _complex(self.given.north)
+        south, north = complex_edge(self.given.south), complex_edge(self.given.north)
         z[:, 0], z[:, -1] = south, north
-        z[0], z[-1] = _complex(self.given.west), _complex(self.given.east)
+        z[0], z[-1] = complex_edge(self.given.west), complex_edge(self.given.east)
         return np.stack([z.real, z.imag])
 
 
@@ -87,7 +87,7 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
     unit = complex(side if abs(side) > LEAST * size else diagonal)
     named = tuple((one - origin) / unit for one in (south, north, west, east))
     named = tuple(one.conj() for one in named) if _mirrors(element) else named
-    step = STEP * 2.0 ** np.ceil(np.log2(max(np.abs(one).max() for one in named)))
+    step = rounding(max(np.abs(one).max() for one in named))
     return tuple(_rounded(one, step) for one in named), complex(origin), unit
 
 
@@ -97,7 +97,3 @@ def _rounded(side: Complexes, step: float) -> Complexes:
 
 def _mirrors(element: Element) -> bool:
     return sum(element) % 2 == 1
-
-
-def _complex(edge: Floats) -> Complexes:
-    return np.asarray(edge[:, 0] + 1j * edge[:, 1])
