@@ -15,21 +15,21 @@ from pathlib import Path
 import numpy as np
 from gains import Way, clocked, distances, figures, gains, operate, percent, published
 
-from geometry.boundary import Boundary
-from geometry.compare import compare
-from geometry.errors import SolverError
-from geometry.families.bodies import boundary as random_body
-from geometry.families.family import family
-from geometry.families.split import split
-from geometry.naca import naca
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from solvers.coarse import solve_coarse, thinned
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.quads.inference import infer_quads
-from solvers.solution import Solution
-from solvers.tfi import tfi
-from solvers.variational.solve import solve as variational
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.compare import compare
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.families.bodies import boundary as random_body
+from meshonet.geometry.families.family import family
+from meshonet.geometry.families.split import split
+from meshonet.geometry.naca import naca
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.coarse import solve_coarse, thinned
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.solve import solve as variational
 
 SEED = 1000
 """Of the bodies here; those of training have another."""
@@ -210,14 +210,14 @@ variational grids.
 
 ## Gradients
 
-`solvers.neural.quads.differentiable_around.BodyGrids` is the same in torch, equal to 1e-12, with gradients
+`meshonet.solvers.neural.quads.differentiable_around.BodyGrids` is the same in torch, equal to 1e-12, with gradients
 from every node to the nodes of body and far field, which finite differences confirm; on a GPU with
 `device="cuda"`, as `infer --device cuda` has it. Where the hole is that a given grid was made around:
 
 ```python
 import torch
-from geometry.families.family import family
-from solvers.neural.quads.differentiable_around import BodyGrids
+from meshonet.geometry.families.family import family
+from meshonet.solvers.neural.quads.differentiable_around import BodyGrids
 
 edges, grids = family("hole").boundary(0.3, 65, 33), BodyGrids()
 hole, square = (torch.tensor(side)[None] for side in (edges.south, edges.north))

@@ -17,20 +17,20 @@ from typing import TypeVar
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.families.family import FAMILIES, family
-from geometry.growth import growing_steps
-from geometry.naca import naca
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from solvers.elliptic.solve import solve, solve_thomas_middlecoff
-from solvers.elliptic.steger_sorenson import solve_steger_sorenson
-from solvers.guard import guard
-from solvers.walls.heights import Heights
-from solvers.walls.slide import slide_walls
-from solvers.walls.spread import spread, worst_first_cell
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.families.family import FAMILIES, family
+from meshonet.geometry.growth import growing_steps
+from meshonet.geometry.naca import naca
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
+from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
+from meshonet.solvers.guard import guard
+from meshonet.solvers.walls.heights import Heights
+from meshonet.solvers.walls.slide import slide_walls
+from meshonet.solvers.walls.spread import spread, worst_first_cell
 
 Result = TypeVar("Result")
 

@@ -24,17 +24,17 @@ from typing import Any
 
 import numpy as np
 
-from formats.registry import read_shapes
-from geometry.arrays import Floats
-from geometry.errors import MeshonetError
-from geometry.families import procedural
-from geometry.parts import wake_nodes
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from solvers.automatic import solve_automatic
-from solvers.elliptic.solve import solve
-from solvers.hyperbolic import hyperbolic
-from solvers.variational.solve import solve as minimise
+from meshonet.formats.registry import read_shapes
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.families import procedural
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.automatic import solve_automatic
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.variational.solve import solve as minimise
 
 SEED = 20_000_003
 REPEAT = 3

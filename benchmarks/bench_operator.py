@@ -28,22 +28,22 @@ from judged import Way, rows, table
 from kept import Kept
 from shapes import Shape, airfoil_files, members, random_airfoils, random_domains
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.families.arch import FAMILY as ARCH
-from geometry.families.family import FAMILIES
-from geometry.grid import Grid
-from geometry.naca import naca
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from solvers.coarse import solve_coarse
-from solvers.elliptic.solve import solve as winslow
-from solvers.guard import guard
-from solvers.neural.harmonic import extend
-from solvers.neural.operator import infer
-from solvers.solution import Solution
-from solvers.tfi import tfi
-from solvers.variational.solve import solve as variational
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.families.arch import FAMILY as ARCH
+from meshonet.geometry.families.family import FAMILIES
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.naca import naca
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.guard import guard
+from meshonet.solvers.neural.harmonic import extend
+from meshonet.solvers.neural.operator import infer
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.solve import solve as variational
 
 OURS = "**infer (base, polish auto)**"
 SOLVER = "multigrid Winslow"

@@ -29,19 +29,19 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
 from solver_shapes import arch
 
-from formats.registry import read_shapes
-from geometry.boundary import Boundary
-from geometry.compare import compare
-from geometry.grid import Grid
-from geometry.quality import count_folded
-from solvers.coarse import solve_coarse
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.quads.edges import Edges
-from solvers.neural.quads.inference import infer_quads
-from solvers.neural.quads.operator import evaluate, near_grids
-from solvers.solution import Solution
-from solvers.tfi import tfi
-from solvers.variational.solve import solve as variational
+from meshonet.formats.registry import read_shapes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.compare import compare
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.quads.edges import Edges
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.quads.operator import evaluate, near_grids
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.solve import solve as variational
 
 NEAR = "4 Picard steps, 33"
 
@@ -267,7 +267,7 @@ precision in the network, and a core for each thread; the grids do not depend on
 
 ## Gradients
 
-`solvers.neural.quads.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
+`meshonet.solvers.neural.quads.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
 every node to the nodes of the boundary; on a GPU with `device="cuda"`.
 [`throat.py`](../examples/shape-optimisation/throat.py) finds the wall of a duct with
 a given throat that leaves the least skewed cells:

@@ -15,8 +15,8 @@ from functools import partial
 
 import numpy as np
 
-from geometry.families.family import family
-from solvers.tfi import tfi
+from meshonet.geometry.families.family import family
+from meshonet.solvers.tfi import tfi
 
 
 def median_seconds(act: Callable[[], object], repeats: int) -> float:

@@ -27,19 +27,19 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
 from solver_shapes import arch, bump, hexagon, wrench
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.grid import Grid
-from geometry.naca import naca
-from geometry.quality import count_folded, measure
-from geometry.sampling import Sampling
-from solvers.coarse import solve_coarse, thinned
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.operator import infer as operate
-from solvers.neural.quads.inference import infer_quads
-from solvers.solution import Solution
-from solvers.tfi import tfi
-from solvers.variational.solve import solve as variational
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.naca import naca
+from meshonet.geometry.quality import count_folded, measure
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.coarse import solve_coarse, thinned
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.operator import infer as operate
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.solve import solve as variational
 
 Way = Callable[[Boundary], Solution]
 T = TypeVar("T")

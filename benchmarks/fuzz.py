@@ -30,9 +30,9 @@ sys.path[:0] = [str(ROOT / "tests" / "formats"), str(ROOT)]
 
 from hostile import READABLE, corpus, foreign, good, mutate
 
-from formats.registry import format_named
-from formats.source import Source
-from geometry.errors import MeshonetError
+from meshonet.formats.registry import format_named
+from meshonet.formats.source import Source
+from meshonet.geometry.errors import MeshonetError
 from meshonet_cli.__main__ import main as command_line
 
 SECONDS = 5.0

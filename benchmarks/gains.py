@@ -12,13 +12,13 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from kept import ROOT
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.compare import compare
-from geometry.grid import Grid
-from geometry.quality import count_folded, measure
-from solvers.neural.quads.inference import infer_quads
-from solvers.solution import Solution
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.compare import compare
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded, measure
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.solution import Solution
 
 Way = Callable[[Boundary], Solution]
 

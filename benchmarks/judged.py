@@ -12,14 +12,14 @@ from kept import Kept
 from numpy.typing import NDArray
 from shapes import Shape
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import MeshonetError
-from geometry.nested import coarser_boundary
-from geometry.quality import count_folded, per_cell
-from solvers.elliptic.solve import solve as winslow
-from solvers.solution import Solution
-from solvers.variational.solve import solve as variational
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.nested import coarser_boundary
+from meshonet.geometry.quality import count_folded, per_cell
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.variational.solve import solve as variational
 
 Way = Callable[[Boundary], Solution]
 NEAR = 1.5

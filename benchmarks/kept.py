@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 ROOT = Path(__file__).parents[1]
 KINDS = {".py", ".pyx", ".c", ".h", ".safetensors"}

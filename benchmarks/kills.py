@@ -28,8 +28,8 @@ from tempfile import TemporaryDirectory
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT))
 
-from formats.output import PART_SUFFIX
-from formats.registry import read_grids, read_shapes
+from meshonet.formats.output import PART_SUFFIX
+from meshonet.formats.registry import read_grids, read_shapes
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT), "MPLBACKEND": "Agg"}
 COMMANDS = {

@@ -12,13 +12,13 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
 
-from formats.registry import read_shapes
-from geometry.boundary import Boundary
-from geometry.errors import MeshonetError
-from geometry.families import procedural
-from geometry.families.family import family
-from geometry.families.split import split as divided
-from geometry.sampling import Sampling, Spacing
+from meshonet.formats.registry import read_shapes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.families import procedural
+from meshonet.geometry.families.family import family
+from meshonet.geometry.families.split import split as divided
+from meshonet.geometry.sampling import Sampling, Spacing
 
 SEED = 20_000_003
 FIRST = 1000

@@ -14,10 +14,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from formats.catalogue import page as formats_page
-from geometry.families.family import FAMILIES, family
+from meshonet.formats.catalogue import page as formats_page
+from meshonet.geometry.families.family import FAMILIES, family
+from meshonet.solvers.neural.weights import SECOND, described, shipped
 from meshonet_cli.reference import reference
-from solvers.neural.weights import SECOND, described, shipped
 
 DOCS = Path(__file__).parent
 GRIDS = {"o": "O-grids", "quad": "Grids of four-sided domains"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from formats.unstructured import Indices
+from meshonet.formats.unstructured import Indices
 
 
 def line_across(quads: Indices, start: int, count: int) -> list[int]:

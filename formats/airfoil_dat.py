@@ -15,12 +15,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from formats.format import Format
-from formats.rows import Line, decode, read_lines, table
-from formats.source import Source, printable
-from geometry.airfoil import Airfoil
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.formats.format import Format
+from meshonet.formats.rows import Line, decode, read_lines, table
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 MOST_POINTS = 20_000
 _ASK = "give an airfoil as lines of x y from the trailing edge round to it again, or in Lednicer's order"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from formats.format import Format
-from formats.registry import formats
+from meshonet.formats.format import Format
+from meshonet.formats.registry import formats
 
 _PAGE = """# Formats
 

@@ -1,7 +1,7 @@
 """CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, the cut joined one to one.
 
 Written so that libraries from 3.4 on read it. Topology, name, parts and provenance are Descriptor_t
-nodes of the zone, which others pass over. Reading is in `formats.cgns_read`.
+nodes of the zone, which others pass over. Reading is in `meshonet.formats.cgns_read`.
 https://cgns.org/standard/SIDS/SIDS.html
 """
 
@@ -14,17 +14,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.cgns_nodes import NAME_LENGTH, Node, child, root
-from formats.facts import facts_of
-from formats.format import Format, Heights
-from formats.hdf5_file import created
-from formats.patches import Role, cut, patches, roles
-from formats.source import Source
-from formats.words import words
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.cgns_nodes import NAME_LENGTH, Node, child, root
+from meshonet.formats.facts import facts_of
+from meshonet.formats.format import Format, Heights
+from meshonet.formats.hdf5_file import created
+from meshonet.formats.patches import Role, cut, patches, roles
+from meshonet.formats.source import Source
+from meshonet.formats.words import words
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 Integers = NDArray[np.int32]
 
@@ -58,7 +58,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
     InputError
         a container of the old kind, no HDF5, no structured zone, a zone that is not right.
     """
-    from formats.cgns_read import read_grids as read
+    from meshonet.formats.cgns_read import read_grids as read
 
     yield from read(source)
 

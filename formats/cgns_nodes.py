@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.source import printable
-from geometry.errors import InputError
+from meshonet.formats.source import printable
+from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     import h5py

@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from formats.cgns import is_adf
-from formats.cgns_nodes import Node, array, children, text
-from formats.facts import grid_with
-from formats.hdf5_check import opened
-from formats.planes import planar
-from formats.source import Source, printable
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.cgns import is_adf
+from meshonet.formats.cgns_nodes import Node, array, children, text
+from meshonet.formats.facts import grid_with
+from meshonet.formats.hdf5_check import opened
+from meshonet.formats.planes import planar
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 _FACTS = ("topology", "name", "parts", "provenance")
 _MOST_NODES = 1 << 40

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from formats.unstructured import Indices
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.formats.unstructured import Indices
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 
 @dataclass(frozen=True)

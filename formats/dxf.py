@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from formats.edges import LARGEST
-from formats.format import Format
-from formats.source import Source, printable
-from formats.surface import MOST_EDGES, Surface, shapes_of
-from formats.unstructured import Indices
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.shape import Shape
+from meshonet.formats.edges import LARGEST
+from meshonet.formats.format import Format
+from meshonet.formats.source import Source, printable
+from meshonet.formats.surface import MOST_EDGES, Surface, shapes_of
+from meshonet.formats.unstructured import Indices
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shape import Shape
 
 _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 _MOST_BYTES = 64 << 20

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import TOPOLOGIES, Floats, Topology
-from geometry.boundary import Boundary, polygon_area
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import c_parts, wake_nodes
+from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import c_parts, wake_nodes
 
 LARGEST = 1e150
 """Coordinates must be below this, so that areas and their sums are finite."""

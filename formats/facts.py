@@ -6,12 +6,12 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from formats.edges import known_topology, recovered, usable
-from formats.source import printable
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.edges import known_topology, recovered, usable
+from meshonet.formats.source import printable
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 
 def facts_of(grid: Grid) -> dict[str, list[str]]:

@@ -1,4 +1,4 @@
-"""Pictures of a grid: ``.png``, ``.svg``, ``.pdf``; with `formats.figure_layers` all that imports matplotlib.
+"""Pictures of a grid: ``.png``, ``.svg``, ``.pdf``; with `meshonet.formats.figure_layers` all that imports matplotlib.
 
 A picture has far fewer pixels than a fine grid has cells, so cells are coloured in blocks of about a
 pixel, each with the worst value in it, and only every k-th grid line is drawn.
@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.figure_layers import INK, Box, Part, body, in_view, outline, paint, rule
-from formats.format import Format, only_one
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.figure_layers import INK, Box, Part, body, in_view, outline, paint, rule
+from meshonet.formats.format import Format, only_one
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

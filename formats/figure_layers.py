@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

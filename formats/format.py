@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from formats.source import Source
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.shape import Shape
+from meshonet.formats.source import Source
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.shape import Shape
 
 Heights: TypeAlias = tuple[float, ...]
 """z of each plane of a grid that is repeated in z, increasing from 0."""

@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 
 def parsed(text: bytes) -> Floats | None:

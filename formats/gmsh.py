@@ -1,7 +1,7 @@
 """Gmsh ``.msh`` 2.2 and 4.1: quadrilaterals with merged seams, and the boundary's parts as physical groups.
 
 2.2 is written through meshio, binary unless asked otherwise; text is what converters such as OpenFOAM's
-insist on. 4.1 is in `formats.gmsh41`. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format-version-2
+insist on. 4.1 is in `meshonet.formats.gmsh41`. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format-version-2
 """
 
 from __future__ import annotations
@@ -13,14 +13,14 @@ from types import ModuleType
 
 import numpy as np
 
-from formats import gmsh41
-from formats.format import Format, Heights, only_one
-from formats.gmsh41 import INTERIOR
-from formats.gmsh_read import read_shapes, sniff
-from formats.source import printable
-from formats.unstructured import Indices, extruded, unstructured
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.formats import gmsh41
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.gmsh41 import INTERIOR
+from meshonet.formats.gmsh_read import read_shapes, sniff
+from meshonet.formats.source import printable
+from meshonet.formats.unstructured import Indices, extruded, unstructured
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:

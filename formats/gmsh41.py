@@ -12,11 +12,11 @@ from typing import BinaryIO
 
 import numpy as np
 
-from formats.format import Heights, only_one
-from formats.text_rows import write_rows
-from formats.unstructured import Indices, extruded, unstructured
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.formats.format import Heights, only_one
+from meshonet.formats.text_rows import write_rows
+from meshonet.formats.unstructured import Indices, extruded, unstructured
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 INTERIOR = "fluid"
 """Name of the group of all cells."""
@@ -47,7 +47,7 @@ def _inside(groups: list[Group]) -> str:
 
 def _write(path: Path, points: Floats, groups: list[Group], cells: Group, dim: int, *, text: bool) -> None:
     """Write the groups, entities 1, 2 ... of dimension `dim` - 1, and the cells, entity 1 of `dim`."""
-    from formats.gmsh import quotable
+    from meshonet.formats.gmsh import quotable
 
     blocks = [(dim - 1, tag, group) for tag, group in enumerate(groups, start=1)] + [(dim, 1, cells)]
     with path.open("wb") as stream:

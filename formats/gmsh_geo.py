@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 
-from formats.format import Format, only_one
-from formats.gmsh import quotable
-from formats.gmsh41 import INTERIOR
-from formats.unstructured import Indices, node_numbers, unstructured
-from geometry.grid import Grid
+from meshonet.formats.format import Format, only_one
+from meshonet.formats.gmsh import quotable
+from meshonet.formats.gmsh41 import INTERIOR
+from meshonet.formats.unstructured import Indices, node_numbers, unstructured
+from meshonet.geometry.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from formats.gmsh_sections import Elements, Nodes, elements, nodes
-from formats.source import Source, printable
-from formats.surface import Surface, flat, shapes_of
-from formats.unstructured import Indices
-from geometry.errors import InputError
-from geometry.shape import Shape
+from meshonet.formats.gmsh_sections import Elements, Nodes, elements, nodes
+from meshonet.formats.source import Source, printable
+from meshonet.formats.surface import Surface, flat, shapes_of
+from meshonet.formats.unstructured import Indices
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shape import Shape
 
 _VERSIONS = ("2.2", "4.1")
 _NAME = re.compile(rb'\s*(\d+)\s+(\d+)\s+"([^"\n]*)"')
@@ -39,7 +39,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     names = _names(_section(data, b"PhysicalNames", needed=False))
     tags = {}
     if version == "4.1":
-        from formats.gmsh_sections import physical_tags
+        from meshonet.formats.gmsh_sections import physical_tags
 
         tags = physical_tags(_section(data, b"Entities", needed=False), binary, order)
     try:

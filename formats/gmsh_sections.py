@@ -11,10 +11,10 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.free_numbers import parsed
-from formats.unstructured import Indices
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.formats.free_numbers import parsed
+from meshonet.formats.unstructured import Indices
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 SIZES = {1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5, 8: 3, 9: 6, 10: 9, 11: 10, 12: 27, 15: 1, 16: 8, 17: 20}
 """Nodes of each kind of element."""

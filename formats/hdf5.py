@@ -24,18 +24,18 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from formats.edges import usable
-from formats.facts import plain
-from formats.format import Format
-from formats.hdf5_check import Checked, checked
-from formats.hdf5_file import created
-from formats.source import Source
-from geometry.arrays import SIDES, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.origin import Origin
-from geometry.parts import Part
+from meshonet.formats.edges import usable
+from meshonet.formats.facts import plain
+from meshonet.formats.format import Format
+from meshonet.formats.hdf5_check import Checked, checked
+from meshonet.formats.hdf5_file import created
+from meshonet.formats.source import Source
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.origin import Origin
+from meshonet.geometry.parts import Part
 
 if TYPE_CHECKING:
     import h5py

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from formats.edges import known_topology
-from formats.hdf5_heap import check_heaps, check_texts
-from formats.source import Source, printable
-from geometry.arrays import SIDES, Floats, Topology
-from geometry.errors import InputError
+from meshonet.formats.edges import known_topology
+from meshonet.formats.hdf5_heap import check_heaps, check_texts
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.arrays import SIDES, Floats, Topology
+from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     import h5py

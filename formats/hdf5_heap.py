@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from formats.source import Source
-from geometry.errors import InputError
+from meshonet.formats.source import Source
+from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     import h5py

@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from formats.format import Format, Heights, only_one
-from formats.patches import Role, cut, patches, roles
-from formats.words import words
-from geometry.arrays import Side
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.patches import Role, cut, patches, roles
+from meshonet.formats.words import words
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 _FACES: dict[Side, int] = {"west": 3, "east": 4, "south": 5, "north": 6}
 _TYPES: dict[Role, str] = {

@@ -15,13 +15,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.format import Format, Heights, only_one
-from formats.output import whole_file, whole_folder
-from formats.patches import Role, patches, roles
-from formats.text_rows import write_rows
-from formats.unstructured import Indices, Unstructured, layer_points, unstructured
-from formats.words import words
-from geometry.grid import Grid
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.output import whole_file, whole_folder
+from meshonet.formats.patches import Role, patches, roles
+from meshonet.formats.text_rows import write_rows
+from meshonet.formats.unstructured import Indices, Unstructured, layer_points, unstructured
+from meshonet.formats.words import words
+from meshonet.geometry.grid import Grid
 
 EMPTY = "frontAndBack"
 """Name of the patch of type ``empty``: the two planes of a grid that is one cell thick."""

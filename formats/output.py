@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from formats.source import printable
-from geometry.errors import InputError
+from meshonet.formats.source import printable
+from meshonet.geometry.errors import InputError
 
 PART_SUFFIX = ".meshonet-part"
 """Ending of unfinished files, so that one left by a killed process can be recognised and removed."""

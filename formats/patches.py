@@ -7,9 +7,9 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from geometry.arrays import SIDES
-from geometry.grid import Grid
-from geometry.parts import Part, wake_nodes
+from meshonet.geometry.arrays import SIDES
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part, wake_nodes
 
 Role: TypeAlias = Literal["wall", "farfield", "inflow", "outflow", "symmetry", "other"]
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
-from geometry.errors import InputError
+from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.errors import InputError
 
 _SAME = 1e-6
 """Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""

@@ -15,17 +15,17 @@ from pathlib import Path
 
 import numpy as np
 
-from formats.format import Format
-from formats.rows import Line, decode, read_lines, table
-from formats.source import Source
-from geometry.airfoil import Airfoil
-from geometry.arrays import Floats
-from geometry.boundary import Boundary, polygon_area
-from geometry.corners import find_corners, turning
-from geometry.errors import InputError
-from geometry.outline import Outline
-from geometry.shape import Shape
-from geometry.simple import check_outline
+from meshonet.formats.format import Format
+from meshonet.formats.rows import Line, decode, read_lines, table
+from meshonet.formats.source import Source
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.corners import find_corners, turning
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.shape import Shape
+from meshonet.geometry.simple import check_outline
 
 MOST_POINTS = 100_000
 _JOIN = 1e-6

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from formats.edges import boundary_of
-from formats.format import Format
-from formats.source import Source, open_source, printable
-from geometry.errors import InputError, MeshonetError
-from geometry.grid import Grid
-from geometry.shape import Shape
+from meshonet.formats.edges import boundary_of
+from meshonet.formats.format import Format
+from meshonet.formats.source import Source, open_source, printable
+from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.shape import Shape
 
 Kind = Literal["grids", "boundaries"]
 
@@ -29,38 +29,38 @@ class Row(NamedTuple):
 
 
 TABLE: dict[str, Row] = {
-    "hdf5": Row("formats.hdf5", (".h5", ".hdf5")),
-    "vts": Row("formats.vts", (".vts",)),
-    "vtm": Row("formats.vtm", (".vtm",)),
-    "vtk": Row("formats.vtk_legacy", (".vtk",)),
-    "vtk-ascii": Row("formats.vtk_legacy", (".vtk",)),
-    "vtu": Row("formats.vtu", (".vtu",)),
-    "gmsh": Row("formats.gmsh", (".msh",)),
-    "gmsh-ascii": Row("formats.gmsh", (".msh",)),
-    "gmsh41": Row("formats.gmsh", (".msh",)),
-    "gmsh41-ascii": Row("formats.gmsh", (".msh",)),
-    "cgns": Row("formats.cgns", (".cgns",)),
-    "openfoam": Row("formats.openfoam", (".foam",)),
-    "geo": Row("formats.gmsh_geo", (".geo",)),
-    "nmf": Row("formats.nmf", (".nmf",)),
-    "su2": Row("formats.su2", (".su2",)),
-    "stl": Row("formats.through_meshio", (".stl",)),
-    "ply": Row("formats.through_meshio", (".ply",)),
-    "obj": Row("formats.through_meshio", (".obj",)),
-    "off": Row("formats.through_meshio", (".off",)),
-    "abaqus": Row("formats.through_meshio", (".inp",)),
-    "medit": Row("formats.through_meshio", (".mesh",)),
-    "plot3d-ascii": Row("formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
-    "plot3d-binary": Row("formats.plot3d", (".bin", ".xyz", ".p3d")),
-    "plot3d-fortran": Row("formats.plot3d", (".ufmt", ".unf")),
-    "dxf": Row("formats.dxf", (".dxf",)),
-    "wkt": Row("formats.vector", (".wkt",)),
-    "geojson": Row("formats.vector", (".geojson", ".json")),
-    "airfoil": Row("formats.airfoil_dat", (".dat",)),
-    "points": Row("formats.points", (".csv", ".txt", ".xy")),
-    "png": Row("formats.figure", (".png",)),
-    "svg": Row("formats.figure", (".svg",)),
-    "pdf": Row("formats.figure", (".pdf",)),
+    "hdf5": Row("meshonet.formats.hdf5", (".h5", ".hdf5")),
+    "vts": Row("meshonet.formats.vts", (".vts",)),
+    "vtm": Row("meshonet.formats.vtm", (".vtm",)),
+    "vtk": Row("meshonet.formats.vtk_legacy", (".vtk",)),
+    "vtk-ascii": Row("meshonet.formats.vtk_legacy", (".vtk",)),
+    "vtu": Row("meshonet.formats.vtu", (".vtu",)),
+    "gmsh": Row("meshonet.formats.gmsh", (".msh",)),
+    "gmsh-ascii": Row("meshonet.formats.gmsh", (".msh",)),
+    "gmsh41": Row("meshonet.formats.gmsh", (".msh",)),
+    "gmsh41-ascii": Row("meshonet.formats.gmsh", (".msh",)),
+    "cgns": Row("meshonet.formats.cgns", (".cgns",)),
+    "openfoam": Row("meshonet.formats.openfoam", (".foam",)),
+    "geo": Row("meshonet.formats.gmsh_geo", (".geo",)),
+    "nmf": Row("meshonet.formats.nmf", (".nmf",)),
+    "su2": Row("meshonet.formats.su2", (".su2",)),
+    "stl": Row("meshonet.formats.through_meshio", (".stl",)),
+    "ply": Row("meshonet.formats.through_meshio", (".ply",)),
+    "obj": Row("meshonet.formats.through_meshio", (".obj",)),
+    "off": Row("meshonet.formats.through_meshio", (".off",)),
+    "abaqus": Row("meshonet.formats.through_meshio", (".inp",)),
+    "medit": Row("meshonet.formats.through_meshio", (".mesh",)),
+    "plot3d-ascii": Row("meshonet.formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
+    "plot3d-binary": Row("meshonet.formats.plot3d", (".bin", ".xyz", ".p3d")),
+    "plot3d-fortran": Row("meshonet.formats.plot3d", (".ufmt", ".unf")),
+    "dxf": Row("meshonet.formats.dxf", (".dxf",)),
+    "wkt": Row("meshonet.formats.vector", (".wkt",)),
+    "geojson": Row("meshonet.formats.vector", (".geojson", ".json")),
+    "airfoil": Row("meshonet.formats.airfoil_dat", (".dat",)),
+    "points": Row("meshonet.formats.points", (".csv", ".txt", ".xy")),
+    "png": Row("meshonet.formats.figure", (".png",)),
+    "svg": Row("meshonet.formats.figure", (".svg",)),
+    "pdf": Row("meshonet.formats.figure", (".pdf",)),
 }
 """Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
 whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
@@ -71,7 +71,7 @@ _DESIGNATION = "naca:"
 def format_named(name: str) -> Format:
     """Return the format that ``--from`` or ``--to`` names: by its name, its ending, or the start of its name.
 
-    Behind a colon may follow what only Plot3D files need: ``plot3d:big,float32`` (`formats.plot3d.variant`).
+    Behind a colon may follow what only Plot3D files need: ``plot3d:big,float32`` (`meshonet.formats.plot3d.variant`).
 
     Raises
     ------
@@ -95,7 +95,7 @@ def in_variant(found: Format, words: str) -> Format:
     """
     if not found.name.startswith("plot3d"):
         raise InputError(f"{found.name} files have no variants", "leave the words out", source=words)
-    from formats.plot3d import variant_of
+    from meshonet.formats.plot3d import variant_of
 
     return variant_of(found, words)
 
@@ -172,7 +172,7 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     if _is_designation(text):
         if fmt:
             format_named(fmt)
-        from geometry.naca import naca
+        from meshonet.geometry.naca import naca
 
         yield naca(text[len(_DESIGNATION) :])
         return

@@ -11,8 +11,8 @@ import re
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from formats.edges import LARGEST
-from geometry.errors import InputError
+from meshonet.formats.edges import LARGEST
+from meshonet.geometry.errors import InputError
 
 Kind = Literal["blank", "text", "row", "noted", "gap", "broken"]
 

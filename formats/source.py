@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
-from geometry.errors import InputError
+from meshonet.geometry.errors import InputError
 
 SPLITS = ("train", "test")
 HEAD_BYTES = 65536

@@ -1,6 +1,6 @@
 """SU2's own mesh, ``.su2``: merged seams, counter-clockwise cells, a marker for every part.
 
-Text with 17 significant digits, nodes counted from 0. Markers are words (`formats.words`), since
+Text with 17 significant digits, nodes counted from 0. Markers are words (`meshonet.formats.words`), since
 configuration files list them by name. https://su2code.github.io/docs_v7/Mesh-File/
 """
 
@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from formats.format import Format, Heights, only_one
-from formats.su2_read import read_shapes, sniff
-from formats.text_rows import write_rows
-from formats.unstructured import Indices, extruded, unstructured
-from formats.words import words
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.su2_read import read_shapes, sniff
+from meshonet.formats.text_rows import write_rows
+from meshonet.formats.unstructured import Indices, extruded, unstructured
+from meshonet.formats.words import words
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 _LINE, _QUADRILATERAL, _HEXAHEDRON = 3, 9, 12  # VTK's numbers
 

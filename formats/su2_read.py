@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from formats.free_numbers import parsed
-from formats.source import Source, printable
-from formats.surface import Surface, shapes_of
-from formats.unstructured import Indices
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.shape import Shape
+from meshonet.formats.free_numbers import parsed
+from meshonet.formats.source import Source, printable
+from meshonet.formats.surface import Surface, shapes_of
+from meshonet.formats.unstructured import Indices
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shape import Shape
 
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
 """Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""

@@ -11,19 +11,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from formats.across import line_across
-from formats.chains import Chain, chains
-from formats.edges import LARGEST
-from formats.source import printable
-from formats.unstructured import Indices
-from geometry.annulus import Annulus
-from geometry.arrays import SIDES, Floats, Side
-from geometry.boundary import Boundary, polygon_area
-from geometry.errors import InputError
-from geometry.labels import Labelled, runs
-from geometry.outline import Outline
-from geometry.parts import Part
-from geometry.shape import Shape
+from meshonet.formats.across import line_across
+from meshonet.formats.chains import Chain, chains
+from meshonet.formats.edges import LARGEST
+from meshonet.formats.source import printable
+from meshonet.formats.unstructured import Indices
+from meshonet.geometry.annulus import Annulus
+from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.labels import Labelled, runs
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.parts import Part
+from meshonet.geometry.shape import Shape
 
 MOST_EDGES = 400_000
 """A longer boundary is a mistake."""
@@ -153,7 +153,7 @@ def _domain(chain: Chain, surface: Surface, name: str) -> Shape:
 
 
 def _plain(points: Floats, name: str) -> Shape:
-    from formats.points import one_curve
+    from meshonet.formats.points import one_curve
 
     return one_curve(points, name)
 

@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from formats.format import Format, only_one
-from formats.unstructured import Indices, Unstructured, unstructured
-from geometry.grid import Grid
+from meshonet.formats.format import Format, only_one
+from meshonet.formats.unstructured import Indices, Unstructured, unstructured
+from meshonet.geometry.grid import Grid
 
 
 class _Kind(NamedTuple):

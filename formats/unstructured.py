@@ -9,10 +9,10 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.patches import patches
-from geometry.arrays import Floats, Side
-from geometry.grid import Grid
-from geometry.parts import wake_nodes
+from meshonet.formats.patches import patches
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import wake_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
 

@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from formats.edges import LARGEST
-from formats.format import Format
-from formats.points import one_curve
-from formats.source import Source, printable
-from geometry.annulus import Annulus
-from geometry.arrays import Floats
-from geometry.boundary import polygon_area
-from geometry.errors import InputError
-from geometry.outline import Outline
-from geometry.shape import Shape
+from meshonet.formats.edges import LARGEST
+from meshonet.formats.format import Format
+from meshonet.formats.points import one_curve
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.annulus import Annulus
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import polygon_area
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.shape import Shape
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

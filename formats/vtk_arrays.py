@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.source import printable
-from geometry.errors import InputError
+from meshonet.formats.source import printable
+from meshonet.geometry.errors import InputError
 
 _KINDS = {
     "Float32": "f4", "Float64": "f8", "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2",

@@ -10,12 +10,12 @@ from urllib.parse import unquote
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.facts import grid_with
-from formats.planes import planar
-from formats.source import Source, printable
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.facts import grid_with
+from meshonet.formats.planes import planar
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 _KINDS = {
     "double": "f8", "float": "f4", "int": "i4", "unsigned_int": "u4", "long": "i8", "unsigned_long": "u8",

@@ -10,12 +10,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
-from formats import vts
-from formats.format import Format, Heights
-from formats.output import final_name, whole_folder
-from formats.source import Source, printable
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats import vts
+from meshonet.formats.format import Format, Heights
+from meshonet.formats.output import final_name, whole_folder
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 _MOST_BYTES = 16 << 20
 _OURS = re.compile(r"block-\d+\.vts")

@@ -2,7 +2,7 @@
 
 Written raw appended, little endian, float64, with 64-bit lengths: the form that is quickest to write
 and that every VTK reads. Topology, name, parts and provenance go into FieldData, which VTK shows and
-nothing stumbles over. Read in every encoding VTK writes (`formats.vts_read`).
+nothing stumbles over. Read in every encoding VTK writes (`meshonet.formats.vts_read`).
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
@@ -16,11 +16,11 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.facts import facts_of
-from formats.format import Format, Heights, only_one
-from formats.source import Source, printable
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.facts import facts_of
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 _POINTS = '<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>'
 _BLOCK_NODES = 1 << 15
@@ -78,7 +78,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
     InputError
         not such a file, damaged, compressed with LZ4, three-dimensional.
     """
-    from formats.vts_read import read_grids as read
+    from meshonet.formats.vts_read import read_grids as read
 
     yield from read(source)
 

@@ -1,4 +1,4 @@
-"""Reading ``.vts``: the XML around the arrays; `formats.vtk_arrays` decodes the arrays themselves."""
+"""Reading ``.vts``: the XML around the arrays; `meshonet.formats.vtk_arrays` decodes the arrays themselves."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from formats.facts import grid_with
-from formats.planes import planar
-from formats.source import Source, printable
-from formats.vtk_arrays import Encoded, Encoding, decode
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.facts import grid_with
+from meshonet.formats.planes import planar
+from meshonet.formats.source import Source, printable
+from meshonet.formats.vtk_arrays import Encoded, Encoding, decode
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

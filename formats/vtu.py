@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from formats.format import Format, Heights, only_one
-from formats.unstructured import Indices, extruded, unstructured
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.unstructured import Indices, extruded, unstructured
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:

@@ -1,6 +1,6 @@
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 Indices = np.ndarray[tuple[int, ...], np.dtype[np.intp]]
 

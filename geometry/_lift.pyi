@@ -1,6 +1,6 @@
 from typing import Any
 
-from geometry.arrays import Complexes
+from meshonet.geometry.arrays import Complexes
 
 Removed = tuple[complex, complex, complex, complex, float]
 

@@ -9,18 +9,18 @@ from functools import cached_property
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.closing import wedged_base
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.rounding import rounded_base
-from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
-from geometry.section import SHARP_GAP, Section, clean_section
-from geometry.simple import Crossing, find_crossing, find_crossings
-from geometry.topology import o_boundary
-from geometry.wake import C_EDGE, Wake, c_boundary, wake_axis, wake_cells
-from geometry.wall import Stations, wall_arcs
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.closing import wedged_base
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.rounding import rounded_base
+from meshonet.geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+from meshonet.geometry.section import SHARP_GAP, Section, clean_section
+from meshonet.geometry.simple import Crossing, find_crossing, find_crossings
+from meshonet.geometry.topology import o_boundary
+from meshonet.geometry.wake import C_EDGE, Wake, c_boundary, wake_axis, wake_cells
+from meshonet.geometry.wall import Stations, wall_arcs
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
@@ -51,7 +51,7 @@ class Airfoil:
 
     Parameters
     ----------
-    points : (n, 2) around the section, any unit, either way, from any start (`geometry.section`).
+    points : (n, 2) around the section, any unit, either way, from any start (`meshonet.geometry.section`).
     name : what the input called it.
     places : (n,) where each point stands in its source, such as ``line 12``, for messages.
 
@@ -124,7 +124,7 @@ class Airfoil:
         return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
 
     def rounded(self) -> Airfoil:
-        """Return the same airfoil with the corners of its blunt base rounded off (`geometry.rounding`)."""
+        """Return the same airfoil with the corners of its blunt base rounded off (`meshonet.geometry.rounding`)."""
         if not self.blunt:
             return self
         body = copy(self)
@@ -182,7 +182,7 @@ class Airfoil:
             return body.moved_apart()._around(sampling)
 
     def wedged(self) -> Airfoil:
-        """Return the same airfoil with its blunt base closed by a wedge (`geometry.closing`)."""
+        """Return the same airfoil with its blunt base closed by a wedge (`meshonet.geometry.closing`)."""
         if not self.blunt:
             return self
         first, _, last = self._arcs
@@ -255,7 +255,7 @@ class Airfoil:
 def _fitted(section: Section, places: Sequence[str]) -> Curve:
     """Return the curve through a section's points, straight where it would otherwise cross itself.
 
-    Points whose surfaces touch or cross by rounding are moved apart first (`geometry.thin`).
+    Points whose surfaces touch or cross by rounding are moved apart first (`meshonet.geometry.thin`).
     """
     crossing = find_crossing(section.points)
     if crossing is not None:

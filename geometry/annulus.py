@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.sampling import Sampling
-from geometry.shape import Shape
-from geometry.stretch import stretch_arcs
-from geometry.topology import straight
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shape import Shape
+from meshonet.geometry.stretch import stretch_arcs
+from meshonet.geometry.topology import straight
 
 
 class Annulus:

@@ -21,13 +21,13 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
-from geometry.corners import Indices, find_corners
-from geometry.curves import Curve, resample_like
-from geometry.errors import InputError
-from geometry.origin import UNKNOWN, Origin
-from geometry.parts import Part, check_parts, known_parts, wake_nodes
-from geometry.sampling import Sampling
+from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
+from meshonet.geometry.corners import Indices, find_corners
+from meshonet.geometry.curves import Curve, resample_like
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.origin import UNKNOWN, Origin
+from meshonet.geometry.parts import Part, check_parts, known_parts, wake_nodes
+from meshonet.geometry.sampling import Sampling
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +107,7 @@ class Boundary:
 
     @cached_property
     def corners(self) -> Mapping[str, Indices]:
-        """Indices of the corners of each edge, its ends left out (`geometry.corners`)."""
+        """Indices of the corners of each edge, its ends left out (`meshonet.geometry.corners`)."""
         return {side: find_corners(getattr(self, side)) for side in SIDES}
 
     def outline(self) -> Floats:
@@ -150,7 +150,7 @@ class Boundary:
         if (ni, nj) == (self.ni, self.nj):
             return self
         if self.topology == "c":
-            from geometry.wake import resampled
+            from meshonet.geometry.wake import resampled
 
             return resampled(self, ni, nj)
         periodic = self.topology == "o"
@@ -231,8 +231,8 @@ class Boundary:
 
     def _check_outline(self) -> None:
         """Raise InputError for what makes the sign of an area say nothing: its size, edges that cross."""
-        from geometry.crossed import check_edges  # which looks at boundaries
-        from geometry.section import check_extent
+        from meshonet.geometry.crossed import check_edges  # which looks at boundaries
+        from meshonet.geometry.section import check_extent
 
         check_extent(float(np.hypot(*np.ptp(self.outline(), axis=0))))
         check_edges(self)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 REACH = 4.0
 """Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 NEAR = 0.1
 """Part of the rows that counts as near the wall."""

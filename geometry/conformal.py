@@ -18,10 +18,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.lift import lift_body, mirrored
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.lift import lift_body, mirrored
 
 ANGLES = 1024
 ITERATIONS = 40

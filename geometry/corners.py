@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 Indices: TypeAlias = NDArray[np.intp]
 

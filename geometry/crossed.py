@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import SIDES, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.parts import wake_nodes
-from geometry.simple import Crossing, find_crossings
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.simple import Crossing, find_crossings
 
 REMEDY = "correct these points: no grid can be made inside edges that cross"
 _MOST = 4096

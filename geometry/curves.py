@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from geometry._curve import locate, slopes, speeds, values
-from geometry.arrays import Floats, distinct
-from geometry.corners import Indices, find_corners
-from geometry.errors import InputError
-from geometry.sampling import monotone_cubic
-from geometry.slopes import spline_slopes
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.corners import Indices, find_corners
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import monotone_cubic
+from meshonet.geometry.slopes import spline_slopes
 
 _STEPS = 8
 """Parts of an interval in the table of arc length."""
@@ -22,14 +22,14 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS
 
 
 class Curve:
-    """A smooth curve bitwise through given points, one cubic an interval (`geometry.slopes`).
+    """A smooth curve bitwise through given points, one cubic an interval (`meshonet.geometry.slopes`).
 
     Parameters
     ----------
     points : (n, 2), any unit of length, neighbours distinct, at least 2 (closed: 3). A closed curve may
         repeat its first point at the end.
     closed : the curve returns from the last point to the first.
-    corners : indices of points where the tangent may jump; None finds them (`geometry.corners`). The ends
+    corners : indices of points where the tangent may jump; None finds them (`meshonet.geometry.corners`). The ends
         of an open curve are corners anyway.
     straight : (intervals,) true where the curve is to follow the chord instead of the spline.
 

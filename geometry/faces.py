@@ -29,10 +29,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.grid import Grid
-from geometry.seams import beyond_seam, wake_cells
-from geometry.steps import Extreme, Tally, blocks
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.seams import beyond_seam, wake_cells
+from meshonet.geometry.steps import Extreme, Tally, blocks
 
 SEVERE = 70.0
 """Non-orthogonality from which checkMesh counts faces."""

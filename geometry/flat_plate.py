@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from geometry.errors import InputError
+from meshonet.geometry.errors import InputError
 
 FORMULA = "y = y+ c / (Re sqrt(Cf/2)), Cf = (2 log10(Re x/c) - 0.65)^-2.3"
 SOURCE = "Schlichting, Boundary-Layer Theory, 7th ed. (1979), chapter XXI"

@@ -24,10 +24,10 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import TOPOLOGIES, Floats, Topology, as_planar
-from geometry.errors import InputError
-from geometry.origin import UNKNOWN, Origin
-from geometry.parts import Part, check_parts, known_parts
+from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology, as_planar
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.origin import UNKNOWN, Origin
+from meshonet.geometry.parts import Part, check_parts, known_parts
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,9 +36,9 @@ class Grid:
 
     Parameters
     ----------
-    nodes : (ni, nj, 2) float64, any unit of length, kept in planar layout (see `geometry.arrays`).
+    nodes : (ni, nj, 2) float64, any unit of length, kept in planar layout (see `meshonet.geometry.arrays`).
     topology : ``quad``, ``o`` or ``c``.
-    parts : named parts; empty means those of `geometry.parts.known_parts`.
+    parts : named parts; empty means those of `meshonet.geometry.parts.known_parts`.
     name : what the input called this shape.
     provenance : how the grid was made: method, settings, version.
     origin : that of its boundary.

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 LARGEST = 10.0
 """A ratio beyond this between neighbouring cells is refused."""

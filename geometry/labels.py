@@ -8,11 +8,11 @@ from itertools import groupby
 
 import numpy as np
 
-from geometry.arrays import SIDES, Floats, Side
-from geometry.boundary import Boundary
-from geometry.parts import Part
-from geometry.sampling import Sampling
-from geometry.shape import Shape
+from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.parts import Part
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shape import Shape
 
 _BLOCK = 1 << 22
 """Distances worked out at a time."""

@@ -29,8 +29,8 @@ from typing import TypeVar
 import numpy as np
 
 from geometry import _lift
-from geometry.arrays import Complexes, Floats
-from geometry.errors import InputError
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.errors import InputError
 
 SECOND_PRONG = 0.25  # as in lift_kernel.c
 

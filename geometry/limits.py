@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.corners import Indices, turning
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.corners import Indices, turning
 
 SLACK = 0.25
 """How far a tangent may leave the angle between its two chords, as a part of the turns around it."""

@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from geometry.arrays import Complexes
+from meshonet.geometry.arrays import Complexes
 
 Axis: TypeAlias = tuple[complex, complex]
 """A straight line: a point of it, and its direction squared (a unit complex number)."""

@@ -20,9 +20,9 @@ import re
 
 import numpy as np
 
-from geometry.airfoil import Airfoil
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 POINTS = 161
 """Points a surface: the spline through them is then within 2e-6 chord of the formula."""

@@ -12,11 +12,11 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from geometry.arrays import SIDES
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.geometry.arrays import SIDES
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:

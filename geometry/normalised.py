@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def normalised(grid: Grid) -> Grid:

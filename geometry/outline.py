@@ -15,16 +15,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary, polygon_area
-from geometry.corners import Indices, turning
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
-from geometry.section import check_extent
-from geometry.simple import check_outline
-from geometry.stretch import stretch_arcs
-from geometry.topology import o_boundary
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.corners import Indices, turning
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+from meshonet.geometry.section import check_extent
+from meshonet.geometry.simple import check_outline
+from meshonet.geometry.stretch import stretch_arcs
+from meshonet.geometry.topology import o_boundary
 
 _LEAST_TURN = np.radians(30.0)
 """A corner that turns less does not count as one of the four of a domain."""
@@ -76,7 +76,7 @@ class Outline:
 
         Spacing is by arc length on each edge (around all of the body): ``uniform`` and ``auto`` in equal
         steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``; around a smooth body
-        ``auto`` is ``conformal`` (`geometry.conformal`). Corners of the curve are nodes.
+        ``auto`` is ``conformal`` (`meshonet.geometry.conformal`). Corners of the curve are nodes.
 
         Raises
         ------
@@ -215,7 +215,7 @@ class Outline:
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> Floats:
         """Return the arc lengths (ni,) of the nodes around a body."""
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
-            from geometry.conformal import conformal_knots
+            from meshonet.geometry.conformal import conformal_knots
 
             try:
                 return conformal_knots(curve, curve.corners[curve.corners > 0], ni)

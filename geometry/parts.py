@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import SIDES, Floats, Side, Topology
-from geometry.errors import InputError
+from meshonet.geometry.arrays import SIDES, Floats, Side, Topology
+from meshonet.geometry.errors import InputError
 
 
 @dataclass(frozen=True)

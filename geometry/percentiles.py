@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import _cells
-from geometry.arrays import Floats
-from geometry.metrics import METRICS
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.metrics import METRICS
 
 TILES, TILE = 4096, 8
 """Tiles of the sample, and their cells along each direction."""

@@ -25,13 +25,13 @@ from typing import Literal
 
 import numpy as np
 
-from geometry.faces import Faces, faces
-from geometry.grid import Grid
-from geometry.metrics import NAMES
-from geometry.parts import Part
-from geometry.quality import Quality
-from geometry.steps import Extreme, Growth, growth
-from geometry.wall_rows import WallRow, wall_row
+from meshonet.geometry.faces import Faces, faces
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.metrics import NAMES
+from meshonet.geometry.parts import Part
+from meshonet.geometry.quality import Quality
+from meshonet.geometry.steps import Extreme, Growth, growth
+from meshonet.geometry.wall_rows import WallRow, wall_row
 
 Level = Literal["warn", "fail"]
 Verdict = Literal["pass", "warn", "fail", "none"]

@@ -1,4 +1,4 @@
-"""How good a grid is: folded cells, and the metrics of `geometry.metrics` summarised.
+"""How good a grid is: folded cells, and the metrics of `meshonet.geometry.metrics` summarised.
 
 A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is.
 """
@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geometry import _cells
-from geometry.arrays import Floats, as_planar
-from geometry.errors import BadCell, InputError
-from geometry.grid import Grid
-from geometry.metrics import METRICS, NAMES
-from geometry.percentiles import Run, no_run, prepared
-from geometry.seams import wake_cells
+from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.errors import BadCell, InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.metrics import METRICS, NAMES
+from meshonet.geometry.percentiles import Run, no_run, prepared
+from meshonet.geometry.seams import wake_cells
 
 PERCENTS = (1.0, 99.0)
 FEW = 1 << 18
@@ -59,7 +59,7 @@ class Quality:
 def count_folded(nodes: Floats) -> int:
     """Return how many cells of `nodes` (ni, nj, 2) are folded.
 
-    Fastest, and free of copies, in the planar layout of `geometry.arrays`.
+    Fastest, and free of copies, in the planar layout of `meshonet.geometry.arrays`.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     ----------
     grid : any topology; neighbours across the seam of ``o`` and the wake of ``c`` count.
     percentiles : also find the 1st and 99th percentile of every metric, by linear interpolation between
-        cells. They take about a third of the time of the rest (`geometry.percentiles`).
+        cells. They take about a third of the time of the rest (`meshonet.geometry.percentiles`).
     """
     x, y = grid.x, grid.y
     cells = (grid.ni - 1) * (grid.nj - 1)

@@ -12,10 +12,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.curves import Curve
-from geometry.sampling import monotone_cubic
-from geometry.size_field import GROWTH, limited_size
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.sampling import monotone_cubic
+from meshonet.geometry.size_field import GROWTH, limited_size
 
 _ACROSS = 0.9
 _ALONG = 2.0

@@ -8,8 +8,8 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from geometry.arrays import TOPOLOGIES, Floats, Topology
-from geometry.errors import InputError
+from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology
+from meshonet.geometry.errors import InputError
 
 Spacing: TypeAlias = Literal["auto", "conformal", "uniform", "cosine", "tanh", "curvature"]
 SPACINGS: tuple[Spacing, ...] = get_args(Spacing)
@@ -42,7 +42,7 @@ class Sampling:
         closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
         edge, and ``exact`` otherwise.
     wake : length of a C boundary's wake in chords; None is as long as the far field is away.
-    wake_nodes : nodes of it, the trailing edge included; None leaves the number to `geometry.wake`.
+    wake_nodes : nodes of it, the trailing edge included; None leaves the number to `meshonet.geometry.wake`.
     viscous : the cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 

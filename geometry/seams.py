@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.grid import Grid
-from geometry.parts import wake_nodes
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import wake_nodes
 
 
 def wake_cells(grid: Grid) -> int:

@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats, distinct
-from geometry.boundary import polygon_area
-from geometry.corners import Indices, find_corners, turning
-from geometry.errors import InputError
-from geometry.thin import moved_apart
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.boundary import polygon_area
+from meshonet.geometry.corners import Indices, find_corners, turning
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.thin import moved_apart
 
 SHARP_GAP = 2e-4
 """Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without it."""
@@ -49,7 +49,7 @@ class Section:
     corners: Indices
 
     def moved_apart(self) -> Section:
-        """Return the section with its surfaces moved apart where they all but touch (`geometry.thin`)."""
+        """Return the section with its surfaces moved apart where they all but touch (`meshonet.geometry.thin`)."""
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
         return replace(self, points=moved_apart(self.points, int(np.argmax(_distance(self.points, edge)))))
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from geometry.boundary import Boundary
-from geometry.crossed import check_edges
-from geometry.sampling import Sampling
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.crossed import check_edges
+from meshonet.geometry.sampling import Sampling
 
 
 class Shape(Protocol):

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry._segments import crossing_pairs
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 _BUDGET = 50_000_000
 """Comparisons before the sweep gives way to an index tree: a quarter of a second."""

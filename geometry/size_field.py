@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.curves import Curve
-from geometry.sampling import monotone_cubic
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.sampling import monotone_cubic
 
 GROWTH = math.log(1.10)
 """How fast a cell may grow along the wall: by 10 % from one to the next."""

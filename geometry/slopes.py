@@ -9,16 +9,16 @@ from __future__ import annotations
 import numpy as np
 
 from geometry._spline import solve_tridiagonal
-from geometry.arrays import Floats, distinct
-from geometry.corners import Indices
-from geometry.limits import limited
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.corners import Indices
+from meshonet.geometry.limits import limited
 
 
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
     Between corners the curve is the cubic spline whose tangent and curvature are continuous, with a
-    parabola in the intervals next to a corner. Then `geometry.limits` turns back what would be a bump.
+    parabola in the intervals next to a corner. Then `meshonet.geometry.limits` turns back what would be a bump.
 
     Parameters
     ----------

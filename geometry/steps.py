@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.grid import Grid
-from geometry.seams import across_wake, beyond_seam
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.seams import across_wake, beyond_seam
 
 ROWS = 128
 """Columns of nodes that are worked on at a time, so that large grids need no more memory than they have."""

@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.sampling import Spacing, monotone_cubic, spacing_cosine, spacing_tanh, spacing_uniform
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import Spacing, monotone_cubic, spacing_cosine, spacing_tanh, spacing_uniform
 
 MANY = 64
 """More corners than this, and than a quarter of the cells, are the steps of a drawing: no node seeks them."""
@@ -31,7 +31,7 @@ def stretch_arcs(
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
     if spacing == "curvature":
-        from geometry.size_field import distances_by_curvature
+        from meshonet.geometry.size_field import distances_by_curvature
 
         distance = distances_by_curvature(curve, begin, sign * length, cells)
     elif spacing == "cosine":

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.lift import lift_body, mirrored
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.lift import lift_body, mirrored
 
 
 def far_circle(centre: Floats, radius: float, n: int, start: float) -> Floats:

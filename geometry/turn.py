@@ -13,10 +13,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Side
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
 

@@ -19,14 +19,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.curves import Curve, resample_like
-from geometry.errors import InputError
-from geometry.growth import LARGEST, cells_for_growth, growth_ratio
-from geometry.parts import Part, c_parts, wake_nodes
-from geometry.sampling import TanhLaw
-from geometry.topology import straight
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve, resample_like
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.growth import LARGEST, cells_for_growth, growth_ratio
+from meshonet.geometry.parts import Part, c_parts, wake_nodes
+from meshonet.geometry.sampling import TanhLaw
+from meshonet.geometry.topology import straight
 
 C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest

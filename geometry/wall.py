@@ -17,14 +17,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.conformal import conformal_knots
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.rounding import half_rounds
-from geometry.sampling import Sampling, TanhLaw
-from geometry.size_field import arcs_by_curvature
-from geometry.stretch import on_corners
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.conformal import conformal_knots
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.rounding import half_rounds
+from meshonet.geometry.sampling import Sampling, TanhLaw
+from meshonet.geometry.size_field import arcs_by_curvature
+from meshonet.geometry.stretch import on_corners
 
 _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
@@ -77,10 +77,10 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
     Spacings: ``conformal`` has equal angles of the circle that the section is an image of
-    (`geometry.conformal`); ``tanh`` stretches each side between a step at its two edges; ``auto`` is
+    (`meshonet.geometry.conformal`); ``tanh`` stretches each side between a step at its two edges; ``auto`` is
     ``conformal``, or ``tanh`` where a step is given or the section has no usable map; ``cosine`` is the half
     circle's on each side, or ``tanh`` with its end steps where one is given or the edge is blunt; ``uniform``
-    has equal steps on a side; ``curvature`` follows `geometry.size_field`.
+    has equal steps on a side; ``curvature`` follows `meshonet.geometry.size_field`.
 
     Parameters
     ----------

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 DEPTH = 33
 """Nodes along a line that are looked at."""

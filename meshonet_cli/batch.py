@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from formats.output import whole_file
-from formats.registry import Kind, format_for_output
-from geometry.errors import InputError
+from meshonet.formats.output import whole_file
+from meshonet.formats.registry import Kind, format_for_output
+from meshonet.geometry.errors import InputError
 from meshonet_cli.member import Item, T
 from meshonet_cli.session import Session
 

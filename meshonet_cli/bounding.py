@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from formats.registry import read_shapes
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.sampling import Sampling
-from geometry.shape import Shape, edges_of
+from meshonet.formats.registry import read_shapes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shape import Shape, edges_of
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item

@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from formats.edges import LARGEST
-from formats.format import Heights
-from formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
-from formats.source import open_source
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.nested import coarser_grid
-from geometry.normalised import normalised
-from geometry.sampling import Sampling
-from geometry.turn import turned
+from meshonet.formats.edges import LARGEST
+from meshonet.formats.format import Heights
+from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
+from meshonet.formats.source import open_source
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.nested import coarser_grid
+from meshonet.geometry.normalised import normalised
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.turn import turned
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item
@@ -168,7 +168,7 @@ def in_plot3d(
 
 def print_formats(session: Session, *, as_json: bool) -> int:
     """Print what every format can do, one JSON object each when asked, and return the exit code."""
-    from formats.catalogue import plain, rows
+    from meshonet.formats.catalogue import plain, rows
 
     if as_json:
         for row in rows():

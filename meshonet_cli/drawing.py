@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from formats.format import only_one
-from formats.registry import format_for_output
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.metrics import METRICS, NAMES
-from geometry.quality import folded_cells, per_cell
+from meshonet.formats.format import only_one
+from meshonet.formats.registry import format_for_output
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.metrics import METRICS, NAMES
+from meshonet.geometry.quality import folded_cells, per_cell
 from meshonet_cli.batch import Destination
 
 PICTURES = ("png", "svg", "pdf")
@@ -35,7 +35,7 @@ class Picture:
 
     def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
         """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""
-        from formats.figure import Colouring, write
+        from meshonet.formats.figure import Colouring, write
 
         grid = only_one(grids, "a picture")
         colouring = None
@@ -120,7 +120,7 @@ def zoom_box(text: str | None) -> tuple[float, float, float, float] | None:
 def _write_metrics(path: Path, grids: Iterable[Grid]) -> None:
     import numpy as np
 
-    from formats.vts import write
+    from meshonet.formats.vts import write
 
     grid = only_one(grids, "a .vts file")
     cells = {name: per_cell(grid, name) for name in NAMES}

@@ -9,12 +9,12 @@ from importlib import import_module
 
 import numpy as np
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.families.family import FAMILIES, Family, family
-from geometry.families.split import split
-from geometry.origin import Origin
-from geometry.sampling import Sampling
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.family import FAMILIES, Family, family
+from meshonet.geometry.families.split import split
+from meshonet.geometry.origin import Origin
+from meshonet.geometry.sampling import Sampling
 from meshonet_cli.member import Item
 from meshonet_cli.session import Session
 
@@ -22,7 +22,7 @@ NODES = 101
 """Nodes along xi and eta when nobody says, as in the paper."""
 
 RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bodies"}
-"""Modules in `geometry.families` of shapes that have no parameter, by the family's name."""
+"""Modules in `meshonet.geometry.families` of shapes that have no parameter, by the family's name."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Draw:
         """Return the boundary with the node counts of `sampling`."""
         ni, nj = sampling.ni or NODES, sampling.nj or NODES
         if self.family is None:
-            module = import_module(f"geometry.families.{RANDOM[self.kind]}")
+            module = import_module(f"meshonet.geometry.families.{RANDOM[self.kind]}")
             drawn: Boundary = module.boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
             return drawn
         origin = Origin((("parameter", self.parameter),), self.split)

@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from formats.registry import read_grids
-from geometry.compare import Difference, compare
-from geometry.errors import BadCell, InputError
-from geometry.grid import Grid
-from geometry.profiles import Figures, Judgement, judge
-from geometry.quality import Quality, measure, worst_cells
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.compare import Difference, compare
+from meshonet.geometry.errors import BadCell, InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.profiles import Figures, Judgement, judge
+from meshonet.geometry.quality import Quality, measure, worst_cells
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.gates import Gate
 from meshonet_cli.judging import (
@@ -146,7 +146,7 @@ def grade_grids(
     other : file of grids to compare with.
     pairing : which of them goes with which, see `meshonet_cli.pairing`.
     summary : print one table over all grids in place of one for each.
-    profile : thresholds of `geometry.profiles` to judge by.
+    profile : thresholds of `meshonet.geometry.profiles` to judge by.
     outputs : figures and files of metrics to write of each grid.
     """
     for destination in outputs:

@@ -9,14 +9,17 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from formats.output import whole_file
-from formats.registry import read_grids, read_shapes
-from geometry.boundary import Boundary
-from geometry.errors import NoValidGridError
-from geometry.grid import Grid
-from geometry.quality import count_folded, measure, worst_cells
-from geometry.sampling import Sampling
-from geometry.shape import Shape, edges_of
+from meshonet.formats.output import whole_file
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded, measure, worst_cells
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shape import Shape, edges_of
+from meshonet.solvers.guard import guard
+from meshonet.solvers.progress import listening
+from meshonet.solvers.solution import Solution
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.gates import Gate, need_percentiles
@@ -26,12 +29,9 @@ from meshonet_cli.report import Report
 from meshonet_cli.session import Session
 from meshonet_cli.together import Sampled, Together, shared
 from meshonet_cli.watching import Live, Recorder, Row, check_file, write
-from solvers.guard import guard
-from solvers.progress import listening
-from solvers.solution import Solution
 
 if TYPE_CHECKING:
-    from solvers.tfi import Blending
+    from meshonet.solvers.tfi import Blending
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Recipe:
         """Return what there is to tell of first cells that the guard changed."""
         if not any(key == "wall_spacing" or key.startswith("spacing_") for key in grid.provenance):
             return ()
-        from solvers.walls.spread import worst_first_cell
+        from meshonet.solvers.walls.spread import worst_first_cell
 
         error = worst_first_cell(grid)
         if error < 1e-8:
@@ -213,7 +213,7 @@ class Clock:
 
 def interpolated(edges: Boundary, blending: Blending) -> Solution:
     """Return the transfinite interpolation of `edges` as a solution."""
-    from solvers.tfi import tfi
+    from meshonet.solvers.tfi import tfi
 
     begun = time.perf_counter()
     grid = tfi(edges, blending)

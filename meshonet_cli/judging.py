@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from formats.patches import patches, roles
-from geometry.grid import Grid
-from geometry.parts import Part
-from geometry.profiles import Checked, Figures, Judgement, Limit
-from geometry.steps import Extreme
-from geometry.wall_rows import Spread, WallRow
+from meshonet.formats.patches import patches, roles
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
+from meshonet.geometry.profiles import Checked, Figures, Judgement, Limit
+from meshonet.geometry.steps import Extreme
+from meshonet.geometry.wall_rows import Spread, WallRow
 from meshonet_cli.report import aligned, figure
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from geometry.boundary import Boundary
+    from meshonet.geometry.boundary import Boundary
+    from meshonet.solvers.solution import Solution
     from meshonet_cli.options import SpacingName
-    from solvers.solution import Solution
 
 # fmt: off
 WallSpacing = Annotated[
@@ -93,8 +93,8 @@ def read_layers(
     InputError
         options that need or exclude each other, values out of range.
     """
-    from geometry.errors import InputError
-    from geometry.flat_plate import FORMULA, SOURCE, first_cell
+    from meshonet.geometry.errors import InputError
+    from meshonet.geometry.flat_plate import FORMULA, SOURCE, first_cell
 
     if wall_spacing is not None and y_plus is not None:
         raise InputError(
@@ -130,8 +130,8 @@ def spacing_along(layers: Layers | None, asked: SpacingName) -> SpacingName:
 
 def march(boundary: Boundary, layers: Layers, constant: int = 1) -> Solution:
     """Return the grid marched from the wall of `boundary`, with `constant` equal first layers."""
-    from geometry.errors import InputError
-    from solvers.hyperbolic import check_layers, hyperbolic
+    from meshonet.geometry.errors import InputError
+    from meshonet.solvers.hyperbolic import check_layers, hyperbolic
 
     try:
         check_layers(layers.wall_spacing, layers.growth)

@@ -9,18 +9,18 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from formats.registry import read_grids, read_shapes
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.families.split import WAYS, split
-from geometry.sampling import Sampling
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.split import WAYS, split
+from meshonet.geometry.sampling import Sampling
 from meshonet_cli.learning_log import Log
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
-    from solvers.neural.fit.plan import Plan
-    from solvers.neural.fit.team import Team
-    from solvers.neural.samples import Samples
+    from meshonet.solvers.neural.fit.plan import Plan
+    from meshonet.solvers.neural.fit.team import Team
+    from meshonet.solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)
@@ -30,8 +30,8 @@ class Run:
     Parameters
     ----------
     output : model file.
-    model : name in `solvers.neural.registry.MODELS`, or None to go by what the dataset holds.
-    plan : settings of `solvers.neural.fit.plan.Plan` that are given; None stands for the model's own.
+    model : name in `meshonet.solvers.neural.registry.MODELS`, or None to go by what the dataset holds.
+    plan : settings of `meshonet.solvers.neural.fit.plan.Plan` that are given; None stands for the model's own.
     settings : of the model, ``name=value`` each.
     split : way or file that says which grids are trained on; None for what the dataset says.
     held_out : shapes kept out to watch the loss, None for the model's own.
@@ -64,7 +64,7 @@ def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None
         import torch
     except ImportError:
         raise InputError("training needs torch", "install it: pip install 'meshonet[train]'") from None
-    from solvers.neural.fit.team import team
+    from meshonet.solvers.neural.fit.team import team
 
     torch.set_num_threads(run.threads)
     name = run.model or _suited(sources, fmt)
@@ -83,7 +83,7 @@ def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None
 def _trained(
     name: str, sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None
 ) -> dict[str, Any]:
-    from solvers.neural.registry import QUAD, STRIP, operator
+    from meshonet.solvers.neural.registry import QUAD, STRIP, operator
 
     recipe = {"command": "meshonet train", "datasets": [Path(s).name for s in sources]}
     rest: dict[str, Any] = {"recipe": recipe, "resume": run.resume}
@@ -94,7 +94,7 @@ def _trained(
         return _train_strip(sources, run, session, fellows, fmt, rest)
     if name == QUAD:
         return _train_quads(sources, run, session, fellows, fmt, rest)
-    from solvers.neural.fit.operators import PLAN, train_operator
+    from meshonet.solvers.neural.fit.operators import PLAN, train_operator
 
     samples = _samples(sources, run, fmt)
     model = operator(name, samples.topology, _settings(run.settings))
@@ -117,8 +117,8 @@ def _trained(
 def _train_strip(
     sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
 ) -> dict[str, Any]:
-    from solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
-    from solvers.neural.strips import solve_strips
+    from meshonet.solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
+    from meshonet.solvers.neural.strips import solve_strips
 
     if run.settings:
         raise InputError("the strip operator takes no --set", "leave it out, or choose another --model")
@@ -137,11 +137,11 @@ def _train_strip(
 def _train_quads(
     sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
 ) -> dict[str, Any]:
-    from solvers.neural.fit.quad_grids import quads
-    from solvers.neural.fit.quads import HELD_OUT, PLAN, train_quads
-    from solvers.neural.quads.encoding import HEADS
-    from solvers.neural.quads.model import load_quads
-    from solvers.neural.weights import model_path
+    from meshonet.solvers.neural.fit.quad_grids import quads
+    from meshonet.solvers.neural.fit.quads import HELD_OUT, PLAN, train_quads
+    from meshonet.solvers.neural.quads.encoding import HEADS
+    from meshonet.solvers.neural.quads.model import load_quads
+    from meshonet.solvers.neural.weights import model_path
 
     _refuse_splits(run, "quad")
     plan = _planned(PLAN, run.plan, long=False)
@@ -175,7 +175,7 @@ def _refuse_splits(run: Run, name: str) -> None:
 
 def _by_method(source: str, fmt: str | None) -> tuple[str, Samples]:
     """Return the method that made the first grid of a dataset, and all its grids."""
-    from solvers.neural.samples import gathered
+    from meshonet.solvers.neural.samples import gathered
 
     grids = read_grids(source, fmt)
     first = next(grids)
@@ -228,7 +228,7 @@ def _suited(sources: Sequence[str], fmt: str | None) -> str:
 
 
 def _samples(sources: Sequence[str], run: Run, fmt: str | None) -> Samples:
-    from solvers.neural.samples import gathered
+    from meshonet.solvers.neural.samples import gathered
 
     samples = gathered(grid for source in sources for grid in read_grids(source, fmt))
     if run.split is None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from formats.output import whole_file
+from meshonet.formats.output import whole_file
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
-    from solvers.neural.fit.loop import Progress
-    from solvers.neural.fit.plan import Plan
+    from meshonet.solvers.neural.fit.loop import Progress
+    from meshonet.solvers.neural.fit.plan import Plan
 
 LINES = 25
 """Told of a run where there is no terminal."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 if TYPE_CHECKING:
-    from geometry.sampling import Sampling
+    from meshonet.geometry.sampling import Sampling
 
 # the library's own choices, repeated here because its modules load numpy; a test holds them equal
 TopologyName = Literal["auto", "quad", "o", "c"]
@@ -159,7 +159,7 @@ def sampling(
     InputError
         a value that cannot be read or is out of range.
     """
-    from geometry.sampling import Sampling
+    from meshonet.geometry.sampling import Sampling
 
     ni, nj = (None, None) if res is None else resolution(res)
     return Sampling(ni, nj, topology=topology, spacing=spacing, corners=four_corners(corners), **rest)
@@ -180,7 +180,7 @@ def resolution(text: str) -> tuple[int, int]:
     """
     found = re.fullmatch(r"\s*(\d{1,9})\s*(?:[xX]\s*(\d{1,9})\s*)?", text, re.ASCII)
     if found is None:
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         raise InputError(
             f"{text!r} is not a number of nodes", "use N or NIxNJ, e.g. 200 or 400x100", source="--res"
@@ -206,7 +206,7 @@ def four_corners(text: str) -> tuple[int, int, int, int] | None:
         return None
     words = text.split(",")
     if len(words) != 4 or not all(re.fullmatch(r"\s*\d{1,9}\s*", word, re.ASCII) for word in words):
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         problem = f"{text!r} is not four points"
         raise InputError(problem, "use auto or I,J,K,L, e.g. 0,40,60,100", source="--corners")
@@ -232,7 +232,7 @@ def polish_steps(text: str) -> Literal["auto", "off"] | int:
     if text == "off":
         return "off"
     if not re.fullmatch(r"\d{1,3}", text, re.ASCII):
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         raise InputError(f"{text!r} is not a number of steps", "use auto, off or e.g. 2", source="--polish")
     return int(text)
@@ -256,7 +256,7 @@ def coarse_nodes(text: str) -> Literal["auto"] | int | None:
     if text in ("off", "0"):
         return None
     if not re.fullmatch(r"[0-9]{1,6}", text) or int(text) < 9:
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         raise InputError(
             f"{text!r} is not a number of nodes from 9 on", "use auto, off or e.g. 65", source="--coarse"
@@ -273,7 +273,7 @@ def tolerance(value: float | None) -> float | None:
         it is not.
     """
     if value is not None and not 0 < value < 1:
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         raise InputError(f"{value:g} is not between 0 and 1", "use e.g. 1e-8", source="--tol")
     return value
@@ -282,7 +282,7 @@ def tolerance(value: float | None) -> float | None:
 def either(sources: list[str] | None, family: str | None) -> None:
     """Raise InputError unless there are either sources or a family."""
     if bool(sources) == bool(family):
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         problem = "both a source and --family" if sources else "neither a source nor --family"
         raise InputError(problem, "give one of them, see meshonet sample-boundary --help")
@@ -301,7 +301,7 @@ def only_with(needed: str, given: bool, **others: object) -> None:
         return
     for name, value in others.items():
         if value is not None:
-            from geometry.errors import InputError
+            from meshonet.geometry.errors import InputError
 
             option = "--" + name.replace("_", "-")
             raise InputError(f"{option} without {needed}", f"give {needed} as well, or drop {option}")

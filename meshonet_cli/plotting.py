@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from formats.registry import read_grids
-from geometry.grid import Grid
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.grid import Grid
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item

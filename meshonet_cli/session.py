@@ -10,8 +10,8 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
-from formats.source import printable
-from geometry.errors import InputError, MeshonetError
+from meshonet.formats.source import printable
+from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.report import explained
 from meshonet_cli.stopping import check
 

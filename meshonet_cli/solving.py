@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.solution import Solution
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.solution import Solution
 
 Method = Callable[[Boundary], Solution]
 Coarse = int | Literal["auto"] | None
@@ -27,23 +27,23 @@ def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0
         coarse and refine together; coarse and a grid to start from: that has the counts of the result.
     """
     if refine:
-        from solvers.refine import solve_refined
+        from meshonet.solvers.refine import solve_refined
 
         if isinstance(coarse, int):
             raise InputError("--coarse and --refine both solve on fewer nodes first", "give one of them")
         return partial(solve_refined, method=method, levels=refine)
     settings: dict[str, Any] = method.keywords
     if coarse == "auto" and not settings:
-        from solvers.automatic import solve_automatic
+        from meshonet.solvers.automatic import solve_automatic
 
         return partial(solve_automatic, method=method, name=name)
     if not isinstance(coarse, int):
         return method
     if settings.get("initial") is not None:
         raise InputError("a coarse solve has no use for a grid to start from", "drop --initial or --coarse")
-    from solvers.coarse import solve_coarse
-    from solvers.elliptic.solve import solve_thomas_middlecoff
-    from solvers.elliptic.steger_sorenson import solve_steger_sorenson
+    from meshonet.solvers.coarse import solve_coarse
+    from meshonet.solvers.elliptic.solve import solve_thomas_middlecoff
+    from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
 
     # the sweeps know no control functions
     uncontrolled = method.func not in (solve_thomas_middlecoff, solve_steger_sorenson)
@@ -53,14 +53,14 @@ def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0
 def solver_of(name: str) -> Callable[..., Solution]:
     """Return the solver behind a value of ``--method``: Winslow's where that is no other one's."""
     if name == "variational":
-        from solvers.variational.solve import solve as minimise
+        from meshonet.solvers.variational.solve import solve as minimise
 
         return minimise
     if name == "steger-sorenson":
-        from solvers.elliptic.steger_sorenson import solve_steger_sorenson
+        from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
 
         return solve_steger_sorenson
-    from solvers.elliptic.solve import solve, solve_thomas_middlecoff
+    from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 
     return solve_thomas_middlecoff if name == "thomas-middlecoff" else solve
 

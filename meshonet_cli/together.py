@@ -7,14 +7,14 @@ from contextlib import suppress
 from dataclasses import replace
 from itertools import islice
 
-from geometry.arrays import Topology
-from geometry.boundary import Boundary
-from geometry.errors import MeshonetError
-from geometry.sampling import Sampling
-from geometry.shape import Shape, edges_of
+from meshonet.geometry.arrays import Topology
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import MeshonetError
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shape import Shape, edges_of
+from meshonet.solvers.solution import Solution
 from meshonet_cli.delivery import Todo
 from meshonet_cli.member import Item
-from solvers.solution import Solution
 
 AHEAD = 64
 """Members that are read and solved together at the most."""

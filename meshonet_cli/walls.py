@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 import typer
 
 if TYPE_CHECKING:
-    from geometry.boundary import Boundary
-    from geometry.errors import InputError
+    from meshonet.geometry.boundary import Boundary
+    from meshonet.geometry.errors import InputError
+    from meshonet.solvers.solution import Solution
+    from meshonet.solvers.walls.heights import Heights
     from meshonet_cli.layers import Layers
-    from solvers.solution import Solution
-    from solvers.walls.heights import Heights
 
 SIDES = ("south", "north", "west", "east")
 UPRIGHT = 0.3
@@ -105,7 +105,7 @@ def read_edges(
     InputError
         a height that is not positive; constant layers or growth without any height.
     """
-    from geometry.errors import InputError
+    from meshonet.geometry.errors import InputError
 
     heights = {side: height for side, height in zip(SIDES, asked, strict=False) if height is not None}
     for side, height in heights.items():
@@ -141,7 +141,7 @@ class WithWalls:
     unused: Mapping[str, object] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         if self.name == "hyperbolic" and self.layers is None:
             problem = "--method hyperbolic without a first cell"
@@ -158,7 +158,7 @@ class WithWalls:
         InputError
             what was asked does not fit the boundary or the method.
         """
-        from geometry.errors import InputError
+        from meshonet.geometry.errors import InputError
 
         if boundary.topology != "quad":
             if self.edges.heights:
@@ -182,9 +182,9 @@ class WithWalls:
         """Return the grid of `boundary` with layers; all that takes is told as the grid's time."""
         from time import perf_counter
 
-        from solvers.elliptic import steger_sorenson  # noqa: F401  (loaded before the clock starts)
-        from solvers.walls import slide  # noqa: F401
-        from solvers.walls.spread import spread
+        from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401  (loaded before the clock starts)
+        from meshonet.solvers.walls import slide  # noqa: F401
+        from meshonet.solvers.walls.spread import spread
 
         begun = perf_counter()
         solution = self._solved(boundary, heights)
@@ -210,7 +210,10 @@ class WithWalls:
             return self._upright(solution, boundary, heights) if channel and not chosen else solution
         if channel:
             self._refuse(("--model", "--polish", "--answer"), "a channel with given wall nodes")
-        fewer = getattr(self._whole_function(), "__module__", "") in ("solvers.coarse", "solvers.refine")
+        fewer = getattr(self._whole_function(), "__module__", "") in (
+            "meshonet.solvers.coarse",
+            "meshonet.solvers.refine",
+        )
         if (channel or self.name == "steger-sorenson") and not fewer:
             return self._turned(boundary, heights)
         return self.method(boundary)
@@ -219,7 +222,7 @@ class WithWalls:
         """Return the method, solving on all nodes whatever their number."""
         from functools import partial
 
-        from solvers.automatic import solve_automatic
+        from meshonet.solvers.automatic import solve_automatic
 
         automatic = isinstance(self.method, partial) and self.method.func is solve_automatic
         return self.method.keywords["method"] if automatic else self.method  # type: ignore[attr-defined]
@@ -228,7 +231,7 @@ class WithWalls:
         return getattr(self._whole(), "func", None)
 
     def _slid(self, boundary: Boundary) -> Solution:
-        from solvers.walls.slide import slide_walls
+        from meshonet.solvers.walls.slide import slide_walls
 
         slid, controls = slide_walls(boundary)
         told = "wall nodes slid along south and north"
@@ -243,7 +246,7 @@ class WithWalls:
 
         Where that does not do, sources with the nodes of `boundary` as they were, if those do better.
         """
-        from solvers.elliptic.steger_sorenson import largest_lean
+        from meshonet.solvers.elliptic.steger_sorenson import largest_lean
 
         slid = solution.boundary
         if slid is None or largest_lean(solution.grid.nodes, slid) < UPRIGHT:
@@ -257,7 +260,7 @@ class WithWalls:
         return kept if largest_lean(kept.grid.nodes, boundary) < lean else turned
 
     def _turned(self, boundary: Boundary, heights: Heights) -> Solution:
-        from solvers.elliptic.steger_sorenson import solve_steger_sorenson
+        from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
 
         sides = {side: height for side in SIDES if (height := getattr(heights, side))}
         angle = 90.0 if self.edges.angle is None else self.edges.angle
@@ -271,7 +274,7 @@ class WithWalls:
         A wall spacing is in chords around a body and off south and north, in its own unit, in a four-sided
         domain. A y+ gives chords; the chord of a four-sided domain is the extent of its south side.
         """
-        from solvers.walls.heights import Heights
+        from meshonet.solvers.walls.heights import Heights
 
         found: dict[str, float] = {}
         if self.layers is not None:
@@ -304,13 +307,13 @@ class WithWalls:
 
 
 def _useless(option: str, what: str) -> InputError:
-    from geometry.errors import InputError
+    from meshonet.geometry.errors import InputError
 
     return InputError(f"{option} is of no use to {what}", f"drop {option}")
 
 
 def solve_function() -> Callable[..., Solution]:
     """Return the elliptic solver without sources."""
-    from solvers.elliptic.solve import solve
+    from meshonet.solvers.elliptic.solve import solve
 
     return solve

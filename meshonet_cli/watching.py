@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterable
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
-from formats.output import check_place
-from geometry.errors import InputError
-from solvers.progress import Cycle
-from solvers.solution import Solution
+from meshonet.formats.output import check_place
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.progress import Cycle
+from meshonet.solvers.solution import Solution
 
 COLUMNS = (
     "input",
@@ -40,7 +40,7 @@ class Row:
     method : that iterated.
     ni, nj : nodes of the grid.
     attempt : counted from 1; the next one begins where the one before diverged.
-    residual, change, folded, functional : see `solvers.progress.Cycle`; None where a method has none.
+    residual, change, folded, functional : see `meshonet.solvers.progress.Cycle`; None where a method has none.
     seconds : since the solve began.
     """
 

@@ -1,7 +1,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 Placed = tuple[NDArray[np.intp], Floats]
 

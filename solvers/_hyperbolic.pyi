@@ -1,4 +1,4 @@
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def scratch_size(n: int) -> int: ...
 def march(

@@ -1,4 +1,4 @@
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def fill_steps(steps: Floats, length: float, first: float, last: float, constant: int) -> float: ...
 def fill_lines(

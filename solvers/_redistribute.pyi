@@ -1,3 +1,3 @@
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, scratch: Floats) -> None: ...

@@ -1,4 +1,4 @@
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def energy(
     x: Floats, y: Floats, width: Floats, height: Floats, periodic: bool, shape: float, epsilon: float

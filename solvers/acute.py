@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from solvers.spline import places
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.spline import places
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
 """Angles of a corner up to which all is taken out, and from which nothing is."""

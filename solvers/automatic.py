@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from geometry.boundary import Boundary
-from geometry.quality import count_folded
-from solvers.coarse import solve_coarse
-from solvers.solution import Solution
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.solution import Solution
 
 FEWER = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
 """Nodes along a direction above which a method solves on fewer unless told, and how many.
@@ -22,7 +22,7 @@ def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], 
     Parameters
     ----------
     boundary : only large quads are solved on fewer nodes; where those fold, on twice as many. C boundaries
-        by ``auto`` are marched (`solvers.unasked`) or else minimised, on fewer nodes too: Winslow's lines
+        by ``auto`` are marched (`meshonet.solvers.unasked`) or else minimised, on fewer nodes too: Winslow's lines
         lean by 70 degrees along the wake, where small cells face large ones of the far field.
     method : a solver of boundary to solution.
     name : of the method, as in `FEWER`; others solve in full.
@@ -41,8 +41,10 @@ def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], 
 
 def _around_wake(boundary: Boundary) -> Solution:
     """Return the C grid that is marched, or where that does not suit the one of least energy."""
-    from solvers.unasked import march_unasked
-    from solvers.variational.solve import solve as minimise  # which evaluates by `solvers.coarse`
+    from meshonet.solvers.unasked import march_unasked
+    from meshonet.solvers.variational.solve import (
+        solve as minimise,  # which evaluates by `meshonet.solvers.coarse`
+    )
 
     return march_unasked(boundary) or _through_fewer(boundary, minimise, "variational")
 

@@ -1,8 +1,8 @@
 """A grid of any resolution from a small one: solve with few nodes, then evaluate at many.
 
 A few nodes describe a smooth grid. So the boundary is thinned to the coarse counts, a solver works there, and
-splines through its nodes are evaluated inside the full edges (`solvers.evaluation`). Around a body lines keep
-their own course instead (`solvers.coarse_around`). Thinned edges are taken between the given nodes at equal
+splines through its nodes are evaluated inside the full edges (`meshonet.solvers.evaluation`). Around a body lines keep
+their own course instead (`meshonet.solvers.coarse_around`). Thinned edges are taken between the given nodes at equal
 steps of their index.
 """
 
@@ -14,16 +14,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology, as_planar, planar_nodes
-from geometry.boundary import Boundary
-from geometry.corners import Indices
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.quality import angles, count_folded
-from solvers import acute, evaluation
-from solvers.coarse_around import evaluate_around
-from solvers.solution import Solution
-from solvers.spline import between
+from meshonet.geometry.arrays import Floats, Topology, as_planar, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.corners import Indices
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import angles, count_folded
+from meshonet.solvers import acute, evaluation
+from meshonet.solvers.coarse_around import evaluate_around
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.spline import between
 
 LEAST = 9
 """Fewest coarse nodes along a direction that describe anything."""
@@ -126,7 +126,7 @@ def sweep_kinks(
     `only_better` a kink is left alone around which the largest angle would not be smaller. Returns whether
     there are kinks.
     """
-    from solvers.elliptic.relax import relax
+    from meshonet.solvers.elliptic.relax import relax
 
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats, planar_nodes
-from geometry.boundary import Boundary
+from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.spline import bending, places, spline_matrix
 from solvers._combine import add_rows
-from solvers.spline import bending, places, spline_matrix
 
 STEEP, FLAT = 1.15, 0.5
 """Slopes of the rising cubic in harmonic means of both steps, between which they are those of a spline."""

@@ -4,8 +4,8 @@ With X the planes of a grid's nodes::
 
     x = S X Tᵀ + shares * (edges - S X Tᵀ there)
 
-S and T are cubic splines, less curved near acute corners (`solvers.acute`); what they miss of the edges is
-felt near these (`solvers.inwards`). A cubic swings between nodes, and where spacings differ much that may
+S and T are cubic splines, less curved near acute corners (`meshonet.solvers.acute`); what they miss of the edges is
+felt near these (`meshonet.solvers.inwards`). A cubic swings between nodes, and where spacings differ much that may
 fold cells although the coarse ones are valid. Then lines are made straight around these, as far as it takes:
 cells inside a valid coarse cell are valid between straight lines.
 """
@@ -17,12 +17,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded, folded_cells
-from solvers import acute
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded, folded_cells
+from meshonet.solvers import acute
+from meshonet.solvers.inwards import REACH
+from meshonet.solvers.spline import places
 from solvers._evaluate import evaluate_all
-from solvers.inwards import REACH
-from solvers.spline import places
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Planes of south and north (batch, 2, ni), west and east (batch, 2, nj)."""

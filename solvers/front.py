@@ -13,10 +13,10 @@ import math
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
-from geometry.boundary import Boundary, polygon_area
-from geometry.parts import wake_nodes
-from solvers.schedule import Edge, sharpest_edge
+from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.parts import wake_nodes
+from meshonet.solvers.schedule import Edge, sharpest_edge
 
 _OPENING = 5.0
 _NEAR = 0.3

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import BadCell, NoValidGridError, SolverError
-from geometry.grid import Grid
-from geometry.quality import count_folded, worst_cells
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded, worst_cells
 
 REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 
@@ -29,7 +29,7 @@ def guard(
     grid : what a solver made.
     boundary : what it was made for.
     allow_invalid : return `grid` as it is when nothing works.
-    margin : of `solvers.repair.repair`, or None for its own.
+    margin : of `meshonet.solvers.repair.repair`, or None for its own.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def guard(
 
 def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Yield the stages and nodes of one try after another; a valid one ends the search."""
-    from solvers.repair import MARGIN, repair
+    from meshonet.solvers.repair import MARGIN, repair
 
     margin = margin or MARGIN
     periodic = grid.topology == "o"
@@ -84,13 +84,13 @@ def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[
 
 
 def _solved(boundary: Boundary, start: Floats) -> Floats:
-    from solvers.elliptic.solve import solve
+    from meshonet.solvers.elliptic.solve import solve
 
     return solve(boundary, initial=Grid(start, boundary.topology)).grid.nodes
 
 
 def _interpolated(boundary: Boundary) -> Floats:
-    from solvers.tfi import tfi
+    from meshonet.solvers.tfi import tfi
 
     return tfi(boundary).nodes
 

@@ -18,19 +18,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.grid import Grid
-from geometry.growth import cells_for_growth, growth_ratio
-from geometry.parts import wake_nodes
-from geometry.quality import count_folded
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.growth import cells_for_growth, growth_ratio
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.front import Front
+from meshonet.solvers.reach import RISING, distance_to_march
+from meshonet.solvers.schedule import level_steps
+from meshonet.solvers.solution import Solution
 from solvers._hyperbolic import march, scratch_size
 from solvers._redistribute import redistribute
-from solvers.front import Front
-from solvers.reach import RISING, distance_to_march
-from solvers.schedule import level_steps
-from solvers.solution import Solution
 
 _FADE = 12.0
 """Rows over which the correction of the first cell fades out."""
@@ -180,7 +180,7 @@ def _marched(
 ) -> Floats | None:
     """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
 
-    Cells grow evenly along all lines (`solvers.schedule`), or (not `even`) steps by one ratio.
+    Cells grow evenly along all lines (`meshonet.solvers.schedule`), or (not `even`) steps by one ratio.
 
     Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
     circle of the body's size, and is corrected by marching again.

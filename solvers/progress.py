@@ -6,8 +6,8 @@ import contextlib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solvers.front import Front
-from solvers.schedule import Edge, level_steps
+from meshonet.solvers.front import Front
+from meshonet.solvers.schedule import Edge, level_steps
 
 if TYPE_CHECKING:
-    from solvers.hyperbolic import MarchSettings
+    from meshonet.solvers.hyperbolic import MarchSettings
 
 RISING = 0.75
 """Part of the levels over which the dissipation rises."""

@@ -6,7 +6,7 @@
     solve --prolong--> solve --prolong-->  solve
 
 The nodes of each boundary are among those of the next finer one. A solution is carried up as
-`solvers.coarse` does it: what it adds to the transfinite interpolation of its edges, by cubic splines.
+`meshonet.solvers.coarse` does it: what it adds to the transfinite interpolation of its edges, by cubic splines.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from geometry.boundary import Boundary
-from geometry.grid import Grid
-from geometry.nested import coarser_boundary
-from solvers.coarse import evaluate
-from solvers.solution import Solution
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.nested import coarser_boundary
+from meshonet.solvers.coarse import evaluate
+from meshonet.solvers.solution import Solution
 
 
 def solve_refined(boundary: Boundary, method: Callable[..., Solution], levels: int) -> Solution:

@@ -13,11 +13,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, as_planar
-from geometry.grid import Grid
-from geometry.quality import count_folded, folded_cells, per_cell
-from solvers.unfold import Patience, smooth, unfold
-from solvers.windows import Window, windows
+from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded, folded_cells, per_cell
+from meshonet.solvers.unfold import Patience, smooth, unfold
+from meshonet.solvers.windows import Window, windows
 
 MARGIN = 6
 """Cells around a group of folded ones that move with them, at first."""

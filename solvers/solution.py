@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from geometry.boundary import Boundary
-from geometry.grid import Grid
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.grid import Grid
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 
 @lru_cache(maxsize=16)

@@ -19,10 +19,10 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 from solvers._tfi import fill
 
 Blending = Literal["linear", "arclength"]

@@ -11,12 +11,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.parts import wake_nodes
-from geometry.quality import count_folded
-from solvers.hyperbolic import hyperbolic
-from solvers.solution import Solution
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.solution import Solution
 
 PART = 0.05
 """First cell over the smallest cell of the wall. At 0.25 lines lean by up to 80 degrees around some sections

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded
 from solvers._repair import minimise
 
 VALID = 1e-3

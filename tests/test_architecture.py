@@ -73,7 +73,7 @@ def test_help_loads_no_numpy_and_no_rich() -> None:
 
 
 def test_reading_the_registry_loads_no_format_library() -> None:
-    loaded = python("import formats.registry, sys; print(*sorted(sys.modules))").stdout.split()
+    loaded = python("import meshonet.formats.registry, sys; print(*sorted(sys.modules))").stdout.split()
     assert not set(HEAVY) & set(loaded)
 
 
@@ -101,7 +101,7 @@ def test_the_version_is_that_of_the_package() -> None:
 def test_choices_of_options_are_those_of_the_library() -> None:
     from typing import get_args
 
-    from geometry.sampling import SPACINGS
+    from meshonet.geometry.sampling import SPACINGS
 
     assert get_args(SpacingName) == SPACINGS
     assert set(get_args(TopologyName)) <= {"auto", "quad", "o", "c"}

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 from meshonet_cli.commands import COMMANDS
 
 ROOT = Path(__file__).parents[1]

@@ -17,9 +17,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import spsolve
 
-from formats.registry import read_grids
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 _AT = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3)
 

@@ -16,9 +16,9 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from formats.vts import write_grids
-from geometry.grid import Grid
-from solvers.neural.quads.differentiable import QuadGrids
+from meshonet.formats.vts import write_grids
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.neural.quads.differentiable import QuadGrids
 
 LENGTH, HEIGHT, THROAT = 3.0, 1.0, 0.6
 NODES = 121, 41

@@ -8,11 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from formats.format import Format, Heights
-from formats.plot3d.sniff import sniff
-from formats.plot3d.variant import ANY, Variant, parse_variant
-from formats.source import Source
-from geometry.grid import Grid
+from meshonet.formats.format import Format, Heights
+from meshonet.formats.plot3d.sniff import sniff
+from meshonet.formats.plot3d.variant import ANY, Variant, parse_variant
+from meshonet.formats.source import Source
+from meshonet.geometry.grid import Grid
 
 _SUFFIXES = {
     "ascii": (".p3d", ".xyz", ".fmt", ".x", ".dat"),
@@ -27,7 +27,7 @@ _TOLD = {
 
 
 def _read(source: Source, variant: Variant = ANY) -> Iterator[Grid]:
-    from formats.plot3d.read import read_grids  # loaded when there is a grid to read
+    from meshonet.formats.plot3d.read import read_grids  # loaded when there is a grid to read
 
     return read_grids(source, variant)
 
@@ -42,12 +42,12 @@ def _format(kind: str, given: Variant | None = None) -> Format:
         return _read(source, given or ANY)
 
     def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-        from formats.plot3d.write import write_blocks
+        from meshonet.formats.plot3d.write import write_blocks
 
         write_blocks(path, grids, variant.for_writing(), (0.0,) if solid else ())
 
     def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-        from formats.plot3d.write import write_blocks
+        from meshonet.formats.plot3d.write import write_blocks
 
         write_blocks(path, grids, variant.for_writing(), heights)
 
@@ -64,7 +64,7 @@ def _format(kind: str, given: Variant | None = None) -> Format:
 
 
 def variant_of(found: Format, text: str) -> Format:
-    """Return a Plot3D format in the variant of comma-separated words (`formats.plot3d.variant`)."""
+    """Return a Plot3D format in the variant of comma-separated words (`meshonet.formats.plot3d.variant`)."""
     given = parse_variant(text)
     return _format(
         given.one_of("ascii", "binary", "fortran", default=found.name.removeprefix("plot3d-")), given

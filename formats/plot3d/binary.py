@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.plot3d.layouts import Candidate, Layout, layouts
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 _MOST_RECORDS = 400_000
 _NAMES = {"<": "little endian", ">": "big endian"}

@@ -15,9 +15,9 @@ from math import prod
 
 import numpy as np
 
-from formats.planes import planar
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.formats.planes import planar
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 Dims = tuple[int, ...]
 Header = Callable[[int], "int | None"]
@@ -86,7 +86,7 @@ class Candidate:
     layout : the layout.
     arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
     told : the number type and byte order, for messages.
-    kind : words of `formats.plot3d.variant` for these.
+    kind : words of `meshonet.formats.plot3d.variant` for these.
     """
 
     layout: Layout
@@ -96,7 +96,7 @@ class Candidate:
 
     @property
     def traits(self) -> frozenset[str]:
-        """The words of `formats.plot3d.variant` that describe it."""
+        """The words of `meshonet.formats.plot3d.variant` that describe it."""
         layout = self.layout
         words = {
             "multi" if layout.counted else "single",

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import NoReturn
 
-from formats.edges import recovered
-from formats.plot3d import binary, text
-from formats.plot3d.layouts import Candidate, best
-from formats.plot3d.sniff import is_text
-from formats.plot3d.variant import ANY, Variant
-from formats.source import HEAD_BYTES, Source
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.edges import recovered
+from meshonet.formats.plot3d import binary, text
+from meshonet.formats.plot3d.layouts import Candidate, best
+from meshonet.formats.plot3d.sniff import is_text
+from meshonet.formats.plot3d.variant import ANY, Variant
+from meshonet.formats.source import HEAD_BYTES, Source
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def read_grids(source: Source, variant: Variant = ANY) -> Iterator[Grid]:

@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 
-from formats.source import HEAD_BYTES
-from geometry.errors import InputError
+from meshonet.formats.source import HEAD_BYTES
+from meshonet.geometry.errors import InputError
 
 _INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
 _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
@@ -20,7 +20,7 @@ def sniff(head: bytes) -> bool:
         return False
     if len(head) == HEAD_BYTES:
         return bool(_INTEGER_LINE.match(head)) if textual else _could_be_binary(head)
-    from formats.plot3d import binary, text
+    from meshonet.formats.plot3d import binary, text
 
     try:
         return bool(text.candidates(head) if textual else binary.candidates(head))

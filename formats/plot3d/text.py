@@ -8,10 +8,10 @@ from math import prod
 
 import numpy as np
 
-from formats.free_numbers import parsed
-from formats.plot3d.layouts import Candidate, Layout, layouts
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.formats.free_numbers import parsed
+from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
 
 _FREE_FORMAT = bytes.maketrans(b",;dDqQ\x1a\v\f", b"  eeee   ")
 _NUMBER = re.compile(rb"([+-]?(?:\d+\.?\d*|\.\d+))(?:e?([+-]\d{1,4})|e(\d{1,4}))?", re.IGNORECASE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from geometry.errors import InputError
+from meshonet.geometry.errors import InputError
 
 CHOICES = (
     ("ascii", "binary", "fortran"),

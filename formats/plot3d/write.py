@@ -10,11 +10,11 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from formats.plot3d.variant import Variant
-from formats.text_rows import write_rows
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.plot3d.variant import Variant
+from meshonet.formats.text_rows import write_rows
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 _LINE = 4
 """Numbers a line of text."""

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from geometry.simple import find_crossing
-from geometry.stretch import on_corners
-from geometry.topology import straight
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.simple import find_crossing
+from meshonet.geometry.stretch import on_corners
+from meshonet.geometry.topology import straight
 
 FINE = 960
 """Points of a curve before nodes are placed on it."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.stretch import on_corners
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.stretch import on_corners
 
 Corners = list[tuple[float, float]]
 

@@ -6,9 +6,9 @@ import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from geometry.arrays import Topology
-from geometry.boundary import Boundary
-from geometry.errors import InputError
+from meshonet.geometry.arrays import Topology
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
 
 FAMILIES = ("arch", "hexagon", "wrench", "semicircle", "airfoil", "hole")
 """Names of the families, each a module of this folder that ends in its `FAMILY`."""
@@ -69,5 +69,5 @@ def family(name: str) -> Family:
     """
     if name not in FAMILIES:
         raise InputError(f"family {name!r} is not known", "use one of " + ", ".join(FAMILIES))
-    found: Family = importlib.import_module(f"geometry.families.{name}").FAMILY
+    found: Family = importlib.import_module(f"meshonet.geometry.families.{name}").FAMILY
     return found

@@ -11,9 +11,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from geometry.simple import find_crossing
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.simple import find_crossing
 
 FINE = 601
 """Points of a side before nodes are placed on it."""

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import math
 
-from geometry.boundary import Boundary
-from geometry.families.edges import polyline
-from geometry.families.family import Family
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.families.edges import polyline
+from meshonet.geometry.families.family import Family
 
 
 def boundary(angle: float, ni: int, nj: int) -> Boundary:

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from geometry.airfoil import Airfoil
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.sampling import Sampling, Spacing
-from geometry.topology import straight
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import Sampling, Spacing
+from meshonet.geometry.topology import straight
 
 POINTS = 120  # a surface
 ORDER = 6  # of the Bernstein polynomials

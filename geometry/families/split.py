@@ -16,7 +16,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from geometry.errors import InputError
+from meshonet.geometry.errors import InputError
 
 Way = Literal["interpolation", "extrapolation", "random"]
 WAYS: tuple[str, ...] = get_args(Way)

@@ -15,9 +15,9 @@ what is learnt from some openings then holds for those between.
 
 from __future__ import annotations
 
-from geometry.boundary import Boundary
-from geometry.families.edges import Corners, polyline
-from geometry.families.family import Family
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.families.edges import Corners, polyline
+from meshonet.geometry.families.family import Family
 
 MIDDLE = 0.3
 """Opening whose steps along the top are nearly equal; others have its kinks' nodes."""

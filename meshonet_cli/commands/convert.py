@@ -88,7 +88,7 @@ def convert(
     debug: o.Debug = False,
 ) -> int:
     """Turn files from one format into another."""
-    from geometry.errors import InputError
+    from meshonet.geometry.errors import InputError
     from meshonet_cli.converting import Change, convert_files, in_plot3d, print_formats
     from meshonet_cli.session import Session
 

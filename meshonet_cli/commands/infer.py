@@ -88,13 +88,13 @@ def infer(
     """Make grids with a neural operator; with a first cell given, by marching from the wall."""
     from functools import partial
 
+    from meshonet.solvers.neural.inference import infer as operate
+    from meshonet.solvers.neural.inference import infer_many, many_of
     from meshonet_cli.batch import Destination
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids
     from meshonet_cli.session import Session
     from meshonet_cli.together import Together
-    from solvers.neural.inference import infer as operate
-    from solvers.neural.inference import infer_many, many_of
 
     layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
     unused = {

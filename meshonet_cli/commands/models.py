@@ -7,9 +7,9 @@ EXAMPLES = ("meshonet models", "meshonet models --json")
 
 def models(as_json: o.AsJson = False, debug: o.Debug = False) -> int:
     """List the operators that are shipped."""
+    from meshonet.solvers.neural.weights import described, shipped
     from meshonet_cli.listing import model_text
     from meshonet_cli.session import Session
-    from solvers.neural.weights import described, shipped
 
     session = Session(as_json=as_json, debug=debug)
     for name in shipped():

@@ -15,7 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 
 @dataclass(frozen=True, eq=False)

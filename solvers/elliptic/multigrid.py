@@ -14,12 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.solvers.elliptic.coarsening import Direction, uniform
+from meshonet.solvers.elliptic.control import Controls
+from meshonet.solvers.elliptic.patches import Patch, patches, reentrant
+from meshonet.solvers.tfi import Four, interpolate, parameters
 from solvers.elliptic._multigrid import Level, scratch_size
-from solvers.elliptic.coarsening import Direction, uniform
-from solvers.elliptic.control import Controls
-from solvers.elliptic.patches import Patch, patches, reentrant
-from solvers.tfi import Four, interpolate, parameters
 
 
 @dataclass(frozen=True)

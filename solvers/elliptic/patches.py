@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.corners import find_corners, turning
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.corners import find_corners, turning
+from meshonet.solvers.elliptic.coarsening import Direction
+from meshonet.solvers.tfi import Four
 from solvers.elliptic._multigrid import Level
-from solvers.elliptic.coarsening import Direction
-from solvers.tfi import Four
 
 REENTRANT = np.radians(30.0)
 """A corner whose angle inside the domain is larger than 180 degrees by this is relaxed more."""

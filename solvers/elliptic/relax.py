@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.elliptic.coarsening import uniform
 from solvers.elliptic._multigrid import Level, scratch_size
-from solvers.elliptic.coarsening import uniform
 
 
 def relax(nodes: Floats, sweeps: int) -> None:

@@ -13,14 +13,14 @@ import time
 
 import numpy as np
 
-from geometry.arrays import SIDES, Floats, planar_nodes
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.grid import Grid
-from solvers.elliptic.control import Controls, thomas_middlecoff
-from solvers.elliptic.multigrid import Multigrid, Settings
-from solvers.progress import tell
-from solvers.solution import Solution
+from meshonet.geometry.arrays import SIDES, Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.elliptic.control import Controls, thomas_middlecoff
+from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
+from meshonet.solvers.progress import tell
+from meshonet.solvers.solution import Solution
 
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
 """Settings tried in turn when the residual grows, stalls or is not finite.
@@ -58,14 +58,14 @@ def solve(
     max_cycles : cycles on the finest level at the most.
     initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
         nodes are replaced.
-    controls : control functions (`solvers.elliptic.control`), none when not given.
+    controls : control functions (`meshonet.solvers.elliptic.control`), none when not given.
     method : what the solution is called.
 
     Returns
     -------
     Solution
         the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be folded
-        at re-entrant corners: see `solvers.guard`.
+        at re-entrant corners: see `meshonet.solvers.guard`.
 
     Raises
     ------
@@ -103,7 +103,7 @@ def solve_thomas_middlecoff(
 ) -> Solution:
     """Solve Winslow's equations with the control functions of the edges' own spacing.
 
-    As `solve`, with `solvers.elliptic.control.thomas_middlecoff`.
+    As `solve`, with `meshonet.solvers.elliptic.control.thomas_middlecoff`.
     """
     return solve(
         boundary,

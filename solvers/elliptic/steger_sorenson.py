@@ -6,8 +6,8 @@
                              ^                                      |
                              +------- until angles are right -------+    first on few nodes, then on all
 
-The sources are those of `solvers.elliptic.wall_control`. They can hold first cells that are somewhat thinner
-than even rows; where thinner ones are asked for, the solver goes part of the way and `solvers.walls.spread`
+The sources are those of `meshonet.solvers.elliptic.wall_control`. They can hold first cells that are somewhat thinner
+than even rows; where thinner ones are asked for, the solver goes part of the way and `meshonet.solvers.walls.spread`
 the rest, along lines that by then leave the wall as they should.
 """
 
@@ -19,17 +19,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.grid import Grid
-from geometry.quality import count_folded
-from solvers.coarse import evaluate, thinned
-from solvers.elliptic.control import Controls, Factors
-from solvers.elliptic.multigrid import Multigrid
-from solvers.elliptic.solve import check_settings, solve
-from solvers.elliptic.wall_control import ControlledEdge, layers_at
-from solvers.solution import Solution
+from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.coarse import evaluate, thinned
+from meshonet.solvers.elliptic.control import Controls, Factors
+from meshonet.solvers.elliptic.multigrid import Multigrid
+from meshonet.solvers.elliptic.solve import check_settings, solve
+from meshonet.solvers.elliptic.wall_control import ControlledEdge, layers_at
+from meshonet.solvers.solution import Solution
 
 FEW = 129
 """Nodes along a direction up to which sources are sought first."""
@@ -48,7 +48,7 @@ CLOSE = 0.002
 
 THINNEST = 0.5
 """Thinnest first cells that sources are to hold, in those of Winslow's solution; below that
-`solvers.walls.spread` takes over."""
+`meshonet.solvers.walls.spread` takes over."""
 
 RELAXATION = 0.5
 """Part of the linear answer by which sources are corrected."""
@@ -71,7 +71,7 @@ def solve_steger_sorenson(
     heights : of the first cells by side, in its unit, 0 for any; the sides named are those under control.
         None: south and north of a quad, the body of an o, of any height.
     angle : in degrees between an edge's direction and the lines that leave it.
-    tol, max_cycles : of the last cycles, as in `solvers.elliptic.solve.solve`.
+    tol, max_cycles : of the last cycles, as in `meshonet.solvers.elliptic.solve.solve`.
     initial : start from this grid instead of Winslow's solution.
 
     Returns

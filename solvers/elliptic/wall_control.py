@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.curves import Curve
-from solvers.elliptic.control import Controls, Factors
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves import Curve
+from meshonet.solvers.elliptic.control import Controls, Factors
 
 DECAY = 6.0
 """Exponent of the decay from an edge to the opposite one."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 
 def metric_terms(nodes: Floats) -> tuple[Floats, Floats, Floats]:

@@ -1,3 +1,3 @@
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
 
 def sample(modes: Complexes, gain: Floats, unit: Complexes, columns: Floats) -> None: ...

@@ -1,3 +1,3 @@
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def step(c: Floats, height: float, matrices: Floats, eigenvalues: Floats, smooth: Floats) -> float: ...

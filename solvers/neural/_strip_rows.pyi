@@ -3,8 +3,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
-from geometry.lift import Lift
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.lift import Lift
 
 def fill(
     x: Floats,

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
-from geometry.lift import Lift
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.lift import Lift
+from meshonet.solvers.neural.evaluate import StripGrid
 from solvers.neural._strip_rows import halve
-from solvers.neural.evaluate import StripGrid
 
 CELLS = 4.0  # reach of a nudge, in cells either way; with 3 some cells fold
 LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 
 def points(n: int) -> Floats:

@@ -9,15 +9,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from solvers.neural.operator import Polish
-from solvers.neural.operator import infer as infer_strip
-from solvers.neural.quads.operator import in_batches
-from solvers.neural.weights import DEFAULT
-from solvers.solution import Solution
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.neural.operator import Polish
+from meshonet.solvers.neural.operator import infer as infer_strip
+from meshonet.solvers.neural.quads.operator import in_batches
+from meshonet.solvers.neural.weights import DEFAULT
+from meshonet.solvers.solution import Solution
 
 Device = Literal["cpu", "cuda"]
 
@@ -34,7 +34,7 @@ def infer_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary, those of equal size computed together.
 
-    Bodies that the strip operator cannot lift are solved as `solvers.neural.operator.infer` does.
+    Bodies that the strip operator cannot lift are solved as `meshonet.solvers.neural.operator.infer` does.
 
     Parameters
     ----------
@@ -87,11 +87,11 @@ def _quads(
     boundaries: Sequence[Boundary], model: str, topology: Topology, device: Device
 ) -> list[Floats | None]:
     if topology == "quad":
-        from solvers.neural.quads.differentiable import QuadGrids
+        from meshonet.solvers.neural.quads.differentiable import QuadGrids
 
         sides = _stacked(boundaries, ("south", "north", "west", "east"), device)
         return list(QuadGrids(model, device)(*sides).cpu().numpy())
-    from solvers.neural.quads.differentiable_around import BodyGrids
+    from meshonet.solvers.neural.quads.differentiable_around import BodyGrids
 
     south, north = _stacked(boundaries, ("south", "north"), device)
     return list(BodyGrids(model, device)(south, north, boundaries[0].nj).cpu().numpy())
@@ -102,7 +102,7 @@ def _strips(
 ) -> list[Floats | None]:
     import torch
 
-    from solvers.neural.differentiable import AirfoilGrids
+    from meshonet.solvers.neural.differentiable import AirfoilGrids
 
     steps = STEPS if polish == "auto" else 0 if polish == "off" else polish
     grids = AirfoilGrids(model or DEFAULT, steps, device)

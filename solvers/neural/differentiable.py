@@ -1,6 +1,6 @@
 """Airfoil O-grids in torch: gradients from every node back to the nodes of the boundary, on any device.
 
-The arithmetic of `solvers.neural.operator` once more, on tensors, without the guard: lift, harmonic base,
+The arithmetic of `meshonet.solvers.neural.operator` once more, on tensors, without the guard: lift, harmonic base,
 network, a given number of Picard steps, halved corners, and the sum of all modes at the nodes.
 """
 
@@ -10,16 +10,16 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from solvers.neural.bisector import LARGEST, fading, shifts
-from solvers.neural.encoding import DEPTHS, SLOPE
-from solvers.neural.evaluate import StripGrid
-from solvers.neural.lifted import Lifted, lifted
-from solvers.neural.models.strip_fno import StripFNO
-from solvers.neural.strip import COLUMNS, MODES, across, interpolation, smoothing, wavenumbers
-from solvers.neural.tensors import check_sides
-from solvers.neural.weights import load_model
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.bisector import LARGEST, fading, shifts
+from meshonet.solvers.neural.encoding import DEPTHS, SLOPE
+from meshonet.solvers.neural.evaluate import StripGrid
+from meshonet.solvers.neural.lifted import Lifted, lifted
+from meshonet.solvers.neural.models.strip_fno import StripFNO
+from meshonet.solvers.neural.strip import COLUMNS, MODES, across, interpolation, smoothing, wavenumbers
+from meshonet.solvers.neural.tensors import check_sides
+from meshonet.solvers.neural.weights import load_model
 
 CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
 

@@ -16,13 +16,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
-from geometry.lift import Lift
-from geometry.mirror import Axis
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.lift import Lift
+from meshonet.geometry.mirror import Axis
+from meshonet.solvers.neural.panels import NODES, panels
+from meshonet.solvers.neural.strip import MODES, interpolation, wavenumbers
+from meshonet.solvers.neural.waves import SHARPNESS, columns
 from solvers.neural._strip_rows import fill
-from solvers.neural.panels import NODES, panels
-from solvers.neural.strip import MODES, interpolation, wavenumbers
-from solvers.neural.waves import SHARPNESS, columns
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
 

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
-from solvers.neural.encoding import VERSION
-from solvers.neural.strip import across, harmonic, picard
-from solvers.neural.strips import Strips
-from solvers.neural.weights import KIND, write_tensors
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.solvers.neural.encoding import VERSION
+from meshonet.solvers.neural.strip import across, harmonic, picard
+from meshonet.solvers.neural.strips import Strips
+from meshonet.solvers.neural.weights import KIND, write_tensors
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}
 

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology, as_planar
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from solvers.neural.operator import Polish, infer_strips
-from solvers.neural.operator import infer as infer_strip
-from solvers.neural.quads.encoding import KIND as QUADS
-from solvers.neural.weights import KIND, kind_of, load_model, model_path
-from solvers.solution import Solution
+from meshonet.geometry.arrays import Floats, Topology, as_planar
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.neural.operator import Polish, infer_strips
+from meshonet.solvers.neural.operator import infer as infer_strip
+from meshonet.solvers.neural.quads.encoding import KIND as QUADS
+from meshonet.solvers.neural.weights import KIND, kind_of, load_model, model_path
+from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
-    from solvers.neural.devices import Device
-    from solvers.neural.trained import Trained
+    from meshonet.solvers.neural.devices import Device
+    from meshonet.solvers.neural.trained import Trained
 
 FOUR_SIDED = "quad-general"
 """Model for four-sided domains when none is named and a network is wanted: steps after it, or a device."""
@@ -43,8 +43,8 @@ def infer(
     ----------
     model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for what measures
         best: with a given `polish` or `device` the network for the topology, else often no network.
-    polish : of the strip operator (`solvers.neural.operator.infer`) or of a quad model
-        (`solvers.neural.quads.inference.infer_quads`).
+    polish : of the strip operator (`meshonet.solvers.neural.operator.infer`) or of a quad model
+        (`meshonet.solvers.neural.quads.inference.infer_quads`).
     answer : what becomes of the answer of a model that does not meet the boundary exactly.
     device : where torch computes the grid; None computes it here, without torch.
 
@@ -65,10 +65,10 @@ def infer(
     if kind == KIND:
         return infer_strip(boundary, model, polish)
     if model is not None and kind == QUADS:
-        from solvers.neural.quads.inference import infer_quads
+        from meshonet.solvers.neural.quads.inference import infer_quads
 
         return infer_quads([boundary], model, polish)[0]
-    from solvers.neural.trained import load_trained
+    from meshonet.solvers.neural.trained import load_trained
 
     trained = load_trained(model_path(model))
     begun = time.perf_counter()
@@ -100,7 +100,7 @@ def many_of(model: str | None, device: Device | None = None, polish: Polish = "a
     kind = KIND if model is None else kind_of(model_path(model))
     if kind != QUADS:
         return "o" if kind == KIND else None
-    from solvers.neural.quads.model import load_quads
+    from meshonet.solvers.neural.quads.model import load_quads
 
     return load_quads(model_path(model)).topology
 
@@ -121,12 +121,12 @@ def infer_many(
         as `infer` does; a model that makes one grid at a time, or none on a device.
     """
     if device is not None:
-        from solvers.neural.devices import infer_on
+        from meshonet.solvers.neural.devices import infer_on
 
         if kind_of(model_path(_named(model))) not in (KIND, QUADS):
             raise InputError(f"model {model} has no grids on a device", "leave --device out")
         return infer_on(device, boundaries, model, polish, many_of(model) if _is_quad(model) else None)
-    from solvers.neural.quads.inference import infer_quads
+    from meshonet.solvers.neural.quads.inference import infer_quads
 
     kind = KIND if _named(model) is None else kind_of(model_path(model))
     if kind == KIND:
@@ -154,7 +154,7 @@ def answered(trained: Trained, boundary: Boundary, *, paste: bool = True) -> tup
     """
     found = trained.difference(boundary)
     if trained.model.base == "harmonic":
-        from solvers.neural.harmonic import extend
+        from meshonet.solvers.neural.harmonic import extend
 
         found += extend(boundary)
     nodes = as_planar(found)

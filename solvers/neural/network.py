@@ -7,7 +7,7 @@ A one-dimensional Fourier neural operator along theta, so that it commutes with 
     out = P h + K' h
 
 Li et al., Fourier Neural Operator for Parametric Partial Differential Equations (2020). The same layers in
-torch are `solvers.neural.models.strip_fno`; a test holds the two together.
+torch are `meshonet.solvers.neural.models.strip_fno`; a test holds the two together.
 """
 
 from __future__ import annotations

@@ -18,19 +18,19 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats, planar_nodes
-from geometry.boundary import Boundary
-from geometry.corners import turning
-from geometry.errors import InputError, SolverError
-from geometry.grid import Grid
-from geometry.lift import Lift, lift_body, mirrored
-from geometry.mirror import Axis, handedness
-from geometry.quality import count_folded
-from solvers.neural.bisector import halve_corners
-from solvers.neural.evaluate import StripGrid
-from solvers.neural.strip import MODES, across, harmonic, modes, picard
-from solvers.neural.weights import Model, load_model
-from solvers.solution import Solution
+from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.corners import turning
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.lift import Lift, lift_body, mirrored
+from meshonet.geometry.mirror import Axis, handedness
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.neural.bisector import halve_corners
+from meshonet.solvers.neural.evaluate import StripGrid
+from meshonet.solvers.neural.strip import MODES, across, harmonic, modes, picard
+from meshonet.solvers.neural.weights import Model, load_model
+from meshonet.solvers.solution import Solution
 
 Polish = Literal["auto", "off"] | int
 
@@ -68,8 +68,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         a model that does not exist or cannot be read.
     """
     if boundary.topology != "o":
-        from solvers.automatic import solve_automatic
-        from solvers.variational.solve import solve
+        from meshonet.solvers.automatic import solve_automatic
+        from meshonet.solvers.variational.solve import solve
 
         if model is not None:
             told = f"model {model} makes o grids, and this boundary is {boundary.topology}"
@@ -251,11 +251,11 @@ def _evaluated(boundary: Boundary, found: Walls, c: Complexes) -> tuple[Floats, 
 
 def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:
     """Return the grid by `hole-o` of a compact body, None where that has folds."""
-    from solvers.coarse import thinned
-    from solvers.neural.quads.around import compact
-    from solvers.neural.quads.encoding import LATENT
-    from solvers.neural.quads.inference import infer_quads
-    from solvers.neural.quads.unrolled import AROUND
+    from meshonet.solvers.coarse import thinned
+    from meshonet.solvers.neural.quads.around import compact
+    from meshonet.solvers.neural.quads.encoding import LATENT
+    from meshonet.solvers.neural.quads.inference import infer_quads
+    from meshonet.solvers.neural.quads.unrolled import AROUND
 
     if boundary.ni < LATENT or not compact(boundary):
         return None
@@ -272,7 +272,7 @@ def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:
 
 
 def _elliptic(boundary: Boundary, why: str, begun: float) -> Solution:
-    from solvers.elliptic.solve import solve
+    from meshonet.solvers.elliptic.solve import solve
 
     found = solve(boundary)
     return replace(

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 NODES = 16
 NEAREST = 0.25  # psi from the wall's outermost point to the first panel

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary
 
 
 def sensors(boundary: Boundary, count: int) -> Floats:

@@ -7,9 +7,9 @@ import importlib
 from collections.abc import Mapping
 from typing import Any
 
-from geometry.arrays import Topology
-from geometry.errors import InputError
-from solvers.neural.models.model import Operator
+from meshonet.geometry.arrays import Topology
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.models.model import Operator
 
 STRIP = "strip"
 """The airfoil operator in the periodic strip: trained from boundaries, shipped with the package."""
@@ -49,7 +49,7 @@ def operator(name: str, topology: Topology, settings: Mapping[str, Any] | None =
     if name not in OPERATORS:
         raise InputError(f"model {name!r} is not known", "use one of " + ", ".join(MODELS))
     module, kind = OPERATORS[name]
-    made = getattr(importlib.import_module(f"solvers.neural.models.{module}"), kind)
+    made = getattr(importlib.import_module(f"meshonet.solvers.neural.models.{module}"), kind)
     known = {field.name: field.default for field in dataclasses.fields(made)}
     if "periodic" in known:
         known["periodic"] = topology == "o"

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
 from solvers.neural._picard import step
 
 MODES = 63  # as in picard_kernel.h, like the next two

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Complexes
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.neural.operator import walls
-from solvers.neural.strip import across, harmonic, modes, picard
+from meshonet.geometry.arrays import Complexes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.operator import walls
+from meshonet.solvers.neural.strip import across, harmonic, modes, picard
 
 MOST_STEPS = 30
 CONVERGED = 2e-6  # change of w in a step (radians)

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from solvers.neural.encoding import encode
-from solvers.neural.strip import across, to_columns
-from solvers.neural.strips import Strips
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.neural.encoding import encode
+from meshonet.solvers.neural.strip import across, to_columns
+from meshonet.solvers.neural.strips import Strips
 
 HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from geometry.errors import InputError
+from meshonet.geometry.errors import InputError
 
 
 def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import TOPOLOGIES, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.neural.chebyshev import interpolation, points
-from solvers.neural.layers import Arrays, Weights
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.places import at_nodes, square
-from solvers.neural.registry import OPERATORS, operator, settings_of
-from solvers.neural.weights import read_tensors, write_tensors
-from solvers.spline import spline_matrix
+from meshonet.geometry.arrays import TOPOLOGIES, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.chebyshev import interpolation, points
+from meshonet.solvers.neural.layers import Arrays, Weights
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.places import at_nodes, square
+from meshonet.solvers.neural.registry import OPERATORS, operator, settings_of
+from meshonet.solvers.neural.weights import read_tensors, write_tensors
+from meshonet.solvers.spline import spline_matrix
 
 KIND = "meshonet operator"
 VERSION = 1

@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
 from solvers.neural._columns import sample
 
 TAPS = 14  # as in strip_rows_kernel.h

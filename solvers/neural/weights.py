@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
-from geometry.errors import InputError
-from solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
-from solvers.neural.network import Reals, StripNetwork, misfit
-from solvers.neural.strip import LEVELS, smoothing
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
+from meshonet.solvers.neural.network import Reals, StripNetwork, misfit
+from meshonet.solvers.neural.strip import LEVELS, smoothing
 
 DEFAULT = "airfoil-o"
 FOLDER = Path(__file__).parent / "pretrained"
@@ -44,7 +44,7 @@ class Model:
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
 
-        `hand` (batch,) is that of `geometry.mirror.handedness`: of a strip and its mirror image, whose modes
+        `hand` (batch,) is that of `meshonet.geometry.mirror.handedness`: of a strip and its mirror image, whose modes
         are conjugate, the network sees the same one, and the answer for a symmetric strip is made symmetric.
         Modes that Picard's steps would not correct are left out.
         """

@@ -1,7 +1,7 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def workspace(ni: int, nj: int) -> int: ...
 def energy(

@@ -9,16 +9,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded
-from solvers.progress import heard, tell
-from solvers.repair import repair
-from solvers.spline import spline_matrix
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.progress import heard, tell
+from meshonet.solvers.repair import repair
+from meshonet.solvers.spline import spline_matrix
+from meshonet.solvers.variational.functional import Weights, aspect_of, relief_of
+from meshonet.solvers.variational.preconditioner import minimiser
+from meshonet.solvers.variational.windowed import REACH, descend_windows, unfold
 from solvers.variational._variational import Minimiser, Stiffness
 from solvers.variational._variational import newton as newton_steps
-from solvers.variational.functional import Weights, aspect_of, relief_of
-from solvers.variational.preconditioner import minimiser
-from solvers.variational.windowed import REACH, descend_windows, unfold
 
 HARD = 1.1
 """Value of the functional around a body above which descents go on."""

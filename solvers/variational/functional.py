@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 
 @dataclass(frozen=True)

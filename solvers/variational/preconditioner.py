@@ -12,9 +12,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.variational.functional import Weights
 from solvers.variational._variational import Minimiser, Waves
-from solvers.variational.functional import Weights
 
 MODES = 512
 """Modes along a direction that are kept; finer ones are all divided by the same."""

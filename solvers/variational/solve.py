@@ -1,6 +1,6 @@
 """Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
 
-Each level starts from the minimum of the next coarser one, evaluated by splines (`solvers.coarse`). A start
+Each level starts from the minimum of the next coarser one, evaluated by splines (`meshonet.solvers.coarse`). A start
 with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. Smooth
 moves of the descents (`descent`) follow the Hessian of the coarsest level.
 """
@@ -12,19 +12,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.quality import angles, count_folded, widest_cell
-from solvers.coarse import divided, evaluate, sweep_kinks, thinned
-from solvers.solution import Solution
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import angles, count_folded, widest_cell
+from meshonet.solvers.coarse import divided, evaluate, sweep_kinks, thinned
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.variational.descent import descend, in_cells, stiffness_of, teller
+from meshonet.solvers.variational.functional import AROUND, WAKE, Weights, aspect_of
+from meshonet.solvers.variational.preconditioner import minimiser
+from meshonet.solvers.variational.start import winslow_start
+from meshonet.solvers.variational.windowed import REACH, unfold
 from solvers.variational._variational import energy, workspace
-from solvers.variational.descent import descend, in_cells, stiffness_of, teller
-from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of
-from solvers.variational.preconditioner import minimiser
-from solvers.variational.start import winslow_start
-from solvers.variational.windowed import REACH, unfold
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
@@ -78,7 +78,7 @@ def solve(
     initial: Grid | None = None,
     weights: Weights | None = None,
 ) -> Solution:
-    """Minimise the functional of `solvers.variational.functional` over the nodes inside `boundary`.
+    """Minimise the functional of `meshonet.solvers.variational.functional` over the nodes inside `boundary`.
 
     Parameters
     ----------

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import SolverError
-from solvers.elliptic.relax import relax
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import SolverError
+from meshonet.solvers.elliptic.relax import relax
+from meshonet.solvers.tfi import tfi
 
 RELAXED = 400
 """Cells up to which line relaxation alone is the quickest way to Winslow's solution."""
@@ -27,7 +27,7 @@ def winslow_start(boundary: Boundary) -> Floats:
         relax(nodes, SWEEPS)
         if np.isfinite(nodes).all():
             return nodes
-    from solvers.elliptic.solve import solve as winslow
+    from meshonet.solvers.elliptic.solve import solve as winslow
 
     try:
         return winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats, as_planar
-from geometry.quality import count_folded
+from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.variational.functional import Weights
+from meshonet.solvers.variational.preconditioner import minimiser
+from meshonet.solvers.windows import windows
 from solvers.variational._variational import Minimiser, energy, workspace
-from solvers.variational.functional import Weights
-from solvers.variational.preconditioner import minimiser
-from solvers.windows import windows
 
 SKEWED = 1.5
 """1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it."""
@@ -28,7 +28,7 @@ ITERATIONS = 30
 """In a window at the most."""
 
 STILL = 1e-3
-"""Moves at which it stops sooner, as `solvers.variational.solve.STILL`."""
+"""Moves at which it stops sooner, as `meshonet.solvers.variational.solve.STILL`."""
 
 REACH = 0.25
 """Cells that a node moves at the most in a first iteration."""
@@ -40,7 +40,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
     Parameters
     ----------
     aspect, weights : of the functional.
-    relief : as `solvers.variational.functional.relief_of`.
+    relief : as `meshonet.solvers.variational.functional.relief_of`.
     """
     skewed = skewness(nodes)
     poor = np.argwhere(skewed > SKEWED)

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import SIDES, Floats
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.growth import LARGEST
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.growth import LARGEST
 from solvers._layers import fill_steps
 
 

@@ -13,14 +13,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import Floats, planar_nodes
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.sampling import monotone_cubic
-from geometry.stretch import on_corners
-from solvers.elliptic.control import Controls, Factors
-from solvers.elliptic.multigrid import Multigrid
+from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import monotone_cubic
+from meshonet.geometry.stretch import on_corners
+from meshonet.solvers.elliptic.control import Controls, Factors
+from meshonet.solvers.elliptic.multigrid import Multigrid
 
 COUNTS = 129, 49
 """Nodes to slide at the most: along and between the walls."""

@@ -15,20 +15,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from geometry.arrays import SIDES, Floats, as_planar, planar_nodes
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.growth import LARGEST
-from geometry.parts import default_parts
-from geometry.sampling import monotone_cubic
-from geometry.stretch import on_corners
+from meshonet.geometry.arrays import SIDES, Floats, as_planar, planar_nodes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.growth import LARGEST
+from meshonet.geometry.parts import default_parts
+from meshonet.geometry.sampling import monotone_cubic
+from meshonet.geometry.stretch import on_corners
+from meshonet.solvers.guard import guard
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.walls.heights import Heights, arcs_in_layers, cells_needed, check_fit, edge_in_layers
 from solvers._layers import fill_lines
 from solvers._redistribute import redistribute
-from solvers.guard import guard
-from solvers.solution import Solution
-from solvers.walls.heights import Heights, arcs_in_layers, cells_needed, check_fit, edge_in_layers
 
 FADE = 12.0
 """Nodes over which the last correction of a first cell fades out."""

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from command_line import ROOT, Meshonet, Outcome, Process, dataset, duct, ellipse, wave
 
+from meshonet.solvers.neural.quads.encoding import HEADS
+from meshonet.solvers.neural.quads.export import write_model
+from meshonet.solvers.neural.quads.network import shapes
 from meshonet_cli.app import run
-from solvers.neural.quads.encoding import HEADS
-from solvers.neural.quads.export import write_model
-from solvers.neural.quads.network import shapes
 
 
 @pytest.fixture

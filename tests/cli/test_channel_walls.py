@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, duct
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 
 HEIGHTS = {"south": 1e-4, "north": 2e-3, "west": 5e-3, "east": 1e-3}
 

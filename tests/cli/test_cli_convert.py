@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from command_line import Meshonet, Process
 
-from formats.registry import TABLE, format_for_output, read_grids, read_shapes
-from geometry.grid import Grid
+from meshonet.formats.registry import TABLE, format_for_output, read_grids, read_shapes
+from meshonet.geometry.grid import Grid
 
 
 def write(path: str, grids: Sequence[Grid]) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from command_line import Meshonet
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 
 torch = pytest.importorskip("torch")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from command_line import Meshonet, ellipse, wave
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 
 
 def test_a_body_becomes_a_valid_o_grid(meshonet: Meshonet, body_h5: Path) -> None:

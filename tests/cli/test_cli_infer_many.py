@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from command_line import Meshonet
 
-from formats.registry import read_grids, read_shapes
-from solvers.neural.inference import infer
-from solvers.neural.quads.operator import in_batches
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.solvers.neural.inference import infer
+from meshonet.solvers.neural.quads.operator import in_batches
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """How many boundaries went into each call of the solver."""
     counts: list[int] = []
     monkeypatch.setattr(
-        "solvers.neural.quads.inference.in_batches",
+        "meshonet.solvers.neural.quads.inference.in_batches",
         lambda boundaries, threads: counts.append(len(boundaries)) or in_batches(boundaries, threads),
     )
     return counts

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, duct
 
-from formats.registry import read_grids
-from geometry.metrics import NAMES
-from geometry.quality import per_cell
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.metrics import NAMES
+from meshonet.geometry.quality import per_cell
 from meshonet_cli.grading import COMPARED
 
 
@@ -158,8 +158,8 @@ def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[st
 
 def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> None:
     (grid,) = read_grids("grid.vts")
-    from formats.vts import write
-    from geometry.grid import Grid
+    from meshonet.formats.vts import write
+    from meshonet.geometry.grid import Grid
 
     moved = grid.nodes.copy()
     moved[3, 4] += [0.03, 0.04]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, duct, wave
 
-from formats.registry import read_grids, read_shapes
-from solvers.elliptic.solve import solve
-from solvers.elliptic.winslow import residual
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.elliptic.winslow import residual
 
 
 def test_the_grid_solves_the_equations(meshonet: Meshonet, body_h5: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, duct, ellipse
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 
 
 def grid_of(path: str | Path) -> np.ndarray:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, wave
 
-from formats.registry import read_grids
-from geometry.profiles import PROFILES
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.profiles import PROFILES
 from meshonet_cli.app import application
 from meshonet_cli.judging import walls
 

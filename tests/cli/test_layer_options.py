@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from command_line import Meshonet
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 
 SECTION = "naca:2412"
 LAYER_COMMANDS = ("solve-pde", "infer")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from geometry.errors import GateError, InputError, NoValidGridError, SolverError
+from meshonet.geometry.errors import GateError, InputError, NoValidGridError, SolverError
 from meshonet_cli.report import aligned, explained, figure, span
 from meshonet_cli.session import Session
 

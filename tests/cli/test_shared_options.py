@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from command_line import BOUNDARY_COMMANDS, Meshonet, dataset, duct
 
-from formats.registry import read_grids
+from meshonet.formats.registry import read_grids
 from meshonet_cli.app import application
 
 GRID_COMMANDS = ("tfi", "solve-pde", "infer")

@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 from command_line import ROOT, Meshonet, dataset, ellipse
 
-from formats.registry import read_grids
-from geometry.quality import count_folded
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.progress import Cycle, listening, tell
+from meshonet.solvers.variational.functional import Weights, aspect_of, energy
 from meshonet_cli.watching import COLUMNS, Live
-from solvers.progress import Cycle, listening, tell
-from solvers.variational.functional import Weights, aspect_of, energy
 
 
 def table(path: str = "h.csv") -> list[dict[str, str]]:

@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from format_shapes import channel
 
-from formats.registry import TABLE, format_named
+from meshonet.formats.registry import TABLE, format_named
 
 READABLE = [
     name

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from formats.catalogue import page, plain, rows
-from formats.registry import TABLE
+from meshonet.formats.catalogue import page, plain, rows
+from meshonet.formats.registry import TABLE
 
 DOCS = Path(__file__).parents[2] / "docs"
 

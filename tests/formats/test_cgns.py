@@ -10,11 +10,11 @@ from format_shapes import c_grid, channel, memory, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 
-from formats.cgns import read_grids, write_extruded, write_grids
-from formats.source import open_source
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.cgns import read_grids, write_extruded, write_grids
+from meshonet.formats.source import open_source
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 MAKES = [channel, ring, c_grid]
 

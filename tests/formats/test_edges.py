@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.edges import boundary_of, recovered, wake_nodes
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.edges import boundary_of, recovered, wake_nodes
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def area(nodes: Floats) -> Floats:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.figure import Colouring, _drawn_lines, draw, write
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.figure import Colouring, _drawn_lines, draw, write
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def pixels(path: Path) -> np.ndarray:

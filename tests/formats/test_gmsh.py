@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats import gmsh41
-from formats.gmsh import write_grids
-from formats.registry import format_named
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats import gmsh41
+from meshonet.formats.gmsh import write_grids
+from meshonet.formats.registry import format_named
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 
 def groups(dimension: int) -> dict[str, int]:

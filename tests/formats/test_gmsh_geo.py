@@ -8,8 +8,8 @@ import pytest
 from format_shapes import c_grid, channel, ring
 from test_gmsh import COUNTS, groups
 
-from formats.gmsh_geo import write_grids
-from geometry.grid import Grid
+from meshonet.formats.gmsh_geo import write_grids
+from meshonet.geometry.grid import Grid
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])

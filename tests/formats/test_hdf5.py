@@ -9,12 +9,19 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, memory, ring
 
-from formats.edges import boundary_of
-from formats.hdf5 import Writer, read_grids, read_parameters, read_shapes, write_boundaries, write_grids
-from formats.hdf5_check import Checked
-from formats.source import open_source
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.edges import boundary_of
+from meshonet.formats.hdf5 import (
+    Writer,
+    read_grids,
+    read_parameters,
+    read_shapes,
+    write_boundaries,
+    write_grids,
+)
+from meshonet.formats.hdf5_check import Checked
+from meshonet.formats.source import open_source
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def written(path: Path, grids: list[Grid]) -> h5py.File:

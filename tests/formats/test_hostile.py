@@ -12,11 +12,11 @@ from hostile import BITS, READABLE, corpus, foreign, good
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from formats.format import Format
-from formats.registry import format_named
-from formats.source import Source
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.format import Format
+from meshonet.formats.registry import format_named
+from meshonet.formats.source import Source
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 SECONDS = 5.0  # of processor time: a busy machine is not a fault
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.nmf import write_extruded, write_grids
-from geometry.grid import Grid
+from meshonet.formats.nmf import write_extruded, write_grids
+from meshonet.geometry.grid import Grid
 
 Row = tuple[str, list[int]]
 

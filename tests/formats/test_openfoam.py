@@ -11,10 +11,10 @@ from format_shapes import c_grid, channel, file_names, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOGeometry import vtkOpenFOAMReader
 
-from formats.openfoam import write_extruded, write_grids
-from formats.unstructured import unstructured
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.openfoam import write_extruded, write_grids
+from meshonet.formats.unstructured import unstructured
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 MAKES = [channel, ring, c_grid]
 PATCHES = {

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, ring
 
-from formats.openfoam import write_extruded
-from geometry.faces import faces
-from geometry.grid import Grid
+from meshonet.formats.openfoam import write_extruded
+from meshonet.geometry.faces import faces
+from meshonet.geometry.grid import Grid
 
 
 def shaken() -> Grid:

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from format_shapes import PYTHON, Pipe, file_names
 
-from formats.output import PART_SUFFIX, _swapped, whole_file, whole_folder
-from geometry.errors import InputError
+from meshonet.formats.output import PART_SUFFIX, _swapped, whole_file, whole_folder
+from meshonet.geometry.errors import InputError
 
 
 def test_the_file_appears_when_the_block_ends_and_nothing_else_stays(tmp_path: Path) -> None:
@@ -45,7 +45,7 @@ def test_any_exception_leaves_the_old_file_and_no_part(error: type[BaseException
 
 def test_what_a_killed_process_left_is_swept_and_nothing_else(tmp_path: Path) -> None:
     code = (
-        "import os, signal; from formats.output import whole_file\n"
+        "import os, signal; from meshonet.formats.output import whole_file\n"
         f"with whole_file({str(tmp_path / 'a')!r}) as part:\n    os.kill(os.getpid(), signal.SIGKILL)"
     )
     assert subprocess.run([PYTHON, "-c", code], timeout=60, check=False).returncode == -signal.SIGKILL
@@ -103,7 +103,7 @@ def test_standard_output_gets_nothing_on_failure(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_reader_that_stops_early_is_no_error() -> None:
-    code = "from formats.output import whole_file\nwith whole_file('-') as p: p.write_bytes(bytes(10**7))"
+    code = "from meshonet.formats.output import whole_file\nwith whole_file('-') as p: p.write_bytes(bytes(10**7))"
     pipe = f'{PYTHON} -c "{code}" | head -c 10 | wc -c; echo ${{PIPESTATUS[0]}}'
     done = subprocess.run(["bash", "-c", pipe], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.split() == ["10", "0"]
@@ -156,7 +156,7 @@ def test_an_error_of_the_system_about_the_input_is_not_blamed_on_the_output(tmp_
 
 def test_sigterm_turned_into_an_exit_removes_the_part(tmp_path: Path) -> None:
     code = (
-        "import signal, sys, time; from formats.output import whole_file\n"
+        "import signal, sys, time; from meshonet.formats.output import whole_file\n"
         "signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))\n"
         f"with whole_file({str(tmp_path / 'a')!r}) as part:\n"
         "    part.write_text('half'); print('ready', flush=True); time.sleep(60)"

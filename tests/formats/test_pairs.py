@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.registry import format_named, formats, read_grids, read_shapes
-from geometry.boundary import Boundary
-from geometry.grid import Grid
-from geometry.parts import Part
+from meshonet.formats.registry import format_named, formats, read_grids, read_shapes
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
 
 BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
 AS_BOUNDARIES = [

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from format_shapes import channel
 
-from formats.planes import planar
-from geometry.errors import InputError
+from meshonet.formats.planes import planar
+from meshonet.geometry.errors import InputError
 
 GRID = channel(6, 4)
 X, Y = GRID.x, GRID.y

@@ -10,12 +10,12 @@ import vtk
 from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import vtk_to_numpy
 
-from formats.plot3d.read import read_grids
-from formats.plot3d.sniff import sniff
-from formats.registry import format_named
-from formats.source import Source, open_source
-from geometry.arrays import Floats
-from geometry.grid import Grid
+from meshonet.formats.plot3d.read import read_grids
+from meshonet.formats.plot3d.sniff import sniff
+from meshonet.formats.registry import format_named
+from meshonet.formats.source import Source, open_source
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.grid import Grid
 
 RING, CHANNEL = ring(13, 7), channel(9, 6)
 

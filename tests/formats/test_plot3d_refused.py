@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from format_shapes import channel, memory
 
-from formats.plot3d.read import read_grids
-from formats.plot3d.sniff import sniff
-from formats.registry import format_named
-from geometry.errors import InputError
+from meshonet.formats.plot3d.read import read_grids
+from meshonet.formats.plot3d.sniff import sniff
+from meshonet.formats.registry import format_named
+from meshonet.geometry.errors import InputError
 
 GRID = channel(9, 6)
 X, Y = GRID.x.ravel(order="F"), GRID.y.ravel(order="F")
@@ -110,7 +110,7 @@ def test_two_readings_of_the_same_length_are_told_apart_by_their_cells() -> None
 def test_a_block_too_large_for_a_fortran_record_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("formats.plot3d.write.Block.nodes", 1 << 28)
+    monkeypatch.setattr("meshonet.formats.plot3d.write.Block.nodes", 1 << 28)
     writer = format_named("plot3d-fortran").write_grids
     assert writer is not None
     with pytest.raises(

@@ -8,11 +8,11 @@ import pytest
 from format_shapes import channel, memory, ring
 from test_plot3d import File, flat, solid
 
-from formats.format import Format
-from formats.plot3d.variant import CHOICES, parse_variant
-from formats.registry import format_named
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.format import Format
+from meshonet.formats.plot3d.variant import CHOICES, parse_variant
+from meshonet.formats.registry import format_named
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 RING, CHANNEL = ring(13, 7), channel(9, 6)
 

@@ -3,13 +3,13 @@ import itertools
 import numpy as np
 import pytest
 
-from formats.points import parse, read_shapes, sniff
-from formats.source import Source
-from geometry.airfoil import Airfoil
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.outline import Outline
-from geometry.sampling import Sampling
+from meshonet.formats.points import parse, read_shapes, sniff
+from meshonet.formats.source import Source
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.sampling import Sampling
 
 SOUTH = np.stack([np.linspace(0, 2, 9), 0.1 * np.sin(np.linspace(0, 3, 9))], axis=1)
 SOUTH[[0, -1], 1] = 0

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from format_shapes import PYTHON, Pipe, c_grid, channel, ring
 
-from formats.edges import boundary_of
-from formats.registry import (
+from meshonet.formats.edges import boundary_of
+from meshonet.formats.registry import (
     TABLE,
     format_for_output,
     format_named,
@@ -18,10 +18,10 @@ from formats.registry import (
     read_grids,
     read_shapes,
 )
-from formats.source import open_source
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.source import open_source
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 HEAVY = ("h5py", "meshio", "matplotlib", "shapely", "scipy", "torch", "numba")
 BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
@@ -39,14 +39,16 @@ def run_python(code: str) -> str:
 
 
 def test_importing_the_registry_imports_no_heavy_library() -> None:
-    loaded = run_python(f"import sys, formats.registry; print([m for m in {HEAVY} if m in sys.modules])")
+    loaded = run_python(
+        f"import sys, meshonet.formats.registry; print([m for m in {HEAVY} if m in sys.modules])"
+    )
     assert loaded == "[]"
 
 
 def test_writing_a_vts_imports_no_heavy_library(tmp_path: Path) -> None:
     code = (
-        "import sys, numpy as np; from pathlib import Path; from geometry.grid import Grid;"
-        "from formats.registry import format_for_output, read_grids;"
+        "import sys, numpy as np; from pathlib import Path; from meshonet.geometry.grid import Grid;"
+        "from meshonet.formats.registry import format_for_output, read_grids;"
         "g = Grid(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
         f"p = {str(tmp_path / 'g.vts')!r};"
         "format_for_output(p).write_grids(Path(p), [g]); list(read_grids(p));"

@@ -1,7 +1,7 @@
 import pytest
 
-from formats.rows import MOST_BYTES, decode, read_lines, table
-from geometry.errors import InputError
+from meshonet.formats.rows import MOST_BYTES, decode, read_lines, table
+from meshonet.geometry.errors import InputError
 
 
 def one(text: str) -> tuple[str, tuple[float, ...]]:

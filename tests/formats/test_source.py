@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from format_shapes import Pipe
 
-from formats.source import Source, open_source, printable
-from geometry.errors import InputError
+from meshonet.formats.source import Source, open_source, printable
+from meshonet.geometry.errors import InputError
 
 
 def test_a_file_is_read_where_it_lies(tmp_path: Path) -> None:

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, memory, ring
 
-from formats.edges import boundary_of
-from formats.registry import format_named, read_shapes
-from geometry.airfoil import Airfoil
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.sampling import Sampling
+from meshonet.formats.edges import boundary_of
+from meshonet.formats.registry import format_named, read_shapes
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.sampling import Sampling
 
 MESHES = ["gmsh", "gmsh-ascii", "gmsh41", "gmsh41-ascii", "su2"]
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from formats.registry import format_named
-from formats.unstructured import unstructured
-from geometry.grid import Grid
+from meshonet.formats.registry import format_named
+from meshonet.formats.unstructured import unstructured
+from meshonet.geometry.grid import Grid
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from format_shapes import memory
 
-from formats.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
-from geometry.errors import InputError
-from geometry.sampling import Sampling
+from meshonet.formats.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import Sampling
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0], [0.0, 0.0]]
 HEXAGON = "POLYGON ((2 0, 1 1.7, -1 1.7, -2 0, -1 -1.7, 1 -1.7, 2 0))"

@@ -9,11 +9,11 @@ import vtk
 from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from formats.source import open_source
-from formats.vtk_legacy import write
-from formats.vtk_legacy_read import read_grids
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.source import open_source
+from meshonet.formats.vtk_legacy import write
+from meshonet.formats.vtk_legacy_read import read_grids
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def by_vtk(path: Path) -> vtk.vtkStructuredGrid:

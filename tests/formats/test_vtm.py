@@ -7,10 +7,10 @@ import pytest
 import vtk
 from format_shapes import channel, file_names, memory, ring
 
-from formats.output import whole_file
-from formats.source import open_source
-from formats.vtm import read_grids, write_extruded, write_grids
-from geometry.errors import InputError
+from meshonet.formats.output import whole_file
+from meshonet.formats.source import open_source
+from meshonet.formats.vtm import read_grids, write_extruded, write_grids
+from meshonet.geometry.errors import InputError
 
 INDEX = '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>{}</vtkMultiBlockDataSet></VTKFile>'
 

@@ -10,12 +10,12 @@ import vtk
 from format_shapes import c_grid, channel, ring
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
-from formats.source import open_source
-from formats.vts import write, write_extruded
-from formats.vts_read import read_grids
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.formats.source import open_source
+from meshonet.formats.vts import write, write_extruded
+from meshonet.formats.vts_read import read_grids
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def by_vtk(path: Path) -> vtk.vtkStructuredGrid:

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from format_shapes import channel, memory
 
-from formats.vts import write
-from formats.vts_read import read_grids
-from geometry.errors import InputError
+from meshonet.formats.vts import write
+from meshonet.formats.vts_read import read_grids
+from meshonet.geometry.errors import InputError
 
 NODES = channel(5, 2).nodes[:3]
 POINTS = np.zeros((2, 3, 3))

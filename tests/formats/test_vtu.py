@@ -8,9 +8,9 @@ from format_shapes import c_grid, channel, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from formats.unstructured import unstructured
-from formats.vtu import write_extruded, write_grids
-from geometry.grid import Grid
+from meshonet.formats.unstructured import unstructured
+from meshonet.formats.vtu import write_extruded, write_grids
+from meshonet.geometry.grid import Grid
 
 
 @pytest.mark.parametrize("thick", [False, True])

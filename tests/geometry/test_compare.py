@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.compare import compare
-from geometry.errors import InputError
-from geometry.grid import Grid
+from meshonet.geometry.compare import compare
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:

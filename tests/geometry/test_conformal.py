@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.conformal import conformal_knots
-from geometry.curves import Curve
-from geometry.errors import InputError
+from meshonet.geometry.conformal import conformal_knots
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
 
 
 def clockwise(z: np.ndarray) -> np.ndarray:

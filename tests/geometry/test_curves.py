@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sections import STATIONS, selig
 
-from geometry.curves import Curve, resample_like
-from geometry.errors import InputError
+from meshonet.geometry.curves import Curve, resample_like
+from meshonet.geometry.errors import InputError
 
 
 def circle(n: int, turns: float = 1.0) -> np.ndarray:

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from formats.airfoil_dat import parse
-from geometry.naca import naca, naca_points
+from meshonet.formats.airfoil_dat import parse
+from meshonet.geometry.naca import naca, naca_points
 
 FILE = Path(__file__).parents[2] / "examples" / "naca2412.dat"
 

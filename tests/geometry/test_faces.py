@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from test_seams import c_grid
 
-from geometry import steps
-from geometry.faces import faces
-from geometry.grid import Grid
+from meshonet.geometry import steps
+from meshonet.geometry.faces import faces
+from meshonet.geometry.grid import Grid
 
 HEIGHT = 0.3
 

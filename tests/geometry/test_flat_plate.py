@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from geometry.errors import InputError
-from geometry.flat_plate import first_cell
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.flat_plate import first_cell
 
 
 def test_it_is_the_height_worked_out_by_hand() -> None:

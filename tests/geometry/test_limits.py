@@ -1,7 +1,7 @@
 import numpy as np
 
-from geometry.corners import turning
-from geometry.limits import LEAST_SLACK, LONGEST, SLACK, limited
+from meshonet.geometry.corners import turning
+from meshonet.geometry.limits import LEAST_SLACK, LONGEST, SLACK, limited
 
 NONE = np.zeros(0, dtype=np.intp)
 

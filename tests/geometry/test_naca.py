@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from sections import farthest
 
-from geometry.errors import InputError
-from geometry.naca import naca, naca_points, thickness
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.naca import naca, naca_points, thickness
 
 
 def test_ordinates_are_those_of_the_reports():

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.nested import coarser_boundary, coarser_grid
-from geometry.parts import Part
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.nested import coarser_boundary, coarser_grid
+from meshonet.geometry.parts import Part
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:

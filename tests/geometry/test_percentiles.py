@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry import quality
-from geometry.grid import Grid
-from geometry.metrics import NAMES
-from geometry.percentiles import no_run, prepared
-from geometry.quality import measure, per_cell
+from meshonet.geometry import quality
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.metrics import NAMES
+from meshonet.geometry.percentiles import no_run, prepared
+from meshonet.geometry.quality import measure, per_cell
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:

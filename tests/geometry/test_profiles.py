@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from geometry.grid import Grid
-from geometry.parts import Part
-from geometry.profiles import PROFILES, Checked, Figures, Judgement, Limit, judge
-from geometry.quality import measure
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
+from meshonet.geometry.profiles import PROFILES, Checked, Figures, Judgement, Limit, judge
+from meshonet.geometry.quality import measure
 
 
 def oblique(slope: float, stretch: float = 1.0) -> Grid:

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import as_planar
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.metrics import METRICS, NAMES
-from geometry.quality import count_folded, folded_cells, measure, per_cell, worst_cells
+from meshonet.geometry.arrays import as_planar
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.metrics import METRICS, NAMES
+from meshonet.geometry.quality import count_folded, folded_cells, measure, per_cell, worst_cells
 
 
 def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import shapely
 
-from geometry.airfoil import Airfoil
-from geometry.curves import Curve
-from geometry.errors import InputError
-from geometry.naca import naca
-from geometry.outline import Outline
-from geometry.quality import per_cell
-from geometry.sampling import Sampling
-from solvers.hyperbolic import hyperbolic
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.naca import naca
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.quality import per_cell
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.hyperbolic import hyperbolic
 
 
 def dense(curve: Curve) -> np.ndarray:

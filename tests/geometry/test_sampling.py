@@ -3,8 +3,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from geometry.errors import InputError
-from geometry.sampling import (
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.sampling import (
     Sampling,
     TanhLaw,
     monotone_cubic,

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from geometry.grid import Grid
-from geometry.quality import per_cell
-from geometry.seams import across_wake, beyond_seam, wake_cells
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import per_cell
+from meshonet.geometry.seams import across_wake, beyond_seam, wake_cells
 
 
 def c_grid(wake: int = 4, around: int = 9, nj: int = 5, growth: float = 1.5) -> Grid:

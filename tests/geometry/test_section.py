@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from sections import STATIONS, selig, surfaces
 
-from geometry.boundary import polygon_area
-from geometry.errors import InputError
-from geometry.section import clean_section
+from meshonet.geometry.boundary import polygon_area
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.section import clean_section
 
 SHARP, BLUNT = selig(0.12, 0.03), selig(0.12, 0.03, base=0.01)
 

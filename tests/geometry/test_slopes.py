@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from geometry.corners import turning
-from geometry.limits import LONGEST
-from geometry.slopes import spline_slopes
+from meshonet.geometry.corners import turning
+from meshonet.geometry.limits import LONGEST
+from meshonet.geometry.slopes import spline_slopes
 
 NONE = np.zeros(0, dtype=np.intp)
 

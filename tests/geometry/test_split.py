@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.errors import InputError
-from geometry.families.family import FAMILIES, family
-from geometry.families.split import split
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.family import FAMILIES, family
+from meshonet.geometry.families.split import split
 
 SHUFFLED = np.random.default_rng(1).permutation(np.linspace(-1.0, 2.0, 36)).tolist()
 

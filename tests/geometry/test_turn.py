@@ -3,11 +3,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.parts import Part
-from geometry.turn import turned
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
+from meshonet.geometry.turn import turned
 
 
 def lattice(ni: int = 5, nj: int = 3) -> Grid:

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from sections import selig
 
-from geometry.airfoil import Airfoil
-from geometry.boundary import Boundary
-from geometry.closing import REACH
-from geometry.errors import InputError
-from geometry.naca import naca
-from geometry.parts import wake_nodes
-from geometry.sampling import Sampling
-from geometry.wake import Wake
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.closing import REACH
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.naca import naca
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.wake import Wake
 
 SHARP = Airfoil(selig(0.12))
 CAMBERED = Airfoil(selig(0.12, 0.04))

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from geometry.grid import Grid
-from geometry.parts import Part
-from geometry.wall_rows import wall_row
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.parts import Part
+from meshonet.geometry.wall_rows import wall_row
 
 
 def channel(sheared: float = 0.0) -> Grid:

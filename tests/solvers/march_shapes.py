@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.naca import naca
-from geometry.sampling import Sampling
-from geometry.topology import o_boundary
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.naca import naca
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.topology import o_boundary
 
 
 def circle(n: int, radius: float = 0.5) -> Floats:

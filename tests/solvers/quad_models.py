@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
-from geometry.arrays import Topology
-from solvers.neural.quads.encoding import HEADS
-from solvers.neural.quads.export import write_model
-from solvers.neural.quads.network import shapes
+from meshonet.geometry.arrays import Topology
+from meshonet.solvers.neural.quads.encoding import HEADS
+from meshonet.solvers.neural.quads.export import write_model
+from meshonet.solvers.neural.quads.network import shapes
 
 WIDTHS, BLOCKS = (1, 2, 2), (0, 1, 1)
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from solver_shapes import corner_jacobians, quad
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.simple import find_crossing
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.simple import find_crossing
+from meshonet.solvers.tfi import tfi
 
 FINE = 801
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
 
 
 def segment(a: tuple[float, float], b: tuple[float, float], n: int) -> Floats:

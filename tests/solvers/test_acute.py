@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from solver_shapes import arch
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.quality import count_folded
-from solvers import acute
-from solvers.coarse import evaluate, thinned
-from solvers.tfi import tfi
-from solvers.variational.solve import solve
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers import acute
+from meshonet.solvers.coarse import evaluate, thinned
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.solve import solve
 
 
 def spike(degrees: float, n: int) -> Boundary:

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import pytest
 from solver_shapes import arch, folded, hole
 
-from geometry.boundary import Boundary
-from geometry.grid import Grid
-from solvers.automatic import solve_automatic
-from solvers.solution import Solution
-from solvers.tfi import tfi
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.automatic import solve_automatic
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
 
 
 def spied(seen: list[tuple[int, int]]) -> Callable[[Boundary], Solution]:

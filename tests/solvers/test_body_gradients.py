@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from quad_models import random_model
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.families.bodies import boundary
-from geometry.topology import straight
-from solvers.neural.quads.inference import infer_quads
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.bodies import boundary
+from meshonet.geometry.topology import straight
+from meshonet.solvers.neural.quads.inference import infer_quads
 
 torch = pytest.importorskip("torch")
-from solvers.neural.quads.differentiable_around import BodyGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.quads.differentiable_around import BodyGrids  # noqa: E402 - it imports torch
 
 torch.set_num_threads(1)  # tests run side by side
 

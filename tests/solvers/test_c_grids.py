@@ -5,15 +5,15 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from geometry.boundary import Boundary
-from geometry.grid import Grid
-from geometry.naca import naca
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from solvers.coarse import solve_coarse
-from solvers.elliptic.solve import solve
-from solvers.elliptic.winslow import residual
-from solvers.tfi import tfi
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.naca import naca
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.elliptic.winslow import residual
+from meshonet.solvers.tfi import tfi
 
 METHODS: dict[str, Callable[[Boundary], Grid]] = {
     "tfi": tfi,

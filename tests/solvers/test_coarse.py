@@ -7,14 +7,14 @@ import pytest
 from scipy.interpolate import RectBivariateSpline
 from solver_shapes import arch, bump, folded, hexagon, hole, meets, naca, quad, seamount, wrench
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.quality import measure
-from solvers.coarse import divided, evaluate, solve_coarse, thinned
-from solvers.elliptic.solve import solve
-from solvers.solution import Solution
-from solvers.variational.solve import solve as variational
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import measure
+from meshonet.solvers.coarse import divided, evaluate, solve_coarse, thinned
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.variational.solve import solve as variational
 
 
 def error(nodes: np.ndarray, reference: np.ndarray) -> float:
@@ -125,7 +125,7 @@ def test_straight_lines_keep_valid_cells_valid() -> None:
 
 
 def test_what_kinks_fold_sweeps_unfold() -> None:
-    from solvers.variational.solve import solve as minimise
+    from meshonet.solvers.variational.solve import solve as minimise
 
     boundary = wrench(400, 400)
     assert folded(solve_coarse(boundary, minimise, 65, smooth=True).grid.nodes) == 0

@@ -5,9 +5,9 @@ import pytest
 from scipy.interpolate import CubicSpline
 from solver_shapes import circle, folded, polyline, ring
 
-from geometry.arrays import Floats, as_planar
-from solvers.coarse import evaluate, thinned
-from solvers.coarse_around import evaluate_around
+from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.solvers.coarse import evaluate, thinned
+from meshonet.solvers.coarse_around import evaluate_around
 
 
 def rings(radii: Floats, ni: int) -> Floats:

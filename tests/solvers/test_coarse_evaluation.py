@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import Floats
-from solvers import acute
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers import acute
+from meshonet.solvers.inwards import REACH, inwards
+from meshonet.solvers.neural.quads.edges import Edges, rims
+from meshonet.solvers.spline import bending, places
 from solvers._evaluate import begin_all, evaluate_all
-from solvers.inwards import REACH, inwards
-from solvers.neural.quads.edges import Edges, rims
-from solvers.spline import bending, places
 
 RNG = np.random.default_rng(5)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.elliptic.coarsening import Direction
+from meshonet.solvers.elliptic.coarsening import Direction
 
 CELLS = [7, 8, 16, 25, 99, 100]
 

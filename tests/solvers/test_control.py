@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from solver_shapes import arch, bump, folded, hexagon, hole, naca, quad, seamount, segment
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import SolverError
-from geometry.grid import Grid
-from geometry.growth import growing_steps
-from solvers.elliptic import solve as module
-from solvers.elliptic.control import Controls, Factors, step_ratios, thomas_middlecoff
-from solvers.elliptic.multigrid import Multigrid
-from solvers.elliptic.solve import solve, solve_thomas_middlecoff
-from solvers.elliptic.winslow import metric_terms, residual
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.growth import growing_steps
+from meshonet.solvers.elliptic import solve as module
+from meshonet.solvers.elliptic.control import Controls, Factors, step_ratios, thomas_middlecoff
+from meshonet.solvers.elliptic.multigrid import Multigrid
+from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
+from meshonet.solvers.elliptic.winslow import metric_terms, residual
+from meshonet.solvers.tfi import tfi
 
 
 def edges_of(nodes: Floats, topology: str = "quad") -> Boundary:

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from random_quads import random_quad
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.families.bodies import boundary
-from geometry.naca import naca
-from geometry.sampling import Sampling
-from solvers.neural.inference import infer_many
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.bodies import boundary
+from meshonet.geometry.naca import naca
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.neural.inference import infer_many
 
 torch = pytest.importorskip("torch")
 from pretend_device import DEVICE, Pretended  # noqa: E402 - it imports torch

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from random_quads import random_quad
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded
-from solvers.coarse import thinned
-from solvers.evaluation import evaluate, mended
-from solvers.neural.quads.edges import Edges, rims
-from solvers.variational.solve import solve
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.coarse import thinned
+from meshonet.solvers.evaluation import evaluate, mended
+from meshonet.solvers.neural.quads.edges import Edges, rims
+from meshonet.solvers.variational.solve import solve
 
 
 def planes(nodes: Floats) -> Floats:

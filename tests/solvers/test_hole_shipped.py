@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.boundary import Boundary
-from geometry.compare import compare
-from geometry.families.bodies import boundary
-from geometry.families.family import family
-from geometry.quality import count_folded, measure
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.quads.inference import infer_quads
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.compare import compare
+from meshonet.geometry.families.bodies import boundary
+from meshonet.geometry.families.family import family
+from meshonet.geometry.quality import count_folded, measure
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.quads.inference import infer_quads
 
 GOLDEN = {
     "hole-o": [[0.4028057080448652, -0.02293693289481455], [-0.6803300878792513, 0.5814152731912777]],

@@ -6,22 +6,22 @@ import numpy as np
 import pytest
 from march_shapes import airfoil, circle, deviation, ellipse, first_cells
 
-from geometry.airfoil import Airfoil
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary, polygon_area
-from geometry.errors import InputError, SolverError
-from geometry.families import procedural
-from geometry.growth import growing_steps
-from geometry.naca import naca
-from geometry.outline import Outline
-from geometry.parts import wake_nodes
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from geometry.topology import o_boundary
-from solvers import hyperbolic as module
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.families import procedural
+from meshonet.geometry.growth import growing_steps
+from meshonet.geometry.naca import naca
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.topology import o_boundary
+from meshonet.solvers import hyperbolic as module
+from meshonet.solvers.guard import guard
+from meshonet.solvers.hyperbolic import hyperbolic
 from solvers._hyperbolic import march, scratch_size
-from solvers.guard import guard
-from solvers.hyperbolic import hyperbolic
 
 DISSIPATION, THETA, BEND = 0.5, 0.5, 0.04
 

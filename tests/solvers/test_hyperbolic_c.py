@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from march_shapes import deviation, first_cells
 
-from geometry.airfoil import Airfoil
-from geometry.boundary import Boundary, polygon_area
-from geometry.naca import naca
-from geometry.quality import count_folded
-from geometry.sampling import Sampling
-from solvers.hyperbolic import hyperbolic
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.naca import naca
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.hyperbolic import hyperbolic
 
 
 def c_boundary(name: str = "2412", ni: int = 160, nj: int = 80, **settings: object) -> Boundary:

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from solver_shapes import arch, hole, naca
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from solvers.elliptic.multigrid import Multigrid, Settings
-from solvers.elliptic.solve import solve, solve_thomas_middlecoff
-from solvers.elliptic.winslow import metric_terms, residual
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
+from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
+from meshonet.solvers.elliptic.winslow import metric_terms, residual
+from meshonet.solvers.tfi import tfi
 
 
 def prepared(boundary: Boundary, noise: float = 0.002) -> tuple[Floats, Multigrid]:

@@ -5,15 +5,15 @@ import pytest
 from random_quads import random_quad
 from solver_shapes import arch, bump, wrench
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.quality import count_folded
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.descent import newton, stiffness_of
+from meshonet.solvers.variational.functional import Weights, aspect_of
+from meshonet.solvers.variational.solve import solve
 from solvers.variational._variational import energy, workspace
 from solvers.variational._variational import newton as compiled
-from solvers.variational.descent import newton, stiffness_of
-from solvers.variational.functional import Weights, aspect_of
-from solvers.variational.solve import solve
 
 
 def value_and_slope(nodes: Floats) -> tuple[float, float]:

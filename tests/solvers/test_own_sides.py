@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from random_quads import random_quad
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from solvers.neural.quads.inference import infer_quads
-from solvers.neural.quads.own_sides import Element, OwnSides
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.quads.own_sides import Element, OwnSides
+from meshonet.solvers.tfi import tfi
 
 
 def domain(seed: int = 2003, ni: int = 33, nj: int = 33) -> Boundary:

@@ -7,11 +7,11 @@ import pytest
 import torch
 from random_quads import random_quad
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded
-from solvers.neural.quads.differentiable import QuadGrids
-from solvers.neural.quads.inference import infer_quads
-from solvers.neural.quads.part_of_the_way import share
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.neural.quads.differentiable import QuadGrids
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.quads.part_of_the_way import share
 
 
 def pushed(by: float) -> Floats:
@@ -36,5 +36,5 @@ def test_grids_that_would_fold_are_valid_in_torch_too(seed: int, monkeypatch: py
     sides = (boundary.south, boundary.north, boundary.west, boundary.east)
     (nodes,) = QuadGrids()(*(torch.from_numpy(np.ascontiguousarray(side))[None] for side in sides)).numpy()
     assert np.abs(nodes - found.grid.nodes).max() < 1e-12 * np.ptp(found.grid.nodes)
-    monkeypatch.setattr("solvers.neural.quads.operator.share", lambda *_: 1.0)
+    monkeypatch.setattr("meshonet.solvers.neural.quads.operator.share", lambda *_: 1.0)
     assert count_folded(infer_quads([boundary], "quad-general", "off")[0].grid.nodes) > 0

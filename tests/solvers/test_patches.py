@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from solver_shapes import arch, bump, hexagon, l_shape, spike, wrench
 
-from geometry.boundary import Boundary
-from geometry.corners import find_corners
-from solvers.elliptic import patches
-from solvers.elliptic.patches import reentrant
-from solvers.elliptic.solve import solve
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.corners import find_corners
+from meshonet.solvers.elliptic import patches
+from meshonet.solvers.elliptic.patches import reentrant
+from meshonet.solvers.elliptic.solve import solve
 
 
 def corners(boundary: Boundary) -> list[tuple[str, int]]:

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 from quad_models import random_model
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.families.bodies import boundary
-from geometry.quality import count_folded
-from geometry.topology import straight
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.bodies import boundary
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.topology import straight
+from meshonet.solvers.neural.quads.approach import approach
+from meshonet.solvers.neural.quads.features import features
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.quads.inside import inside
+from meshonet.solvers.neural.quads.network import Network, shapes
+from meshonet.solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
 from solvers.neural.quads._network import activate, refine
-from solvers.neural.quads.approach import approach
-from solvers.neural.quads.features import features
-from solvers.neural.quads.inference import infer_quads
-from solvers.neural.quads.inside import inside
-from solvers.neural.quads.network import Network, shapes
-from solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
 
@@ -79,7 +79,7 @@ def test_finer_copies_go_round_along_the_first_axis() -> None:
 
 def test_numpy_equals_torch() -> None:
     torch = pytest.importorskip("torch")
-    from solvers.neural.models.quad_unet import QuadUNet
+    from meshonet.solvers.neural.models.quad_unet import QuadUNet
 
     held, z = weights(), strips()
     net = QuadUNet(WIDTHS, BLOCKS, around=True).double()

@@ -9,11 +9,11 @@ import pytest
 from quad_models import random_model
 from random_quads import random_quad
 
-from geometry.boundary import Boundary
-from solvers.neural.quads.inference import infer_quads
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.neural.quads.inference import infer_quads
 
 torch = pytest.importorskip("torch")
-from solvers.neural.quads.differentiable import QuadGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.quads.differentiable import QuadGrids  # noqa: E402 - it imports torch
 
 SIDES = ("south", "north", "west", "east")
 

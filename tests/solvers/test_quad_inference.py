@@ -11,17 +11,17 @@ from quad_models import random_model
 from random_quads import random_quad
 from solver_shapes import arch, hexagon, ring, segment, wrench
 
-from geometry.arrays import SIDES, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.coarse import evaluate, thinned
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.inference import infer
-from solvers.neural.quads import operator
-from solvers.neural.quads.edges import Edges
-from solvers.neural.quads.inference import infer_quads
-from solvers.neural.quads.model import load_quads
-from solvers.neural.quads.symmetry import ELEMENTS, ORDER
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.coarse import evaluate, thinned
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.inference import infer
+from meshonet.solvers.neural.quads import operator
+from meshonet.solvers.neural.quads.edges import Edges
+from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.quads.model import load_quads
+from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER
 
 SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
 
@@ -122,7 +122,7 @@ def test_the_report_names_model_and_steps(model: str) -> None:
 
 
 def test_polish_descends_the_functional(model: str) -> None:
-    from solvers.variational.functional import Weights, aspect_of, energy
+    from meshonet.solvers.variational.functional import Weights, aspect_of, energy
 
     boundary = arch(65, 65)
     values = []
@@ -135,7 +135,7 @@ def test_polish_descends_the_functional(model: str) -> None:
 def test_cycles_bring_the_winslow_answer_to_winslows_solution(
     model: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("solvers.neural.quads.inference.model_path", lambda _: Path(model))
+    monkeypatch.setattr("meshonet.solvers.neural.quads.inference.model_path", lambda _: Path(model))
     boundary = arch(65, 65)
     goal = winslow(boundary, tol=1e-10).grid.nodes
     errors = [

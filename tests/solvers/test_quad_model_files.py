@@ -10,10 +10,10 @@ import pytest
 from quad_models import BLOCKS, WIDTHS, random_model
 from safetensors.numpy import load_file, save_file
 
-from geometry.errors import InputError
-from solvers.neural.quads.encoding import KIND, VERSION
-from solvers.neural.quads.model import load_quads
-from solvers.neural.weights import HEADER
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.quads.encoding import KIND, VERSION
+from meshonet.solvers.neural.quads.model import load_quads
+from meshonet.solvers.neural.weights import HEADER
 
 
 def header(**changes: object) -> dict[str, str]:

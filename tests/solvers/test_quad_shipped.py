@@ -7,10 +7,10 @@ import pytest
 from random_quads import random_quad
 from solver_shapes import arch
 
-from geometry.compare import compare
-from geometry.quality import count_folded, measure
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.quads.inference import infer_quads
+from meshonet.geometry.compare import compare
+from meshonet.geometry.quality import count_folded, measure
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.quads.inference import infer_quads
 
 GOLDEN = {
     "quad-general": [[0.25623959530059837, 0.23436326840032312], [0.4999999999999999, 0.7090582647742003]],

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.nested import coarser_grid
-from solvers.elliptic.solve import solve
-from solvers.refine import solve_refined
-from solvers.solution import Solution
-from solvers.variational.solve import solve as minimise
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.nested import coarser_grid
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.refine import solve_refined
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.variational.solve import solve as minimise
 
 
 def bump(ni: int, nj: int) -> Boundary:

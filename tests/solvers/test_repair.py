@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from solver_shapes import arch, folded, hole, l_shape, meets, naca, spike, wrench
 
-from geometry.arrays import Floats, as_planar
-from geometry.boundary import Boundary
-from geometry.families.family import family
-from solvers import unfold as unfolding
+from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.families.family import family
+from meshonet.solvers import unfold as unfolding
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.repair import repair
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.unfold import FUTILE, Patience, reference_lengths, unfold
 from solvers._repair import energy, minimise
-from solvers.elliptic.solve import solve
-from solvers.repair import repair
-from solvers.tfi import tfi
-from solvers.unfold import FUTILE, Patience, reference_lengths, unfold
 
 
 def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from solver_shapes import folded, horseshoe, l_shape, quad, segment, spike, wrench
 
-from geometry.boundary import Boundary
-from geometry.errors import NoValidGridError
-from geometry.grid import Grid
-from solvers.elliptic.solve import solve, solve_thomas_middlecoff
-from solvers.elliptic.steger_sorenson import solve_steger_sorenson
-from solvers.guard import guard
-from solvers.solution import Solution
-from solvers.tfi import tfi
-from solvers.walls.heights import Heights
-from solvers.walls.slide import slide_walls
-from solvers.walls.spread import spread, worst_first_cell
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
+from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
+from meshonet.solvers.guard import guard
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.walls.heights import Heights
+from meshonet.solvers.walls.slide import slide_walls
+from meshonet.solvers.walls.spread import spread, worst_first_cell
 
 METHODS: dict[str, Callable[..., Solution]] = {
     "winslow": solve,

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from geometry.growth import growing_steps
-from geometry.naca import naca
-from geometry.sampling import Sampling
-from solvers.hyperbolic import hyperbolic
-from solvers.schedule import Edge, level_steps, sharpest_edge
+from meshonet.geometry.growth import growing_steps
+from meshonet.geometry.naca import naca
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.schedule import Edge, level_steps, sharpest_edge
 
 
 def ratios(steps: np.ndarray) -> np.ndarray:

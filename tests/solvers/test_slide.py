@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from solver_shapes import arch, folded, hexagon, hole, quad, segment
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.curves import Curve
-from geometry.errors import InputError
-from solvers.elliptic.solve import solve
-from solvers.walls.heights import Heights
-from solvers.walls.slide import slide_walls
-from solvers.walls.spread import spread
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.curves import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.walls.heights import Heights
+from meshonet.solvers.walls.slide import slide_walls
+from meshonet.solvers.walls.spread import spread
 
 
 def step(x: Floats, steepness: float) -> Floats:

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from solver_shapes import arch, corner_jacobians, folded, hexagon, hole, naca, quad, spike, wrench
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.grid import Grid
-from solvers.elliptic import solve as module
-from solvers.elliptic.solve import solve
-from solvers.elliptic.winslow import residual, root_mean_square
-from solvers.tfi import tfi
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.grid import Grid
+from meshonet.solvers.elliptic import solve as module
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.elliptic.winslow import residual, root_mean_square
+from meshonet.solvers.tfi import tfi
 
 
 def conformal_quad(ni: int, nj: int) -> np.ndarray:

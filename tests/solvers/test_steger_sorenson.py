@@ -18,15 +18,15 @@ from solver_shapes import (
 )
 from test_slide import CHANNELS, channel, leans
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from solvers.elliptic import steger_sorenson as module
-from solvers.elliptic.solve import solve
-from solvers.elliptic.steger_sorenson import solve_steger_sorenson
-from solvers.elliptic.wall_control import ControlledEdge
-from solvers.walls.heights import Heights
-from solvers.walls.spread import spread
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.elliptic import steger_sorenson as module
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
+from meshonet.solvers.elliptic.wall_control import ControlledEdge
+from meshonet.solvers.walls.heights import Heights
+from meshonet.solvers.walls.spread import spread
 
 
 def wall_lines(nodes: Floats) -> Floats:

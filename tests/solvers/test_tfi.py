@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from solver_shapes import arch, circle, naca, quad, ring, segment
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.tfi import tfi
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.tfi import tfi
 
 
 def stretched(a: tuple[float, float], b: tuple[float, float], n: int, rng: np.random.Generator) -> np.ndarray:

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from geometry.naca import naca
-from geometry.parts import wake_nodes
-from geometry.quality import count_folded, measure
-from geometry.sampling import Sampling
-from solvers.automatic import solve_automatic
-from solvers.elliptic.solve import solve
-from solvers.unasked import GROWTH, MOST, PART, first_cell, march_unasked
+from meshonet.geometry.naca import naca
+from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.quality import count_folded, measure
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.automatic import solve_automatic
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.unasked import GROWTH, MOST, PART, first_cell, march_unasked
 
 
 @pytest.mark.parametrize(("section", "te"), [("0012", "wedge"), ("4415", "wedge"), ("23012", "wedge")])

@@ -20,25 +20,25 @@ from solver_shapes import (
     wrench,
 )
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.families.bodies import boundary as random_body
-from geometry.grid import Grid
-from geometry.naca import naca as naca_section
-from geometry.quality import Summary, measure
-from geometry.sampling import Sampling
-from solvers.coarse import solve_coarse, thinned
-from solvers.elliptic.solve import solve as winslow
-from solvers.tfi import tfi
-from solvers.variational import descent as descent_module
-from solvers.variational import solve as module
-from solvers.variational.descent import descend, stiffness_of
-from solvers.variational.functional import Weights, aspect_of, energy
-from solvers.variational.preconditioner import minimiser
-from solvers.variational.solve import solve
-from solvers.variational.start import winslow_start
-from solvers.variational.windowed import unfold
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.families.bodies import boundary as random_body
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.naca import naca as naca_section
+from meshonet.geometry.quality import Summary, measure
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.coarse import solve_coarse, thinned
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational import descent as descent_module
+from meshonet.solvers.variational import solve as module
+from meshonet.solvers.variational.descent import descend, stiffness_of
+from meshonet.solvers.variational.functional import Weights, aspect_of, energy
+from meshonet.solvers.variational.preconditioner import minimiser
+from meshonet.solvers.variational.solve import solve
+from meshonet.solvers.variational.start import winslow_start
+from meshonet.solvers.variational.windowed import unfold
 
 
 def angle(nodes: Floats) -> Summary:

@@ -5,12 +5,12 @@ import pytest
 from random_quads import random_quad
 from solver_shapes import bump, hole, naca, wrench
 
-from geometry.arrays import Floats
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.functional import Weights, aspect_of, energy, relief_of
+from meshonet.solvers.variational.preconditioner import minimiser
 from solvers.variational._variational import Minimiser, Stiffness, Waves, workspace
 from solvers.variational._variational import energy as compiled
-from solvers.variational.functional import Weights, aspect_of, energy, relief_of
-from solvers.variational.preconditioner import minimiser
 
 
 def planes(nodes: Floats) -> Floats:

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from solver_shapes import arch, bump, folded, hexagon, hole, horseshoe, l_shape, naca, quad, seamount, segment
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.walls.heights import Heights, cells_needed, edge_in_layers, layer_ratio
+from meshonet.solvers.walls.spread import spread, worst_first_cell
 from solvers._layers import fill_lines, fill_steps
-from solvers.elliptic.solve import solve
-from solvers.solution import Solution
-from solvers.tfi import tfi
-from solvers.walls.heights import Heights, cells_needed, edge_in_layers, layer_ratio
-from solvers.walls.spread import spread, worst_first_cell
 
 
 def first_cells(nodes: Floats, side: str) -> Floats:

@@ -3,10 +3,10 @@
 import numpy as np
 from solver_shapes import circle, folded, ring
 
-from geometry.arrays import as_planar
-from solvers.tfi import tfi
-from solvers.variational.functional import AROUND, aspect_of, energy, relief_of
-from solvers.variational.windowed import SKEWED, descend_windows, skewness
+from meshonet.geometry.arrays import as_planar
+from meshonet.solvers.tfi import tfi
+from meshonet.solvers.variational.functional import AROUND, aspect_of, energy, relief_of
+from meshonet.solvers.variational.windowed import SKEWED, descend_windows, skewness
 
 
 def test_skewness_is_that_of_the_angle() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import torch
 
-from geometry.errors import InputError, SolverError
+from meshonet.geometry.errors import InputError, SolverError
 
 FREE = ("rate",)
 """Settings that may change when a run goes on: a smaller rate is the remedy of a loss that is not finite."""

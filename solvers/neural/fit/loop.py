@@ -12,11 +12,11 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.errors import InputError, SolverError
-from solvers.neural.fit.checkpoint import load_checkpoint, save_checkpoint
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.task import Task
-from solvers.neural.fit.team import Team
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.neural.fit.checkpoint import load_checkpoint, save_checkpoint
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.team import Team
 
 
 @dataclass(frozen=True)

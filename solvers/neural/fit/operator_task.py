@@ -10,14 +10,14 @@ import torch
 from torch import Tensor, nn
 from torch.nn.functional import mse_loss
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from solvers.neural.fit.task import Task
-from solvers.neural.harmonic import extend
-from solvers.neural.layers import Arrays, initial
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.places import rim, square
-from solvers.neural.samples import Samples
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.harmonic import extend
+from meshonet.solvers.neural.layers import Arrays, initial
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.places import rim, square
+from meshonet.solvers.neural.samples import Samples
 
 
 class OperatorTask(Task):

@@ -9,22 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from geometry.compare import compare
-from geometry.errors import InputError
-from geometry.grid import Grid
-from geometry.quality import count_folded
-from solvers.neural.fit.checkpoint import beside
-from solvers.neural.fit.loop import Progress, fit
-from solvers.neural.fit.operator_task import OperatorTask
-from solvers.neural.fit.physics_task import PhysicsTask
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.team import Team
-from solvers.neural.inference import answered
-from solvers.neural.models.mgnet import MGNet
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.registry import settings_of
-from solvers.neural.samples import Samples
-from solvers.neural.trained import Trained, load_trained, write_trained
+from meshonet.geometry.compare import compare
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import count_folded
+from meshonet.solvers.neural.fit.checkpoint import beside
+from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.operator_task import OperatorTask
+from meshonet.solvers.neural.fit.physics_task import PhysicsTask
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.inference import answered
+from meshonet.solvers.neural.models.mgnet import MGNet
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.registry import settings_of
+from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.trained import Trained, load_trained, write_trained
 
 PLAN = Plan(epochs=15_000, points=(1000, 200))
 """The authors' published settings, with their thirty shapes in one step and places drawn at random."""
@@ -57,7 +57,7 @@ def train_operator(
     InputError
         too few grids, a checkpoint of another model, data or settings.
     SolverError
-        as `solvers.neural.fit.loop.fit`.
+        as `meshonet.solvers.neural.fit.loop.fit`.
     """
     rows = np.arange(len(samples)) if model.physics else samples.where("train")
     apart = rows[np.linspace(0, len(rows) - 1, held_out + 2).astype(int)[1:-1]]

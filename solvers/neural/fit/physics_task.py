@@ -9,13 +9,13 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from geometry.errors import InputError
-from solvers.neural.fit.task import Task
-from solvers.neural.layers import Arrays, initial
-from solvers.neural.models.mgnet import MGNet
-from solvers.neural.models.model import Frame
-from solvers.neural.places import rim, square
-from solvers.neural.samples import Samples
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.layers import Arrays, initial
+from meshonet.solvers.neural.models.mgnet import MGNet
+from meshonet.solvers.neural.models.model import Frame
+from meshonet.solvers.neural.places import rim, square
+from meshonet.solvers.neural.samples import Samples
 
 
 class PhysicsTask(Task):

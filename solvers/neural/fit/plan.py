@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from geometry.errors import InputError
+from meshonet.geometry.errors import InputError
 
 Schedule = Literal["cosine", "step"]
 Device = Literal["auto", "cpu", "cuda"]

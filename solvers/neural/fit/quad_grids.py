@@ -12,14 +12,14 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.arrays import Complexes, Floats
-from geometry.errors import InputError
-from solvers.neural.quads.approach import approached
-from solvers.neural.quads.edges import Edges, rims
-from solvers.neural.quads.encoding import LATENT
-from solvers.neural.quads.frame import frame
-from solvers.neural.quads.unrolled import AROUND, even, factors, middles, unrolled
-from solvers.neural.samples import Samples
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.quads.approach import approached
+from meshonet.solvers.neural.quads.edges import Edges, rims
+from meshonet.solvers.neural.quads.encoding import LATENT
+from meshonet.solvers.neural.quads.frame import frame
+from meshonet.solvers.neural.quads.unrolled import AROUND, even, factors, middles, unrolled
+from meshonet.solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)

@@ -12,21 +12,21 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.arrays import Complexes, Floats, Topology
-from geometry.errors import InputError
-from solvers.neural.fit.angles import excess
-from solvers.neural.fit.checkpoint import beside
-from solvers.neural.fit.loop import Progress, fit
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.quad_grids import Quads
-from solvers.neural.fit.task import Task
-from solvers.neural.fit.team import Team
-from solvers.neural.models.quad_unet import QuadUNet
-from solvers.neural.quads.encoding import SCALE
-from solvers.neural.quads.export import held_out_figures, write_model
-from solvers.neural.quads.features import features
-from solvers.neural.quads.model import QuadModel
-from solvers.neural.quads.unrolled import TURN, rolled
+from meshonet.geometry.arrays import Complexes, Floats, Topology
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.fit.angles import excess
+from meshonet.solvers.neural.fit.checkpoint import beside
+from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.quad_grids import Quads
+from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.models.quad_unet import QuadUNet
+from meshonet.solvers.neural.quads.encoding import SCALE
+from meshonet.solvers.neural.quads.export import held_out_figures, write_model
+from meshonet.solvers.neural.quads.features import features
+from meshonet.solvers.neural.quads.model import QuadModel
+from meshonet.solvers.neural.quads.unrolled import TURN, rolled
 
 PLAN = Plan(
     epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
@@ -54,7 +54,7 @@ STARTS = 8
 
 @dataclass(frozen=True)
 class Sizes:
-    """The network's, as `solvers.neural.models.quad_unet.QuadUNet` takes them."""
+    """The network's, as `meshonet.solvers.neural.models.quad_unet.QuadUNet` takes them."""
 
     widths: tuple[int, ...] = (2, 3, 6, 8)
     blocks: tuple[int, ...] = (0, 1, 1, 2)
@@ -201,7 +201,7 @@ def train_quads(
         fewer domains than one batch beside those held out; a checkpoint of other settings; a weight of no
         part, or one that is no number from 0 on.
     SolverError
-        as `solvers.neural.fit.loop.fit`.
+        as `meshonet.solvers.neural.fit.loop.fit`.
     """
     sizes, kept = sizes or Sizes(), plan.kept(len(given), held_out, "domains")
     if initial is not None:

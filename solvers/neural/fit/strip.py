@@ -11,17 +11,17 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from geometry.arrays import Complexes
-from solvers.neural.encoding import CHANNELS, SCALARS, decode, encode
-from solvers.neural.export import distance, held_out_figures, write_model
-from solvers.neural.fit.checkpoint import beside
-from solvers.neural.fit.loop import Progress, fit
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.task import Task
-from solvers.neural.fit.team import Team
-from solvers.neural.models.strip_fno import StripFNO
-from solvers.neural.strips import Strips
-from solvers.neural.targets import Targets, make_targets
+from meshonet.geometry.arrays import Complexes
+from meshonet.solvers.neural.encoding import CHANNELS, SCALARS, decode, encode
+from meshonet.solvers.neural.export import distance, held_out_figures, write_model
+from meshonet.solvers.neural.fit.checkpoint import beside
+from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.models.strip_fno import StripFNO
+from meshonet.solvers.neural.strips import Strips
+from meshonet.solvers.neural.targets import Targets, make_targets
 
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
@@ -110,7 +110,7 @@ def train_strip(
     InputError
         fewer strips than one batch beside those held out; a checkpoint of other settings.
     SolverError
-        as `solvers.neural.fit.loop.fit`.
+        as `meshonet.solvers.neural.fit.loop.fit`.
     """
     sizes, kept = sizes or Sizes(), plan.kept(len(strips), held_out, "shapes")
     torch.manual_seed(plan.seed)

@@ -9,8 +9,8 @@ import torch
 from torch import Tensor
 from torch import distributed as dist
 
-from geometry.errors import InputError
-from solvers.neural.fit.plan import Device
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.fit.plan import Device
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 """Models, one a file.
 
-Those of `solvers.neural.registry` are written once for numpy and torch; `strip_fno` is in torch, its twin in
-numpy is `solvers.neural.network`.
+Those of `meshonet.solvers.neural.registry` are written once for numpy and torch; `strip_fno` is in torch, its twin in
+numpy is `meshonet.solvers.neural.network`.
 """

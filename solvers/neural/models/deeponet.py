@@ -15,8 +15,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solvers.neural.layers import Shapes, Weights, dense, dense_shapes
-from solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes
+from meshonet.solvers.neural.models.model import Frame, Operator
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from geometry.boundary import Boundary
-from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
-from solvers.neural.models.model import Frame, Operator
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
+from meshonet.solvers.neural.models.model import Frame, Operator
 
 SIDE = 5
 """Nodes of west and of east that are seen."""

@@ -21,11 +21,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
-from solvers.neural.models.model import Frame, Operator
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
+from meshonet.solvers.neural.models.model import Frame, Operator
 
 SEEN = 10
 

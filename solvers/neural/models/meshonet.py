@@ -15,9 +15,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.places import lift
+from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.places import lift
 
 
 @dataclass(frozen=True)

@@ -27,11 +27,11 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats
-from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.places import sensors
-from solvers.neural.samples import Samples
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.places import sensors
+from meshonet.solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)

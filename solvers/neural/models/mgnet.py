@@ -20,12 +20,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.errors import InputError
-from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.places import sensors
-from solvers.neural.samples import Samples
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.places import sensors
+from meshonet.solvers.neural.samples import Samples
 
 SAME = 1e-4
 """Largest distance of a sensor, over the geometry's size, at which two geometries are one."""

@@ -14,8 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
-from solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
+from meshonet.solvers.neural.models.model import Frame, Operator
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from geometry.arrays import Floats, Topology
-from geometry.boundary import Boundary
-from solvers.neural.layers import Arrays, Shapes, Weights
-from solvers.neural.places import sensors
-from solvers.neural.samples import Samples
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.neural.layers import Arrays, Shapes, Weights
+from meshonet.solvers.neural.places import sensors
+from meshonet.solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)

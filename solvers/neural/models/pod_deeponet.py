@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
-from solvers.neural.models.model import Frame, Operator
-from solvers.neural.samples import Samples
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
+from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 Around a body the same layers go round along xi, where a quad's see zeros outside the grid.
 
 Ronneberger, Fischer, Brox, U-Net, MICCAI 2015, with residual blocks and group convolutions
-(`solvers.neural.quads.symmetry`). Inference in numpy is `solvers.neural.quads.network`.
+(`meshonet.solvers.neural.quads.symmetry`). Inference in numpy is `meshonet.solvers.neural.quads.network`.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from solvers.neural.quads import kernels
-from solvers.neural.quads.encoding import HEADS
-from solvers.neural.quads.features import FEATURES
-from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
+from meshonet.solvers.neural.quads import kernels
+from meshonet.solvers.neural.quads.encoding import HEADS
+from meshonet.solvers.neural.quads.features import FEATURES
+from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
 
 
 class GroupConvolution(nn.Module):

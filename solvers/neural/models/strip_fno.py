@@ -1,11 +1,11 @@
-"""The strip network in torch: the layers of `solvers.neural.network`, differentiable."""
+"""The strip network in torch: the layers of `meshonet.solvers.neural.network`, differentiable."""
 
 from __future__ import annotations
 
 import torch
 from torch import Tensor, nn
 
-from solvers.neural.network import GATE, TAPS
+from meshonet.solvers.neural.network import GATE, TAPS
 
 
 class Spectral(nn.Module):
@@ -24,7 +24,7 @@ class Spectral(nn.Module):
 
 
 class StripFNO(nn.Module):
-    """Channels and scalars of `solvers.neural.encoding` to `outputs` channels.
+    """Channels and scalars of `meshonet.solvers.neural.encoding` to `outputs` channels.
 
     Parameters
     ----------

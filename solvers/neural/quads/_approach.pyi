@@ -1,4 +1,4 @@
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 LINE: int
 

@@ -2,7 +2,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
 
 def take_out(planes: Floats, unit: Floats, factors: Floats) -> None: ...
 def put_back(planes: Floats, moved: Floats, unit: Floats, factors: Floats) -> None: ...

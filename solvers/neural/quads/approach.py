@@ -24,9 +24,9 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.solvers.neural.quads.encoding import LATENT
 from solvers.neural.quads._approach import LINE, approach_all
-from solvers.neural.quads.encoding import LATENT
 
 STEPS = 4
 """After the harmonic grid. A fifth takes a tenth of what is left on average."""

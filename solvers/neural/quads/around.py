@@ -17,18 +17,18 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers import coarse
-from solvers.neural.quads.approach import AFTER, approached
-from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
-from solvers.neural.quads.features import features
-from solvers.neural.quads.inside import inside
-from solvers.neural.quads.model import QuadModel
-from solvers.neural.quads.network import CHUNK
-from solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
-from solvers.spline import between
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers import coarse
+from meshonet.solvers.neural.quads.approach import AFTER, approached
+from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
+from meshonet.solvers.neural.quads.features import features
+from meshonet.solvers.neural.quads.inside import inside
+from meshonet.solvers.neural.quads.model import QuadModel
+from meshonet.solvers.neural.quads.network import CHUNK
+from meshonet.solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
+from meshonet.solvers.spline import between
 
 COMPACT = 0.15
 """Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""

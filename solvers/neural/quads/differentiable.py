@@ -1,6 +1,6 @@
 """Quad grids in torch: gradients from every node back to the nodes of the boundary, on any device.
 
-The arithmetic of `solvers.neural.quads.operator` once more, on tensors; without polish and guard.
+The arithmetic of `meshonet.solvers.neural.quads.operator` once more, on tensors; without polish and guard.
 """
 
 from __future__ import annotations
@@ -10,15 +10,15 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from solvers.neural.quads.approach import AFTER, approach, nodes_after
-from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
-from solvers.neural.quads.evaluated import arrays, between, evaluated, folded
-from solvers.neural.quads.features import features
-from solvers.neural.quads.frame import frame
-from solvers.neural.quads.in_torch import loaded
-from solvers.neural.quads.model import ANSWERS
-from solvers.neural.quads.part_of_the_way import share
-from solvers.neural.tensors import check_sides
+from meshonet.solvers.neural.quads.approach import AFTER, approach, nodes_after
+from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
+from meshonet.solvers.neural.quads.evaluated import arrays, between, evaluated, folded
+from meshonet.solvers.neural.quads.features import features
+from meshonet.solvers.neural.quads.frame import frame
+from meshonet.solvers.neural.quads.in_torch import loaded
+from meshonet.solvers.neural.quads.model import ANSWERS
+from meshonet.solvers.neural.quads.part_of_the_way import share
+from meshonet.solvers.neural.tensors import check_sides
 
 Sides = tuple[Tensor, Tensor, Tensor, Tensor]
 """South, north (batch, 2, ni), west and east (batch, 2, nj)."""
@@ -102,7 +102,7 @@ def _moved(planes: Tensor, by: Tensor) -> Tensor:
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:
-    """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `solvers.tfi`.
+    """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.tfi`.
 
     Parameters
     ----------

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.spline import between
 from solvers._tfi import fill_all
-from solvers.spline import between
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Of south, north, west and east."""

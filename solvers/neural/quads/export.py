@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Floats, Topology
-from solvers.neural.quads.encoding import HEADS, KIND, VERSION
-from solvers.neural.weights import write_tensors
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.solvers.neural.quads.encoding import HEADS, KIND, VERSION
+from meshonet.solvers.neural.weights import write_tensors
 
 Grids = NDArray[np.complexfloating[Any, Any]]
 

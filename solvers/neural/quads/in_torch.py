@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import torch
 
-from geometry.arrays import Topology
-from geometry.errors import InputError
-from solvers.neural.models.quad_unet import QuadUNet
-from solvers.neural.quads.model import head_of, load_quads
-from solvers.neural.weights import model_path
+from meshonet.geometry.arrays import Topology
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.models.quad_unet import QuadUNet
+from meshonet.solvers.neural.quads.model import head_of, load_quads
+from meshonet.solvers.neural.weights import model_path
 
 
 def loaded(

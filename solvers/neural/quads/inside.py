@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
 
 PIECES = 8
 """Pieces of each of the wall's edges whose middles stand for it."""

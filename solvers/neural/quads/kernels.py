@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Floats
-from solvers.neural.quads.symmetry import ORDER, RELATIVE, TAPS, Integers
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.neural.quads.symmetry import ORDER, RELATIVE, TAPS, Integers
 
 
 def table(size: int) -> Integers:

@@ -8,11 +8,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from geometry.arrays import Topology
-from geometry.errors import InputError
-from solvers.neural.quads.encoding import HEADS, KIND, VERSION
-from solvers.neural.quads.network import Network, Reals, shapes
-from solvers.neural.weights import read_tensors
+from meshonet.geometry.arrays import Topology
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.quads.encoding import HEADS, KIND, VERSION
+from meshonet.solvers.neural.quads.network import Network, Reals, shapes
+from meshonet.solvers.neural.weights import read_tensors
 
 ANSWERS = ("quad-winslow", "quad-general")
 """Names of the two as models, in the order of `encoding.HEADS`."""

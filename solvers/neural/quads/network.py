@@ -10,7 +10,7 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
 once, the kernels are those of an ordinary convolutional network, which is compiled, most of it by fewer
 products (`winograd.h`).
-`solvers.neural.models.quad_unet` is the same in torch.
+`meshonet.solvers.neural.models.quad_unet` is the same in torch.
 Ronneberger et al., U-Net, MICCAI 2015.
 """
 
@@ -24,8 +24,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
-from solvers.neural.quads import kernels
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.solvers.neural.quads import kernels
+from meshonet.solvers.neural.quads.features import FEATURES
+from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
 from solvers.neural.quads._network import (
     Program,
     activate,
@@ -34,8 +36,6 @@ from solvers.neural.quads._network import (
     winograd,
     winograd_scratch,
 )
-from solvers.neural.quads.features import FEATURES
-from solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
 
 Reals: TypeAlias = NDArray[Any]
 Shapes: TypeAlias = dict[str, tuple[int, ...]]

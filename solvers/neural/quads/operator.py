@@ -7,7 +7,7 @@
           -> splines -> grid at the edges' own counts
 
 Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations. The last step is
-`solvers.evaluation`, as in `solvers.coarse`.
+`meshonet.solvers.evaluation`, as in `meshonet.solvers.coarse`.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from geometry.arrays import Floats
-from geometry.boundary import Boundary
-from solvers import evaluation
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers import evaluation
+from meshonet.solvers.neural.quads.approach import AFTER, nodes_after, step_all
+from meshonet.solvers.neural.quads.edges import Edges
+from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
+from meshonet.solvers.neural.quads.features import FEATURES
+from meshonet.solvers.neural.quads.model import QuadModel
+from meshonet.solvers.neural.quads.network import CHUNK, rim_factor
+from meshonet.solvers.neural.quads.part_of_the_way import share
+from meshonet.solvers.spline import places
 from solvers._evaluate import begin_all
 from solvers.neural.quads._frame import add, put_back, take_out
 from solvers.neural.quads._network import look
-from solvers.neural.quads.approach import AFTER, nodes_after, step_all
-from solvers.neural.quads.edges import Edges
-from solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
-from solvers.neural.quads.features import FEATURES
-from solvers.neural.quads.model import QuadModel
-from solvers.neural.quads.network import CHUNK, rim_factor
-from solvers.neural.quads.part_of_the_way import share
-from solvers.spline import places
 
 BATCH = 64
 """Domains in memory at a time at the most."""
@@ -91,7 +91,7 @@ def _begun(edges: Edges) -> Floats:
 
 
 def _unit(planes: Floats) -> tuple[Floats, Floats]:
-    """Return planes at unit size (`solvers.neural.quads.frame`), and the factors (batch, 2) to it."""
+    """Return planes at unit size (`meshonet.solvers.neural.quads.frame`), and the factors (batch, 2) to it."""
     unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
     take_out(planes, unit, factors)
     return unit, factors

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from geometry.quality import count_folded
-from geometry.topology import straight
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.quality import count_folded
+from meshonet.geometry.topology import straight
 
 STEP = 2.0**-30
 """Of the rounding, over the size of the walls up to the next power of two."""

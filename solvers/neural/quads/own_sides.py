@@ -12,10 +12,10 @@ from itertools import product
 
 import numpy as np
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from solvers.neural.quads.own_frame import complex_edge, rounding
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.quads.own_frame import complex_edge, rounding
 
 Element = tuple[bool, bool, bool]
 """A relabelling: xi runs the other way, then eta does, then both change places."""

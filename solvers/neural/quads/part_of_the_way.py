@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from geometry.arrays import Floats
-from geometry.quality import count_folded
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality import count_folded
 
 SHARES = (0.95, 0.9, 0.8)
 """Of the way from the grid that the network sees to its answer, the first of them without folds; else all."""

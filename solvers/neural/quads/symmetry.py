@@ -18,7 +18,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
 
 Integers: TypeAlias = NDArray[np.int64]
 Reals: TypeAlias = NDArray[np.floating[Any]]

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
 
 AROUND = 65
 """Nodes along xi, the last a turn after the first, of the grid that the network sees around a body."""

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-from geometry.errors import InputError
-from geometry.families.family import FAMILIES, family
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.family import FAMILIES, family
 
 KINKS = {
     "arch": lambda p: [],

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.families.four_sided import LEAST, MOST, boundary
-from geometry.simple import find_crossing
+from meshonet.geometry.families.four_sided import LEAST, MOST, boundary
+from meshonet.geometry.simple import find_crossing
 
 SEEDS = range(20)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from solvers.neural.samples import Samples
+from meshonet.solvers.neural.samples import Samples
 
 torch.set_num_threads(1)  # tests run side by side
 

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.naca import naca
-from geometry.sampling import Sampling
-from geometry.topology import straight
-from solvers.neural.operator import infer
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.naca import naca
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.topology import straight
+from meshonet.solvers.neural.operator import infer
 
 torch = pytest.importorskip("torch")
-from solvers.neural.differentiable import AirfoilGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable import AirfoilGrids  # noqa: E402 - it imports torch
 
 
 def airfoil(designation: str, ni: int, nj: int, **settings: Any) -> Boundary:

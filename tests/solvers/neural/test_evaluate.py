@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.arrays import planar_nodes
-from geometry.naca import naca
-from geometry.sampling import Sampling
-from solvers.neural.evaluate import StripGrid
-from solvers.neural.operator import walls
-from solvers.neural.strip import MODES, across, harmonic, interpolation, modes, wavenumbers
-from solvers.neural.waves import SHARPNESS, TAPS, columns
+from meshonet.geometry.arrays import planar_nodes
+from meshonet.geometry.naca import naca
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.neural.evaluate import StripGrid
+from meshonet.solvers.neural.operator import walls
+from meshonet.solvers.neural.strip import MODES, across, harmonic, interpolation, modes, wavenumbers
+from meshonet.solvers.neural.waves import SHARPNESS, TAPS, columns
 
 
 @pytest.mark.parametrize("designation", ["0012", "4412-sharp"])

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 import torch
 
-from geometry.boundary import Boundary
-from geometry.errors import InputError, SolverError
-from geometry.families import procedural
-from geometry.naca import naca
-from geometry.sampling import Sampling
-from solvers.neural.export import distance
-from solvers.neural.fit.loop import Progress
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.strip import Sizes, train_strip
-from solvers.neural.fit.team import Team
-from solvers.neural.strip import across, harmonic, picard
-from solvers.neural.strips import Strips, solve_strips
-from solvers.neural.weights import load_model, read_tensors
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.families import procedural
+from meshonet.geometry.naca import naca
+from meshonet.geometry.sampling import Sampling
+from meshonet.solvers.neural.export import distance
+from meshonet.solvers.neural.fit.loop import Progress
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.strip import Sizes, train_strip
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.strip import across, harmonic, picard
+from meshonet.solvers.neural.strips import Strips, solve_strips
+from meshonet.solvers.neural.weights import load_model, read_tensors
 
 SMALL = Plan(
     epochs=3, batch=8, rate=2e-3, schedule="cosine", warm_up=4, weight_decay=1e-4, clip=1.0, device="cpu"

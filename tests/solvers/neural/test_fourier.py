@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import torch
 
-from geometry.errors import InputError
-from solvers.neural.models.fno2d import FNO2D
-from solvers.neural.models.model import Frame
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.models.fno2d import FNO2D
+from meshonet.solvers.neural.models.model import Frame
 
 
 def masked(h: np.ndarray, weight: np.ndarray, model: FNO2D) -> np.ndarray:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.boundary import Boundary
-from geometry.families.family import FAMILIES, family
-from solvers.neural.harmonic import extend
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.families.family import FAMILIES, family
+from meshonet.solvers.neural.harmonic import extend
 
 
 def rectangle(ni: int, nj: int, height: float, bump: float = 0.0) -> Boundary:

@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.airfoil import Airfoil
-from geometry.boundary import Boundary
-from geometry.errors import InputError
-from geometry.families import procedural
-from geometry.families.family import family
-from geometry.naca import naca
-from geometry.outline import Outline
-from geometry.quality import count_folded, measure
-from geometry.sampling import Sampling
-from geometry.topology import o_boundary
-from solvers.elliptic.solve import solve
-from solvers.neural.operator import Polish, infer, infer_strips
+from meshonet.geometry.airfoil import Airfoil
+from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families import procedural
+from meshonet.geometry.families.family import family
+from meshonet.geometry.naca import naca
+from meshonet.geometry.outline import Outline
+from meshonet.geometry.quality import count_folded, measure
+from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.topology import o_boundary
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.neural.operator import Polish, infer, infer_strips
 
 SECTIONS = ("0012", "0012-sharp", "4412", "23012", "6424-sharp")
 
@@ -127,7 +127,7 @@ def test_polish_brings_the_network_closer_where_few_nodes_are_at_the_nose(design
 def test_halving_the_angle_at_an_edge_moves_only_the_nodes_around_it(monkeypatch: pytest.MonkeyPatch) -> None:
     edges = boundary("4412-sharp", 160, 80, spacing="cosine")
     nudged = infer(edges).grid.nodes
-    monkeypatch.setattr("solvers.neural.operator.halve_corners", lambda *_: None)
+    monkeypatch.setattr("meshonet.solvers.neural.operator.halve_corners", lambda *_: None)
     moved = np.hypot(*np.moveaxis(nudged - infer(edges).grid.nodes, -1, 0))[:80].max(axis=1)
     assert moved[0] > 1e-4
     assert moved[12:].max() < 1e-3 * moved[0], moved

@@ -11,17 +11,17 @@ import pytest
 import torch
 from families import arches, rings
 
-from geometry.errors import InputError
-from solvers.neural.fit.loop import Progress
-from solvers.neural.fit.operators import train_operator
-from solvers.neural.fit.physics_task import PhysicsTask
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.team import Team
-from solvers.neural.inference import answered
-from solvers.neural.models.mgnet import MGNet
-from solvers.neural.registry import operator
-from solvers.neural.samples import Samples
-from solvers.neural.trained import load_trained
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.fit.loop import Progress
+from meshonet.solvers.neural.fit.operators import train_operator
+from meshonet.solvers.neural.fit.physics_task import PhysicsTask
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.inference import answered
+from meshonet.solvers.neural.models.mgnet import MGNet
+from meshonet.solvers.neural.registry import operator
+from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.trained import load_trained
 
 PLAN = Plan(epochs=300, points=(60, 40), rate=5e-3, schedule="cosine", device="cpu", log_every=50)
 ALONE = Team(torch.device("cpu"))

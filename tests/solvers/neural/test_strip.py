@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solvers.neural.strip import (
+from meshonet.solvers.neural.strip import (
     COLUMNS,
     MODES,
     across,

@@ -6,9 +6,9 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from geometry.errors import InputError  # noqa: E402
-from solvers.neural.differentiable import AirfoilGrids  # noqa: E402
-from solvers.neural.quads.differentiable import QuadGrids  # noqa: E402
+from meshonet.geometry.errors import InputError  # noqa: E402
+from meshonet.solvers.neural.differentiable import AirfoilGrids  # noqa: E402
+from meshonet.solvers.neural.quads.differentiable import QuadGrids  # noqa: E402
 
 
 def sides(*counts: int, dtype: torch.dtype = torch.float64) -> list[torch.Tensor]:

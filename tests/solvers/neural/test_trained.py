@@ -11,16 +11,16 @@ import torch
 from families import arches, rings
 from safetensors.numpy import load_file, save_file
 
-from geometry.errors import InputError
-from solvers.neural.fit.operator_task import differences
-from solvers.neural.inference import answered, infer
-from solvers.neural.layers import count, initial
-from solvers.neural.models.model import Frame
-from solvers.neural.places import lift, rim, sensors, square
-from solvers.neural.registry import OPERATORS, operator
-from solvers.neural.samples import Samples
-from solvers.neural.trained import Trained, load_trained, write_trained
-from solvers.neural.weights import HEADER
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.fit.operator_task import differences
+from meshonet.solvers.neural.inference import answered, infer
+from meshonet.solvers.neural.layers import count, initial
+from meshonet.solvers.neural.models.model import Frame
+from meshonet.solvers.neural.places import lift, rim, sensors, square
+from meshonet.solvers.neural.registry import OPERATORS, operator
+from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.trained import Trained, load_trained, write_trained
+from meshonet.solvers.neural.weights import HEADER
 
 FAMILIES = {"quad": arches(), "o": rings()}
 
@@ -75,7 +75,7 @@ def test_the_page_counts_every_models_parameters() -> None:
 @pytest.mark.parametrize("size", [None, 40, 150])
 @pytest.mark.parametrize("modes", [0, 4])
 def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int | None, modes: int) -> None:
-    from geometry.sampling import Sampling
+    from meshonet.geometry.sampling import Sampling
 
     samples = FAMILIES[topology]
     trained = random("meshonet-hard", samples, modes=modes)
@@ -156,7 +156,7 @@ def test_a_batch_answers_like_its_members() -> None:
 
 def test_large_grids_agree_with_small_ones() -> None:
     """281 nodes are every second of 561: the interpolated table against the network's own values."""
-    from geometry.sampling import Sampling
+    from meshonet.geometry.sampling import Sampling
 
     samples = FAMILIES["quad"]
     trained = random("meshonet", samples)

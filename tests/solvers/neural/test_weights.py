@@ -10,9 +10,17 @@ import numpy as np
 import pytest
 from safetensors.numpy import save_file
 
-from geometry.errors import InputError
-from solvers.neural.encoding import VERSION
-from solvers.neural.weights import HEADER, KIND, described, load_model, model_path, read_tensors, shipped
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.encoding import VERSION
+from meshonet.solvers.neural.weights import (
+    HEADER,
+    KIND,
+    described,
+    load_model,
+    model_path,
+    read_tensors,
+    shipped,
+)
 
 
 def tensors() -> dict[str, np.ndarray]:

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from geometry.arrays import Complexes, Floats
-from geometry.boundary import Boundary
-from solvers.elliptic.solve import solve
-from solvers.neural.quads.approach import approach, approached
-from solvers.neural.quads.symmetry import ORDER, relabelled
-from solvers.tfi import tfi
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.boundary import Boundary
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.neural.quads.approach import approach, approached
+from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
+from meshonet.solvers.tfi import tfi
 
 
 def conformal(n: int, bend: float) -> Complexes:

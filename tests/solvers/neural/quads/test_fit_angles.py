@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import torch
 
-from geometry.grid import Grid
-from geometry.quality import per_cell
-from solvers.neural.fit.angles import excess, extremes
+from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality import per_cell
+from meshonet.solvers.neural.fit.angles import excess, extremes
 
 
 def sheared(n: int, slope: float) -> torch.Tensor:

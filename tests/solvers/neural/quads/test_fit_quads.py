@@ -9,22 +9,22 @@ import numpy as np
 import pytest
 import torch
 
-from geometry.errors import InputError
-from geometry.families.four_sided import boundary
-from solvers.elliptic.solve import solve as winslow
-from solvers.neural.fit.loop import Progress
-from solvers.neural.fit.plan import Plan
-from solvers.neural.fit.quad_grids import Quads, quads
-from solvers.neural.fit.quads import PARTS, Sizes, train_quads
-from solvers.neural.fit.team import Team
-from solvers.neural.models.quad_unet import QuadUNet
-from solvers.neural.quads.approach import approach
-from solvers.neural.quads.encoding import LATENT
-from solvers.neural.quads.features import FEATURES, features
-from solvers.neural.quads.symmetry import ORDER, relabelled
-from solvers.neural.samples import Samples, gathered
-from solvers.neural.weights import read_tensors
-from solvers.variational.solve import solve as variational
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.four_sided import boundary
+from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.neural.fit.loop import Progress
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.quad_grids import Quads, quads
+from meshonet.solvers.neural.fit.quads import PARTS, Sizes, train_quads
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.models.quad_unet import QuadUNet
+from meshonet.solvers.neural.quads.approach import approach
+from meshonet.solvers.neural.quads.encoding import LATENT
+from meshonet.solvers.neural.quads.features import FEATURES, features
+from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
+from meshonet.solvers.neural.samples import Samples, gathered
+from meshonet.solvers.neural.weights import read_tensors
+from meshonet.solvers.variational.solve import solve as variational
 
 SMALL = Plan(
     epochs=3, batch=6, rate=3e-3, schedule="cosine", warm_up=2, weight_decay=1e-3, clip=1.0, device="cpu"
@@ -150,7 +150,7 @@ def test_too_few_domains_are_refused(given: Quads, tmp_path: Path, held_out: int
 
 
 def test_figures_count_folds_and_gains(given: Quads) -> None:
-    from solvers.neural.quads.export import held_out_figures
+    from meshonet.solvers.neural.quads.export import held_out_figures
 
     base, goal, best = (z.numpy() for z in (given.base, given.winslow, given.variational))
     figures = held_out_figures(np.stack([goal, best], axis=1), base, goal, best)

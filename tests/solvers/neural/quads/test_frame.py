@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats
+from meshonet.solvers.neural.quads.frame import frame
 from solvers.neural.quads._frame import add, put_back, take_out
-from solvers.neural.quads.frame import frame
 
 
 def grids() -> Floats:

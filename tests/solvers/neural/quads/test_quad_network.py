@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.solvers.neural.quads.approach import approach
+from meshonet.solvers.neural.quads.features import FEATURES, features
+from meshonet.solvers.neural.quads.kernels import at_points
+from meshonet.solvers.neural.quads.network import CHUNK, Network, shapes
+from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
 from solvers.neural.quads._network import (
     Program,
     activate,
@@ -18,11 +23,6 @@ from solvers.neural.quads._network import (
     winograd,
     winograd_scratch,
 )
-from solvers.neural.quads.approach import approach
-from solvers.neural.quads.features import FEATURES, features
-from solvers.neural.quads.kernels import at_points
-from solvers.neural.quads.network import CHUNK, Network, shapes
-from solvers.neural.quads.symmetry import ORDER, relabelled
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
 CLOSE: dict[Any, float] = {np.float32: 2e-5, np.float64: 1e-13}
@@ -248,7 +248,7 @@ def test_single_precision_is_close_to_double() -> None:
 
 def test_numpy_equals_torch() -> None:
     torch = pytest.importorskip("torch")
-    from solvers.neural.models.quad_unet import QuadUNet
+    from meshonet.solvers.neural.models.quad_unet import QuadUNet
 
     model = QuadUNet(WIDTHS, BLOCKS).double()
     held = weights()

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geometry.arrays import Complexes
-from solvers.neural.quads import kernels
-from solvers.neural.quads.features import FEATURES, features
-from solvers.neural.quads.frame import frame
-from solvers.neural.quads.symmetry import ELEMENTS, INVERSE, ORDER, PRODUCT, SEEN, relabelled
+from meshonet.geometry.arrays import Complexes
+from meshonet.solvers.neural.quads import kernels
+from meshonet.solvers.neural.quads.features import FEATURES, features
+from meshonet.solvers.neural.quads.frame import frame
+from meshonet.solvers.neural.quads.symmetry import ELEMENTS, INVERSE, ORDER, PRODUCT, SEEN, relabelled
 
 ALL = range(ORDER)
 

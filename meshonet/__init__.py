@@ -1,0 +1,1 @@
+"""Structured, body-fitted grids from a boundary."""
