@@ -15,15 +15,15 @@ from pathlib import Path
 import numpy as np
 from gains import Way, clocked, distances, figures, gains, operate, percent, published
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.compare import compare
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.families.bodies import boundary as random_body
 from meshonet.geometry.families.family import family
 from meshonet.geometry.families.split import split
-from meshonet.geometry.naca import naca
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.coarse import solve_coarse, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.quads.inference import infer_quads

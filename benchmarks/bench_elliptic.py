@@ -18,13 +18,13 @@ from typing import TypeVar
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.families.family import FAMILIES, family
-from meshonet.geometry.growth import growing_steps
-from meshonet.geometry.naca import naca
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
 from meshonet.solvers.guard import guard

@@ -26,11 +26,11 @@ import numpy as np
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
-from meshonet.geometry.parts import wake_nodes
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.automatic import solve_automatic
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.hyperbolic import hyperbolic

@@ -29,13 +29,13 @@ from kept import Kept
 from shapes import Shape, airfoil_files, members, random_airfoils, random_domains
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.families.arch import FAMILY as ARCH
 from meshonet.geometry.families.family import FAMILIES
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.naca import naca
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.coarse import solve_coarse
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.guard import guard

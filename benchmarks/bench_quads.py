@@ -30,10 +30,10 @@ from random_quads import random_quad
 from solver_shapes import arch
 
 from meshonet.formats.registry import read_shapes
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.compare import compare
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.coarse import solve_coarse
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.quads.edges import Edges

@@ -28,11 +28,11 @@ from random_quads import random_quad
 from solver_shapes import arch, bump, hexagon, wrench
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.naca import naca
-from meshonet.geometry.quality import count_folded, measure
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import count_folded, measure
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.coarse import solve_coarse, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.operator import infer as operate

@@ -13,10 +13,10 @@ import numpy as np
 from kept import ROOT
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.compare import compare
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded, measure
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.solution import Solution
 

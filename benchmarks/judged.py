@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from shapes import Shape
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.errors import MeshonetError
-from meshonet.geometry.nested import coarser_boundary
-from meshonet.geometry.quality import count_folded, per_cell
+from meshonet.geometry.quality.measure import count_folded, per_cell
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.variational.solve import solve as variational

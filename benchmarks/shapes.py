@@ -13,12 +13,12 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "solvers"))
 from random_quads import random_quad
 
 from meshonet.formats.registry import read_shapes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.families.family import family
 from meshonet.geometry.families.split import split as divided
-from meshonet.geometry.sampling import Sampling, Spacing
+from meshonet.geometry.spacing.sampling import Sampling, Spacing
 
 SEED = 20_000_003
 FIRST = 1000

@@ -18,9 +18,9 @@ import numpy as np
 from meshonet.formats.format import Format
 from meshonet.formats.rows import Line, decode, read_lines, table
 from meshonet.formats.source import Source, printable
-from meshonet.geometry.airfoil import Airfoil
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 MOST_POINTS = 20_000
 _ASK = "give an airfoil as lines of x y from the trailing edge round to it again, or in Lednicer's order"

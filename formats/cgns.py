@@ -22,9 +22,9 @@ from meshonet.formats.patches import Role, cut, patches, roles
 from meshonet.formats.source import Source
 from meshonet.formats.words import words
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
 
 Integers = NDArray[np.int32]
 

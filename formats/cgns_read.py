@@ -14,9 +14,9 @@ from meshonet.formats.hdf5_check import opened
 from meshonet.formats.planes import planar
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
 
 _FACTS = ("topology", "name", "parts", "provenance")
 _MOST_NODES = 1 << 40

@@ -19,7 +19,7 @@ from meshonet.formats.surface import MOST_EDGES, Surface, shapes_of
 from meshonet.formats.unstructured import Indices
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.shape import Shape
 
 _KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
 _MOST_BYTES = 64 << 20

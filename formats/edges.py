@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology
-from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import c_parts, wake_nodes
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import c_parts, wake_nodes
 
 LARGEST = 1e150
 """Coordinates must be below this, so that areas and their sums are finite."""

@@ -9,9 +9,9 @@ from typing import Any
 from meshonet.formats.edges import known_topology, recovered, usable
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
 
 
 def facts_of(grid: Grid) -> dict[str, list[str]]:

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from meshonet.formats.figure_layers import INK, Box, Part, body, in_view, outline, paint, rule
 from meshonet.formats.format import Format, only_one
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

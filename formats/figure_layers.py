@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

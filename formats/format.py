@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TypeAlias
 
 from meshonet.formats.source import Source
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.shape import Shape
 
 Heights: TypeAlias = tuple[float, ...]
 """z of each plane of a grid that is repeated in z, increasing from 0."""

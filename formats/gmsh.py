@@ -20,7 +20,7 @@ from meshonet.formats.gmsh_read import read_shapes, sniff
 from meshonet.formats.source import printable
 from meshonet.formats.unstructured import Indices, extruded, unstructured
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:

@@ -16,7 +16,7 @@ from meshonet.formats.format import Heights, only_one
 from meshonet.formats.text_rows import write_rows
 from meshonet.formats.unstructured import Indices, extruded, unstructured
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 INTERIOR = "fluid"
 """Name of the group of all cells."""

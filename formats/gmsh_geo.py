@@ -17,7 +17,7 @@ from meshonet.formats.format import Format, only_one
 from meshonet.formats.gmsh import quotable
 from meshonet.formats.gmsh41 import INTERIOR
 from meshonet.formats.unstructured import Indices, node_numbers, unstructured
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:

@@ -16,7 +16,7 @@ from meshonet.formats.source import Source, printable
 from meshonet.formats.surface import Surface, flat, shapes_of
 from meshonet.formats.unstructured import Indices
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.shape import Shape
 
 _VERSIONS = ("2.2", "4.1")
 _NAME = re.compile(rb'\s*(\d+)\s+(\d+)\s+"([^"\n]*)"')

@@ -31,11 +31,11 @@ from meshonet.formats.hdf5_check import Checked, checked
 from meshonet.formats.hdf5_file import created
 from meshonet.formats.source import Source
 from meshonet.geometry.arrays import SIDES, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.origin import Origin
-from meshonet.geometry.parts import Part
 
 if TYPE_CHECKING:
     import h5py

@@ -14,8 +14,8 @@ from meshonet.formats.format import Format, Heights, only_one
 from meshonet.formats.patches import Role, cut, patches, roles
 from meshonet.formats.words import words
 from meshonet.geometry.arrays import Side
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 
 _FACES: dict[Side, int] = {"west": 3, "east": 4, "south": 5, "north": 6}
 _TYPES: dict[Role, str] = {

@@ -21,7 +21,7 @@ from meshonet.formats.patches import Role, patches, roles
 from meshonet.formats.text_rows import write_rows
 from meshonet.formats.unstructured import Indices, Unstructured, layer_points, unstructured
 from meshonet.formats.words import words
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 EMPTY = "frontAndBack"
 """Name of the patch of type ``empty``: the two planes of a grid that is one cell thick."""

@@ -8,8 +8,8 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part, wake_nodes
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part, wake_nodes
 
 Role: TypeAlias = Literal["wall", "farfield", "inflow", "outflow", "symmetry", "other"]
 

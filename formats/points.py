@@ -18,14 +18,14 @@ import numpy as np
 from meshonet.formats.format import Format
 from meshonet.formats.rows import Line, decode, read_lines, table
 from meshonet.formats.source import Source
-from meshonet.geometry.airfoil import Airfoil
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary, polygon_area
-from meshonet.geometry.corners import find_corners, turning
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.shape import Shape
-from meshonet.geometry.simple import check_outline
+from meshonet.geometry.polygon.corners import find_corners, turning
+from meshonet.geometry.polygon.self_intersection import check_outline
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
 
 MOST_POINTS = 100_000
 _JOIN = 1e-6

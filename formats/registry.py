@@ -14,9 +14,9 @@ from typing import Literal, NamedTuple
 from meshonet.formats.edges import boundary_of
 from meshonet.formats.format import Format
 from meshonet.formats.source import Source, open_source, printable
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.shape import Shape
 
 Kind = Literal["grids", "boundaries"]
 
@@ -172,7 +172,7 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     if _is_designation(text):
         if fmt:
             format_named(fmt)
-        from meshonet.geometry.naca import naca
+        from meshonet.geometry.shapes.airfoil.naca import naca
 
         yield naca(text[len(_DESIGNATION) :])
         return

@@ -15,7 +15,7 @@ from meshonet.formats.text_rows import write_rows
 from meshonet.formats.unstructured import Indices, extruded, unstructured
 from meshonet.formats.words import words
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 _LINE, _QUADRILATERAL, _HEXAHEDRON = 3, 9, 12  # VTK's numbers
 

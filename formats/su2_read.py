@@ -12,7 +12,7 @@ from meshonet.formats.surface import Surface, shapes_of
 from meshonet.formats.unstructured import Indices
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.shape import Shape
 
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
 """Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""

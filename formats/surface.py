@@ -16,14 +16,14 @@ from meshonet.formats.chains import Chain, chains
 from meshonet.formats.edges import LARGEST
 from meshonet.formats.source import printable
 from meshonet.formats.unstructured import Indices
-from meshonet.geometry.annulus import Annulus
 from meshonet.geometry.arrays import SIDES, Floats, Side
-from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.labels import Labelled, runs
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.parts import Part
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.named_edges import Labelled, runs
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
 
 MOST_EDGES = 400_000
 """A longer boundary is a mistake."""

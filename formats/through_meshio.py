@@ -15,7 +15,7 @@ import numpy as np
 
 from meshonet.formats.format import Format, only_one
 from meshonet.formats.unstructured import Indices, Unstructured, unstructured
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 class _Kind(NamedTuple):

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from meshonet.formats.patches import patches
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import wake_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
 

@@ -18,12 +18,12 @@ from meshonet.formats.edges import LARGEST
 from meshonet.formats.format import Format
 from meshonet.formats.points import one_curve
 from meshonet.formats.source import Source, printable
-from meshonet.geometry.annulus import Annulus
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import polygon_area
+from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.shape import Shape
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
 
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry

@@ -17,7 +17,7 @@ from meshonet.formats.facts import facts_of
 from meshonet.formats.format import Format, Heights, only_one
 from meshonet.formats.text_rows import write_rows
 from meshonet.formats.vtk_legacy_read import read_grids, sniff
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 _BLOCK_NODES = 1 << 15
 

@@ -14,8 +14,8 @@ from meshonet.formats.facts import grid_with
 from meshonet.formats.planes import planar
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 _KINDS = {
     "double": "f8", "float": "f4", "int": "i4", "unsigned_int": "u4", "long": "i8", "unsigned_long": "u8",

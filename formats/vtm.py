@@ -14,8 +14,8 @@ from meshonet.formats import vts
 from meshonet.formats.format import Format, Heights
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 _MOST_BYTES = 16 << 20
 _OURS = re.compile(r"block-\d+\.vts")

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from meshonet.formats.facts import facts_of
 from meshonet.formats.format import Format, Heights, only_one
 from meshonet.formats.source import Source, printable
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 _POINTS = '<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>'
 _BLOCK_NODES = 1 << 15

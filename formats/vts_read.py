@@ -12,8 +12,8 @@ from meshonet.formats.planes import planar
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk_arrays import Encoded, Encoding, decode
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

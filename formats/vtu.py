@@ -14,7 +14,7 @@ import numpy as np
 from meshonet.formats.format import Format, Heights, only_one
 from meshonet.formats.unstructured import Indices, extruded, unstructured
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:

@@ -1,4 +1,4 @@
-"""Compiled half of `meshonet.geometry.quality`: one pass over the cells of a grid.
+"""Compiled half of `meshonet.geometry.quality.measure`: one pass over the cells of a grid.
 
 ``x`` and ``y`` are the (ni, nj) C-contiguous planes of a grid's nodes.
 """

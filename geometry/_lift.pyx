@@ -42,7 +42,7 @@ cdef _number(Cplx c):
 def lift(const double complex[::1] wall, bint swap):
     """Return centre, quarter, corners (p, q, P, Q, k), pole, phase, strip points, trailing nodes, winding.
 
-    `wall` (n,), n at least 8; the rest as in `meshonet.geometry.lift.lift_body`.
+    `wall` (n,), n at least 8; the rest as in `meshonet.geometry.conformal.lift.lift_body`.
     """
     cdef Py_ssize_t n = wall.shape[0], corners[2]
     cdef BodyLift found
@@ -70,7 +70,7 @@ def lift(const double complex[::1] wall, bint swap):
 
 
 def to_strip(maps, const double complex[::1] z):
-    """Return the strip points of `z` (n,) by a `meshonet.geometry.lift.Lift` of at most two corners."""
+    """Return the strip points of `z` (n,) by a `meshonet.geometry.conformal.lift.Lift` of at most two corners."""
     cdef BodyLift lift
     cdef Py_ssize_t k
     cdef double complex[::1] w = numpy.empty(z.shape[0], complex)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshonet.formats.registry import read_shapes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.shape import Shape, edges_of
+from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item

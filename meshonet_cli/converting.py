@@ -11,13 +11,13 @@ from meshonet.formats.edges import LARGEST
 from meshonet.formats.format import Heights
 from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
 from meshonet.formats.source import open_source
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.coarsen import coarser_grid
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.normalise import normalised
+from meshonet.geometry.blocks.rotate import turned
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.nested import coarser_grid
-from meshonet.geometry.normalised import normalised
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.turn import turned
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item

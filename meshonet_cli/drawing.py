@@ -9,10 +9,10 @@ from pathlib import Path
 
 from meshonet.formats.format import only_one
 from meshonet.formats.registry import format_for_output
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.metrics import METRICS, NAMES
-from meshonet.geometry.quality import folded_cells, per_cell
+from meshonet.geometry.quality.measure import folded_cells, per_cell
+from meshonet.geometry.quality.metrics import METRICS, NAMES
 from meshonet_cli.batch import Destination
 
 PICTURES = ("png", "svg", "pdf")

@@ -9,12 +9,12 @@ from importlib import import_module
 
 import numpy as np
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.metadata import Origin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.family import FAMILIES, Family, family
 from meshonet.geometry.families.split import split
-from meshonet.geometry.origin import Origin
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet_cli.member import Item
 from meshonet_cli.session import Session
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.metrics import NAMES
-from meshonet.geometry.quality import Quality
+from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.metrics import NAMES
 
 _COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 NO_MORE: Mapping[str, float] = MappingProxyType({})
@@ -25,7 +25,7 @@ class Gate:
     Parameters
     ----------
     text : as the user wrote it.
-    metric : a metric of `meshonet.geometry.metrics`, ``folded``, the count of folded cells, or a figure that the
+    metric : a metric of `meshonet.geometry.quality.metrics`, ``folded``, the count of folded cells, or a figure that the
         command has beside them.
     statistic : min, mean, max, p01 or p99 of the metric over all cells.
     compare : ``>``, ``>=``, ``<`` or ``<=``.

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.compare import Difference, compare
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.profiles import Figures, Judgement, judge
-from meshonet.geometry.quality import Quality, measure, worst_cells
+from meshonet.geometry.quality.compare import Difference, compare
+from meshonet.geometry.quality.measure import Quality, measure, worst_cells
+from meshonet.geometry.quality.profiles import Figures, Judgement, judge
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.gates import Gate
 from meshonet_cli.judging import (
@@ -146,7 +146,7 @@ def grade_grids(
     other : file of grids to compare with.
     pairing : which of them goes with which, see `meshonet_cli.pairing`.
     summary : print one table over all grids in place of one for each.
-    profile : thresholds of `meshonet.geometry.profiles` to judge by.
+    profile : thresholds of `meshonet.geometry.quality.profiles` to judge by.
     outputs : figures and files of metrics to write of each grid.
     """
     for destination in outputs:

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import read_grids, read_shapes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded, measure, worst_cells
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.shape import Shape, edges_of
+from meshonet.geometry.quality.measure import count_folded, measure, worst_cells
+from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.guard import guard
 from meshonet.solvers.progress import listening
 from meshonet.solvers.solution import Solution

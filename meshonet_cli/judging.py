@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from meshonet.formats.patches import patches, roles
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
-from meshonet.geometry.profiles import Checked, Figures, Judgement, Limit
-from meshonet.geometry.steps import Extreme
-from meshonet.geometry.wall_rows import Spread, WallRow
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.quality.growth import Extreme
+from meshonet.geometry.quality.profiles import Checked, Figures, Judgement, Limit
+from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet_cli.report import aligned, figure
 
 

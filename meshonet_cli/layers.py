@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from meshonet.geometry.boundary import Boundary
+    from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.solvers.solution import Solution
     from meshonet_cli.options import SpacingName
 
@@ -94,7 +94,7 @@ def read_layers(
         options that need or exclude each other, values out of range.
     """
     from meshonet.geometry.errors import InputError
-    from meshonet.geometry.flat_plate import FORMULA, SOURCE, first_cell
+    from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
 
     if wall_spacing is not None and y_plus is not None:
         raise InputError(

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import read_grids, read_shapes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.split import WAYS, split
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet_cli.learning_log import Log
 from meshonet_cli.session import Session
 

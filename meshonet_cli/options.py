@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 if TYPE_CHECKING:
-    from meshonet.geometry.sampling import Sampling
+    from meshonet.geometry.spacing.sampling import Sampling
 
 # the library's own choices, repeated here because its modules load numpy; a test holds them equal
 TopologyName = Literal["auto", "quad", "o", "c"]
@@ -159,7 +159,7 @@ def sampling(
     InputError
         a value that cannot be read or is out of range.
     """
-    from meshonet.geometry.sampling import Sampling
+    from meshonet.geometry.spacing.sampling import Sampling
 
     ni, nj = (None, None) if res is None else resolution(res)
     return Sampling(ni, nj, topology=topology, spacing=spacing, corners=four_corners(corners), **rest)

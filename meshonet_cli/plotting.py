@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
 from meshonet_cli.member import Item

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from meshonet_cli.member import Item
 
 if TYPE_CHECKING:
-    from meshonet.geometry.quality import Quality
+    from meshonet.geometry.quality.measure import Quality
     from meshonet_cli.watching import Row
 
 
@@ -136,7 +136,7 @@ def quality_json(quality: Quality) -> dict[str, Any]:
 
 def quality_table(quality: Quality) -> str:
     """Return the quality of a grid as a table for people; it needs the percentiles."""
-    from meshonet.geometry.metrics import METRICS
+    from meshonet.geometry.quality.metrics import METRICS
 
     head = ["metric", "min", "p01", "mean", "p99", "max", "worst at i, j"]
     rows = [head]

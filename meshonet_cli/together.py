@@ -8,10 +8,10 @@ from dataclasses import replace
 from itertools import islice
 
 from meshonet.geometry.arrays import Topology
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import MeshonetError
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.shape import Shape, edges_of
+from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.solution import Solution
 from meshonet_cli.delivery import Todo
 from meshonet_cli.member import Item

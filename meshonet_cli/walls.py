@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, TypeAlias
 import typer
 
 if TYPE_CHECKING:
-    from meshonet.geometry.boundary import Boundary
+    from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.errors import InputError
     from meshonet.solvers.solution import Solution
     from meshonet.solvers.walls.heights import Heights

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 

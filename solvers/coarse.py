@@ -15,11 +15,11 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology, as_planar, planar_nodes
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.corners import Indices
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import angles, count_folded
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.quality.measure import angles, count_folded
 from meshonet.solvers import acute, evaluation
 from meshonet.solvers.coarse_around import evaluate_around
 from meshonet.solvers.solution import Solution

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.spline import bending, places, spline_matrix
 from solvers._combine import add_rows
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality import count_folded, folded_cells
+from meshonet.geometry.quality.measure import count_folded, folded_cells
 from meshonet.solvers import acute
 from meshonet.solvers.inwards import REACH
 from meshonet.solvers.spline import places

@@ -14,8 +14,8 @@ import math
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary, polygon_area
-from meshonet.geometry.parts import wake_nodes
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.solvers.schedule import Edge, sharpest_edge
 
 _OPENING = 5.0

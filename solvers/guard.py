@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded, worst_cells
+from meshonet.geometry.quality.measure import count_folded, worst_cells
 
 REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 

@@ -19,12 +19,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.growth import cells_for_growth, growth_ratio
-from meshonet.geometry.parts import wake_nodes
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.solvers.front import Front
 from meshonet.solvers.reach import RISING, distance_to_march
 from meshonet.solvers.schedule import level_steps

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.nested import coarser_boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.coarsen import coarser_boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.coarse import evaluate
 from meshonet.solvers.solution import Solution
 

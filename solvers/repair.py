@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, as_planar
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded, folded_cells, per_cell
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import count_folded, folded_cells, per_cell
 from meshonet.solvers.unfold import Patience, smooth, unfold
 from meshonet.solvers.windows import Window, windows
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.corners import turning
-from meshonet.geometry.growth import growing_steps
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.spacing.growth import growing_steps
 
 _LESS = 0.24
 """Part of the growth that is left out where lines off an edge without a wedge begin to spread."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,9 +20,9 @@ from typing import Literal, get_args
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 from solvers._tfi import fill
 
 Blending = Literal["linear", "arclength"]

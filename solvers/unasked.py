@@ -11,10 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.parts import wake_nodes
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.hyperbolic import hyperbolic
 from meshonet.solvers.solution import Solution
 

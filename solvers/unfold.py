@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from solvers._repair import minimise
 
 VALID = 1e-3

@@ -101,7 +101,7 @@ def test_the_version_is_that_of_the_package() -> None:
 def test_choices_of_options_are_those_of_the_library() -> None:
     from typing import get_args
 
-    from meshonet.geometry.sampling import SPACINGS
+    from meshonet.geometry.spacing.sampling import SPACINGS
 
     assert get_args(SpacingName) == SPACINGS
     assert set(get_args(TopologyName)) <= {"auto", "quad", "o", "c"}

@@ -19,7 +19,7 @@ from scipy.sparse.linalg import spsolve
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 _AT = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3)
 

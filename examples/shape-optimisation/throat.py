@@ -17,7 +17,7 @@ import torch
 from torch import Tensor
 
 from meshonet.formats.vts import write_grids
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.neural.quads.differentiable import QuadGrids
 
 LENGTH, HEIGHT, THROAT = 3.0, 1.0, 0.6

@@ -12,7 +12,7 @@ from meshonet.formats.format import Format, Heights
 from meshonet.formats.plot3d.sniff import sniff
 from meshonet.formats.plot3d.variant import ANY, Variant, parse_variant
 from meshonet.formats.source import Source
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 _SUFFIXES = {
     "ascii": (".p3d", ".xyz", ".fmt", ".x", ".dat"),

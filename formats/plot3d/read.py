@@ -12,8 +12,8 @@ from meshonet.formats.plot3d.layouts import Candidate, best
 from meshonet.formats.plot3d.sniff import is_text
 from meshonet.formats.plot3d.variant import ANY, Variant
 from meshonet.formats.source import HEAD_BYTES, Source
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 
 def read_grids(source: Source, variant: Variant = ANY) -> Iterator[Grid]:

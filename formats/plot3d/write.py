@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from meshonet.formats.plot3d.variant import Variant
 from meshonet.formats.text_rows import write_rows
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 _LINE = 4
 """Numbers a line of text."""

@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import Family
-from meshonet.geometry.naca import POINTS, thickness
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness
+from meshonet.geometry.spacing.sampling import Sampling
 
 
 def boundary(ratio: float, ni: int, nj: int) -> Boundary:

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.simple import find_crossing
-from meshonet.geometry.stretch import on_corners
-from meshonet.geometry.topology import straight
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.polygon.self_intersection import find_crossing
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.spacing.laws import on_corners
 
 FINE = 960
 """Points of a curve before nodes are placed on it."""

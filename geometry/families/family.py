@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from meshonet.geometry.arrays import Topology
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 
 FAMILIES = ("arch", "hexagon", "wrench", "semicircle", "airfoil", "hole")

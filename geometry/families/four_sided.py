@@ -12,8 +12,8 @@ from collections.abc import Callable
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.simple import find_crossing
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.polygon.self_intersection import find_crossing
 
 FINE = 601
 """Points of a side before nodes are placed on it."""

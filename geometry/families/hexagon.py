@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.edges import polyline
 from meshonet.geometry.families.family import Family
 

@@ -14,10 +14,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.edges import polyline
 from meshonet.geometry.families.family import Family
-from meshonet.geometry.topology import far_circle, straight
+from meshonet.geometry.shapes.far_field import far_circle, straight
 
 RADIUS = 0.35
 

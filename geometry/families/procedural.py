@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.airfoil import Airfoil
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sampling import Sampling, Spacing
-from meshonet.geometry.topology import straight
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.spacing.sampling import Sampling, Spacing
 
 POINTS = 120  # a surface
 ORDER = 6  # of the Bernstein polynomials

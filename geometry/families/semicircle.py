@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.edges import polyline
 from meshonet.geometry.families.family import Family
-from meshonet.geometry.stretch import on_corners
+from meshonet.geometry.spacing.laws import on_corners
 
 RADIUS = 0.2
 LENGTH = 2.0

@@ -15,7 +15,7 @@ what is learnt from some openings then holds for those between.
 
 from __future__ import annotations
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.edges import Corners, polyline
 from meshonet.geometry.families.family import Family
 

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 
 STEEPEST = 2.0
 """Largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.corners import find_corners, turning
+from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.solvers.elliptic.coarsening import Direction
 from meshonet.solvers.tfi import Four
 from solvers.elliptic._multigrid import Level

@@ -14,9 +14,9 @@ import time
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.elliptic.control import Controls, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
 from meshonet.solvers.progress import tell

@@ -20,10 +20,10 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.coarse import evaluate, thinned
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.curves.curve import Curve
 from meshonet.solvers.elliptic.control import Controls, Factors
 
 DECAY = 6.0

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.lift import Lift
+from meshonet.geometry.conformal.lift import Lift
 
 def fill(
     x: Floats,

@@ -63,7 +63,7 @@ cdef Cplx _pair(z):
 
 
 cdef CornerMap *_maps(lift, LiftMaps *maps) except NULL:
-    """Fill in the maps of a `meshonet.geometry.lift.Lift`, and return the corners, to be freed."""
+    """Fill in the maps of a `meshonet.geometry.conformal.lift.Lift`, and return the corners, to be freed."""
     cdef Py_ssize_t i
     cdef CornerMap *corners = <CornerMap *>malloc(max(len(lift.corners), 1) * sizeof(CornerMap))
     if corners == NULL:
@@ -82,7 +82,7 @@ def halve(lift, lines, double limit):
 
     Parameters
     ----------
-    lift : `meshonet.geometry.lift.Lift`.
+    lift : `meshonet.geometry.conformal.lift.Lift`.
     lines : corner, the node ahead, the node behind, first point in the strip, shift to start from; the shift is
         the start where none is found.
     limit : of the shifts.
@@ -107,7 +107,7 @@ def fill(double[:, ::1] x, double[:, ::1] y, const Py_ssize_t[::1] order, lift, 
 
     Parameters
     ----------
-    lift : `meshonet.geometry.lift.Lift`.
+    lift : `meshonet.geometry.conformal.lift.Lift`.
     sums : a point, how many follow with it, and their columns (Q, 2, width) by `waves.columns`.
     sharpness : of the window of `waves`.
     along, across : (nudges, n) and (nudges, points), whose products are added to phi.

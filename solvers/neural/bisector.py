@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.lift import Lift
+from meshonet.geometry.conformal.lift import Lift
 from meshonet.solvers.neural.evaluate import StripGrid
 from solvers.neural._strip_rows import halve
 

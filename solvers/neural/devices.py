@@ -10,9 +10,9 @@ from typing import Any, Literal
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.neural.operator import Polish
 from meshonet.solvers.neural.operator import infer as infer_strip
 from meshonet.solvers.neural.quads.operator import in_batches

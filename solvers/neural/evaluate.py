@@ -17,8 +17,8 @@ from functools import lru_cache
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.lift import Lift
-from meshonet.geometry.mirror import Axis
+from meshonet.geometry.conformal.lift import Lift
+from meshonet.geometry.polygon.mirror import Axis
 from meshonet.solvers.neural.panels import NODES, panels
 from meshonet.solvers.neural.strip import MODES, interpolation, wavenumbers
 from meshonet.solvers.neural.waves import SHARPNESS, columns

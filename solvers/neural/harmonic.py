@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 
 FAR = 37.0
 """exp(-37) is the precision of a double: modes that have decayed so far are left out."""

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology, as_planar
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.neural.operator import Polish, infer_strips
 from meshonet.solvers.neural.operator import infer as infer_strip
 from meshonet.solvers.neural.quads.encoding import KIND as QUADS

@@ -1,4 +1,4 @@
-"""The conformal lift in torch: `meshonet.geometry.lift` once more, with gradients to the nodes of the wall.
+"""The conformal lift in torch: `meshonet.geometry.conformal.lift` once more, with gradients to the nodes of the wall.
 
 What is chosen, and not computed, is taken from there: which nodes are corners and tips, on which branch of a
 root or a logarithm a node lies.
@@ -13,15 +13,15 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from meshonet.geometry.lift import SECOND_PRONG, Lift, beside, follow, lift_body, removable
-from meshonet.geometry.mirror import farthest, handedness
+from meshonet.geometry.conformal.lift import SECOND_PRONG, Lift, beside, follow, lift_body, removable
+from meshonet.geometry.polygon.mirror import farthest, handedness
 
 PI = float(np.pi)
 
 
 @dataclass(frozen=True)
 class TorchLift:
-    """`meshonet.geometry.lift.Lift` with tensors: `corners` are p, q, P, Q and k of each."""
+    """`meshonet.geometry.conformal.lift.Lift` with tensors: `corners` are p, q, P, Q and k of each."""
 
     centre: Tensor
     quarter: Tensor

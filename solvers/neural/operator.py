@@ -19,13 +19,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.corners import turning
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.conformal.lift import Lift, lift_body, mirrored
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.lift import Lift, lift_body, mirrored
-from meshonet.geometry.mirror import Axis, handedness
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.polygon.mirror import Axis, handedness
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.neural.bisector import halve_corners
 from meshonet.solvers.neural.evaluate import StripGrid
 from meshonet.solvers.neural.strip import MODES, across, harmonic, modes, picard

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 
 
 def sensors(boundary: Boundary, count: int) -> Floats:

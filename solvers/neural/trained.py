@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import TOPOLOGIES, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.chebyshev import interpolation, points
 from meshonet.solvers.neural.layers import Arrays, Weights

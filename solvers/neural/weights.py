@@ -44,7 +44,7 @@ class Model:
     def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
         """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
 
-        `hand` (batch,) is that of `meshonet.geometry.mirror.handedness`: of a strip and its mirror image, whose modes
+        `hand` (batch,) is that of `meshonet.geometry.polygon.mirror.handedness`: of a strip and its mirror image, whose modes
         are conjugate, the network sees the same one, and the answer for a symmetric strip is made symmetric.
         Modes that Picard's steps would not correct are left out.
         """

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.progress import heard, tell
 from meshonet.solvers.repair import repair
 from meshonet.solvers.spline import spline_matrix

@@ -13,10 +13,10 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import angles, count_folded, widest_cell
+from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
 from meshonet.solvers.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.variational.descent import descend, in_cells, stiffness_of, teller

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.elliptic.relax import relax
 from meshonet.solvers.tfi import tfi

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, as_planar
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.variational.functional import Weights
 from meshonet.solvers.variational.preconditioner import minimiser
 from meshonet.solvers.windows import windows

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.growth import LARGEST
+from meshonet.geometry.spacing.growth import LARGEST
 from solvers._layers import fill_steps
 
 

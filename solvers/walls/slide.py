@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sampling import monotone_cubic
-from meshonet.geometry.stretch import on_corners
+from meshonet.geometry.spacing.laws import on_corners
+from meshonet.geometry.spacing.sampling import monotone_cubic
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 

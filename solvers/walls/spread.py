@@ -16,14 +16,14 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, as_planar, planar_nodes
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import default_parts
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.growth import LARGEST
-from meshonet.geometry.parts import default_parts
-from meshonet.geometry.sampling import monotone_cubic
-from meshonet.geometry.stretch import on_corners
+from meshonet.geometry.spacing.growth import LARGEST
+from meshonet.geometry.spacing.laws import on_corners
+from meshonet.geometry.spacing.sampling import monotone_cubic
 from meshonet.solvers.guard import guard
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.walls.heights import Heights, arcs_in_layers, cells_needed, check_fit, edge_in_layers

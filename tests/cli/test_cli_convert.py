@@ -9,7 +9,7 @@ import pytest
 from command_line import Meshonet, Process
 
 from meshonet.formats.registry import TABLE, format_for_output, read_grids, read_shapes
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 def write(path: str, grids: Sequence[Grid]) -> None:

@@ -7,8 +7,8 @@ import pytest
 from command_line import Meshonet, dataset, duct
 
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.metrics import NAMES
-from meshonet.geometry.quality import per_cell
+from meshonet.geometry.quality.measure import per_cell
+from meshonet.geometry.quality.metrics import NAMES
 from meshonet_cli.grading import COMPARED
 
 
@@ -159,7 +159,7 @@ def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[st
 def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> None:
     (grid,) = read_grids("grid.vts")
     from meshonet.formats.vts import write
-    from meshonet.geometry.grid import Grid
+    from meshonet.geometry.blocks.grid import Grid
 
     moved = grid.nodes.copy()
     moved[3, 4] += [0.03, 0.04]

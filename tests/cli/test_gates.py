@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import measure
+from meshonet.geometry.quality.measure import measure
 from meshonet_cli.gates import need_percentiles, parse_gate, parse_gates
 
 

@@ -8,7 +8,7 @@ import pytest
 from command_line import Meshonet, dataset, wave
 
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.profiles import PROFILES
+from meshonet.geometry.quality.profiles import PROFILES
 from meshonet_cli.app import application
 from meshonet_cli.judging import walls
 

@@ -17,7 +17,7 @@ import pytest
 from command_line import ROOT, Meshonet, dataset, ellipse
 
 from meshonet.formats.registry import read_grids
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.progress import Cycle, listening, tell
 from meshonet.solvers.variational.functional import Weights, aspect_of, energy
 from meshonet_cli.watching import COLUMNS, Live

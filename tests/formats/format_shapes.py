@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.formats.source import Source
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 
 
 def channel(ni: int = 7, nj: int = 5, name: str = "channel Ω") -> Grid:

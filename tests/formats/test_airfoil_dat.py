@@ -5,9 +5,9 @@ import pytest
 
 from meshonet.formats.airfoil_dat import parse, read_shapes, sniff
 from meshonet.formats.source import Source
-from meshonet.geometry.airfoil import Airfoil
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.spacing.sampling import Sampling
 
 X = np.array([0, 0.0125, 0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0])
 HALF = 0.6 * (0.2969 * np.sqrt(X) - 0.126 * X - 0.3516 * X**2 + 0.2843 * X**3 - 0.1036 * X**4)

@@ -12,9 +12,9 @@ from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 
 from meshonet.formats.cgns import read_grids, write_extruded, write_grids
 from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
 
 MAKES = [channel, ring, c_grid]
 

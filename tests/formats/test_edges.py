@@ -6,8 +6,8 @@ from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.edges import boundary_of, recovered, wake_nodes
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 
 def area(nodes: Floats) -> Floats:

@@ -9,8 +9,8 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.figure import Colouring, _drawn_lines, draw, write
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 
 def pixels(path: Path) -> np.ndarray:

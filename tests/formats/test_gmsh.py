@@ -13,8 +13,8 @@ from format_shapes import c_grid, channel, ring
 from meshonet.formats import gmsh41
 from meshonet.formats.gmsh import write_grids
 from meshonet.formats.registry import format_named
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 
 
 def groups(dimension: int) -> dict[str, int]:

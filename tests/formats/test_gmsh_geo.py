@@ -9,7 +9,7 @@ from format_shapes import c_grid, channel, ring
 from test_gmsh import COUNTS, groups
 
 from meshonet.formats.gmsh_geo import write_grids
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])

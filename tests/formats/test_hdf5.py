@@ -20,8 +20,8 @@ from meshonet.formats.hdf5 import (
 )
 from meshonet.formats.hdf5_check import Checked
 from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 
 def written(path: Path, grids: list[Grid]) -> h5py.File:

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from meshonet.formats.format import Format
 from meshonet.formats.registry import format_named
 from meshonet.formats.source import Source
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 SECONDS = 5.0  # of processor time: a busy machine is not a fault
 

@@ -7,7 +7,7 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.nmf import write_extruded, write_grids
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 Row = tuple[str, list[int]]
 

@@ -13,8 +13,8 @@ from vtkmodules.vtkIOGeometry import vtkOpenFOAMReader
 
 from meshonet.formats.openfoam import write_extruded, write_grids
 from meshonet.formats.unstructured import unstructured
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 
 MAKES = [channel, ring, c_grid]
 PATCHES = {

@@ -10,8 +10,8 @@ import pytest
 from format_shapes import c_grid, ring
 
 from meshonet.formats.openfoam import write_extruded
-from meshonet.geometry.faces import faces
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.checkmesh import faces
 
 
 def shaken() -> Grid:

@@ -9,9 +9,9 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.registry import format_named, formats, read_grids, read_shapes
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 
 BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
 AS_BOUNDARIES = [

@@ -15,7 +15,7 @@ from meshonet.formats.plot3d.sniff import sniff
 from meshonet.formats.registry import format_named
 from meshonet.formats.source import Source, open_source
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 RING, CHANNEL = ring(13, 7), channel(9, 6)
 

@@ -11,8 +11,8 @@ from test_plot3d import File, flat, solid
 from meshonet.formats.format import Format
 from meshonet.formats.plot3d.variant import CHOICES, parse_variant
 from meshonet.formats.registry import format_named
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 RING, CHANNEL = ring(13, 7), channel(9, 6)
 

@@ -5,11 +5,11 @@ import pytest
 
 from meshonet.formats.points import parse, read_shapes, sniff
 from meshonet.formats.source import Source
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.sampling import Sampling
 
 SOUTH = np.stack([np.linspace(0, 2, 9), 0.1 * np.sin(np.linspace(0, 3, 9))], axis=1)
 SOUTH[[0, -1], 1] = 0

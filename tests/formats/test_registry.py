@@ -19,9 +19,9 @@ from meshonet.formats.registry import (
     read_shapes,
 )
 from meshonet.formats.source import open_source
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 HEAVY = ("h5py", "meshio", "matplotlib", "shapely", "scipy", "torch", "numba")
 BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
@@ -47,7 +47,7 @@ def test_importing_the_registry_imports_no_heavy_library() -> None:
 
 def test_writing_a_vts_imports_no_heavy_library(tmp_path: Path) -> None:
     code = (
-        "import sys, numpy as np; from pathlib import Path; from meshonet.geometry.grid import Grid;"
+        "import sys, numpy as np; from pathlib import Path; from meshonet.geometry.blocks.grid import Grid;"
         "from meshonet.formats.registry import format_for_output, read_grids;"
         "g = Grid(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
         f"p = {str(tmp_path / 'g.vts')!r};"

@@ -9,8 +9,8 @@ from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.su2 import write_extruded, write_grids
 from meshonet.formats.unstructured import unstructured
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 
 MARKERS = {
     "quad": {"no-slip_wall": 3, "south": 3, "out_let": 4, "north": 6, "inlet": 4},

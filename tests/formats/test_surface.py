@@ -14,11 +14,11 @@ from format_shapes import c_grid, channel, memory, ring
 
 from meshonet.formats.edges import boundary_of
 from meshonet.formats.registry import format_named, read_shapes
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.spacing.sampling import Sampling
 
 MESHES = ["gmsh", "gmsh-ascii", "gmsh41", "gmsh41-ascii", "su2"]
 SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])

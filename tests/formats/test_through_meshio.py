@@ -9,7 +9,7 @@ from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.registry import format_named
 from meshonet.formats.unstructured import unstructured
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])

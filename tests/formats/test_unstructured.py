@@ -5,7 +5,7 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.unstructured import unstructured
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 # nodes without doubles: all; one column less; the wake's nodes once less (its last node is the trailing edge)
 EXPECTED = {"quad": 7 * 5, "o": 12 * 5, "c": (4 + 7 + 4) * 4 - 4}

@@ -8,7 +8,7 @@ from format_shapes import memory
 
 from meshonet.formats.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.spacing.sampling import Sampling
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0], [0.0, 0.0]]
 HEXAGON = "POLYGON ((2 0, 1 1.7, -1 1.7, -2 0, -1 -1.7, 1 -1.7, 2 0))"

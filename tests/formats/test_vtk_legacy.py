@@ -12,8 +12,8 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from meshonet.formats.source import open_source
 from meshonet.formats.vtk_legacy import write
 from meshonet.formats.vtk_legacy_read import read_grids
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 
 def by_vtk(path: Path) -> vtk.vtkStructuredGrid:

@@ -14,8 +14,8 @@ from meshonet.formats.source import open_source
 from meshonet.formats.vts import write, write_extruded
 from meshonet.formats.vts_read import read_grids
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
 
 
 def by_vtk(path: Path) -> vtk.vtkStructuredGrid:

@@ -10,7 +10,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from meshonet.formats.unstructured import unstructured
 from meshonet.formats.vtu import write_extruded, write_grids
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
 
 
 @pytest.mark.parametrize("thick", [False, True])

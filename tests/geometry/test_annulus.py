@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.annulus import Annulus
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.sampling import Sampling
 
 T = np.linspace(0, -2 * np.pi, 80, endpoint=False)
 DISC = Outline(0.4 * np.stack([np.cos(T), np.sin(T)], axis=1))

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.compare import compare
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.quality.compare import compare
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshonet.geometry.conformal import conformal_knots
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.conformal.spacing import conformal_knots
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 
 

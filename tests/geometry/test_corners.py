@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from sections import STATIONS, selig
 
-from meshonet.geometry.corners import find_corners, growth_exponent, turning
+from meshonet.geometry.polygon.corners import find_corners, growth_exponent, turning
 
 
 def ring(n: int) -> np.ndarray:

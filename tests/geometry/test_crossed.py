@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.crossed import check_edges
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.validate import check_edges
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families import arch, hole
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.shape import edges_of
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.shape import edges_of
+from meshonet.geometry.spacing.sampling import Sampling
 
 X, Y = np.linspace(0.0, 2.0, 21), np.linspace(0.0, 1.0, 11)
 

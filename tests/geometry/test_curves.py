@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sections import STATIONS, selig
 
-from meshonet.geometry.curves import Curve, resample_like
+from meshonet.geometry.curves.curve import Curve, resample_like
 from meshonet.geometry.errors import InputError
 
 

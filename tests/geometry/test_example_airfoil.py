@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from meshonet.formats.airfoil_dat import parse
-from meshonet.geometry.naca import naca, naca_points
+from meshonet.geometry.shapes.airfoil.naca import naca, naca_points
 
 FILE = Path(__file__).parents[2] / "examples" / "naca2412.dat"
 

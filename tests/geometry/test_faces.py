@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from test_seams import c_grid
 
-from meshonet.geometry import steps
-from meshonet.geometry.faces import faces
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality import growth as steps
+from meshonet.geometry.quality.checkmesh import faces
 
 HEIGHT = 0.3
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.flat_plate import first_cell
+from meshonet.geometry.spacing.y_plus import first_cell
 
 
 def test_it_is_the_height_worked_out_by_hand() -> None:

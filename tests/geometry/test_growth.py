@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.growth import cells_for_growth, growing_steps, growth_ratio
+from meshonet.geometry.spacing.growth import cells_for_growth, growing_steps, growth_ratio
 
 
 @settings(max_examples=50, deadline=None)

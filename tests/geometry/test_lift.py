@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from meshonet.geometry.conformal.lift import follow, lift_body, mirrored
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.lift import follow, lift_body, mirrored
-from meshonet.geometry.naca import naca_points
+from meshonet.geometry.shapes.airfoil.naca import naca_points
 
 
 def ellipse(a: float, b: float, n: int) -> np.ndarray:

@@ -1,7 +1,7 @@
 import numpy as np
 
-from meshonet.geometry.corners import turning
-from meshonet.geometry.limits import LEAST_SLACK, LONGEST, SLACK, limited
+from meshonet.geometry.curves.limiter import LEAST_SLACK, LONGEST, SLACK, limited
+from meshonet.geometry.polygon.corners import turning
 
 NONE = np.zeros(0, dtype=np.intp)
 

@@ -3,7 +3,7 @@ import pytest
 from sections import farthest
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.naca import naca, naca_points, thickness
+from meshonet.geometry.shapes.airfoil.naca import naca, naca_points, thickness
 
 
 def test_ordinates_are_those_of_the_reports():

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.coarsen import coarser_boundary, coarser_grid
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.nested import coarser_boundary, coarser_grid
-from meshonet.geometry.parts import Part
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:

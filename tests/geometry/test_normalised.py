@@ -3,9 +3,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.normalise import normalised
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.normalised import normalised
 
 
 def ellipse() -> Grid:

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 import shapely
 
-from meshonet.geometry.boundary import polygon_area
+from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.sampling import Sampling
 
 SQUARE = np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]])
 T = np.linspace(0, 2 * np.pi, 80, endpoint=False)

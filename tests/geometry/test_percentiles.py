@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry import quality
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.metrics import NAMES
-from meshonet.geometry.percentiles import no_run, prepared
-from meshonet.geometry.quality import measure, per_cell
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality import measure as quality
+from meshonet.geometry.quality.measure import measure, per_cell
+from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.percentiles import no_run, prepared
 
 
 def lattice(ni: int, nj: int) -> np.ndarray:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
-from meshonet.geometry.profiles import PROFILES, Checked, Figures, Judgement, Limit, judge
-from meshonet.geometry.quality import measure
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.quality.profiles import PROFILES, Checked, Figures, Judgement, Limit, judge
 
 
 def oblique(slope: float, stretch: float = 1.0) -> Grid:

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import as_planar
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.metrics import METRICS, NAMES
-from meshonet.geometry.quality import count_folded, folded_cells, measure, per_cell, worst_cells
+from meshonet.geometry.quality.measure import count_folded, folded_cells, measure, per_cell, worst_cells
+from meshonet.geometry.quality.metrics import METRICS, NAMES
 
 
 def cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import shapely
 
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.naca import naca
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.quality import per_cell
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.quality.measure import per_cell
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic import hyperbolic
 
 

@@ -4,7 +4,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sampling import (
+from meshonet.geometry.spacing.sampling import (
     Sampling,
     TanhLaw,
     monotone_cubic,

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import per_cell
-from meshonet.geometry.seams import across_wake, beyond_seam, wake_cells
+from meshonet.geometry.blocks.connection import across_wake, beyond_seam, wake_cells
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import per_cell
 
 
 def c_grid(wake: int = 4, around: int = 9, nj: int = 5, growth: float = 1.5) -> Grid:

@@ -5,8 +5,8 @@ import pytest
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.family import family
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 
 
 def test_around_a_quad_they_start_at_the_south_west_corner_and_run_counter_clockwise() -> None:

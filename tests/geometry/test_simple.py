@@ -4,8 +4,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshonet.geometry import simple
-from meshonet.geometry.simple import find_crossing, find_crossings
+from meshonet.geometry.polygon import self_intersection as simple
+from meshonet.geometry.polygon.self_intersection import find_crossing, find_crossings
 
 
 @settings(max_examples=60, deadline=None)

@@ -1,8 +1,14 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.curves import Curve
-from meshonet.geometry.size_field import GROWTH, HURRY, TURN, arcs_by_curvature, distances_by_curvature
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.spacing.size_field import (
+    GROWTH,
+    HURRY,
+    TURN,
+    arcs_by_curvature,
+    distances_by_curvature,
+)
 
 T = np.linspace(0, 2 * np.pi, 241)[:-1]
 ELLIPSE = Curve(np.stack([np.cos(T), -0.2 * np.sin(T)], axis=1) / 2, closed=True, corners=[0])

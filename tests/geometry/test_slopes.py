@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.corners import turning
-from meshonet.geometry.limits import LONGEST
-from meshonet.geometry.slopes import spline_slopes
+from meshonet.geometry.curves.limiter import LONGEST
+from meshonet.geometry.curves.spline import spline_slopes
+from meshonet.geometry.polygon.corners import turning
 
 NONE = np.zeros(0, dtype=np.intp)
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.stretch import on_corners, stretch_arcs
+from meshonet.geometry.spacing.laws import on_corners, stretch_arcs
 
 SQUARE = Curve(np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), closed=True)
 

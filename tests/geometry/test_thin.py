@@ -1,7 +1,7 @@
 import numpy as np
 
-from meshonet.geometry.simple import find_crossing
-from meshonet.geometry.thin import MOST, moved_apart
+from meshonet.geometry.polygon.self_intersection import find_crossing
+from meshonet.geometry.shapes.airfoil.separate_surfaces import MOST, moved_apart
 
 
 def cusp(digits: int) -> np.ndarray:

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.topology import far_circle, o_boundary, straight
+from meshonet.geometry.shapes.far_field import far_circle, o_boundary, straight
 
 
 def test_far_circle_runs_clockwise_at_equal_angles_and_closes_bitwise():

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.rotate import turned
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
-from meshonet.geometry.turn import turned
 
 
 def lattice(ni: int = 5, nj: int = 3) -> Grid:

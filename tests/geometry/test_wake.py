@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from sections import selig
 
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.closing import REACH
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.naca import naca
-from meshonet.geometry.parts import wake_nodes
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.wake import Wake
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.airfoil.te_wedge import REACH
+from meshonet.geometry.shapes.wake import Wake
+from meshonet.geometry.spacing.sampling import Sampling
 
 SHARP = Airfoil(selig(0.12))
 CAMBERED = Airfoil(selig(0.12, 0.04))

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from sections import selig
 
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.spacing.sampling import Sampling
 
 BASES = [2.2e-4, 8e-4, 3e-3, 0.02, 0.2]
 

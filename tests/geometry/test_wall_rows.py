@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.parts import Part
-from meshonet.geometry.wall_rows import wall_row
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.quality.walls import wall_row
 
 
 def channel(sheared: float = 0.0) -> Grid:

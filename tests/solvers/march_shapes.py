@@ -3,10 +3,10 @@
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.topology import o_boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.spacing.sampling import Sampling
 
 
 def circle(n: int, radius: float = 0.5) -> Floats:

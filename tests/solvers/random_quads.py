@@ -6,9 +6,9 @@ import numpy as np
 from solver_shapes import corner_jacobians, quad
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.simple import find_crossing
+from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.solvers.tfi import tfi
 
 FINE = 801

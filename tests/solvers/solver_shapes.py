@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 
 
 def segment(a: tuple[float, float], b: tuple[float, float], n: int) -> Floats:

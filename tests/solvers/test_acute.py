@@ -5,8 +5,8 @@ import pytest
 from solver_shapes import arch
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers import acute
 from meshonet.solvers.coarse import evaluate, thinned
 from meshonet.solvers.tfi import tfi

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 from solver_shapes import arch, folded, hole
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.grid import Grid
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.automatic import solve_automatic
 from meshonet.solvers.solution import Solution
 from meshonet.solvers.tfi import tfi

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from quad_models import random_model
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.bodies import boundary
-from meshonet.geometry.topology import straight
+from meshonet.geometry.shapes.far_field import straight
 from meshonet.solvers.neural.quads.inference import infer_quads
 
 torch = pytest.importorskip("torch")

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.naca import naca
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.coarse import solve_coarse
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.winslow import residual

@@ -7,10 +7,10 @@ import pytest
 from scipy.interpolate import RectBivariateSpline
 from solver_shapes import arch, bump, folded, hexagon, hole, meets, naca, quad, seamount, wrench
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import measure
+from meshonet.geometry.quality.measure import measure
 from meshonet.solvers.coarse import divided, evaluate, solve_coarse, thinned
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.solution import Solution

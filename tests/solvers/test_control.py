@@ -5,10 +5,10 @@ import pytest
 from solver_shapes import arch, bump, folded, hexagon, hole, naca, quad, seamount, segment
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import SolverError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.growth import growing_steps
+from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.solvers.elliptic import solve as module
 from meshonet.solvers.elliptic.control import Controls, Factors, step_ratios, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from random_quads import random_quad
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.bodies import boundary
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.neural.inference import infer_many
 
 torch = pytest.importorskip("torch")

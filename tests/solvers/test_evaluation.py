@@ -5,7 +5,7 @@ import pytest
 from random_quads import random_quad
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.coarse import thinned
 from meshonet.solvers.evaluation import evaluate, mended
 from meshonet.solvers.neural.quads.edges import Edges, rims

@@ -19,9 +19,9 @@ from solver_shapes import (
     wrench,
 )
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.guard import guard
 from meshonet.solvers.tfi import tfi

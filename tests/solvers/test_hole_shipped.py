@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.compare import compare
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.bodies import boundary
 from meshonet.geometry.families.family import family
-from meshonet.geometry.quality import count_folded, measure
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.quads.inference import infer_quads
 

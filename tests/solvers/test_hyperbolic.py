@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from march_shapes import airfoil, circle, deviation, ellipse, first_cells
 
-from meshonet.geometry.airfoil import Airfoil
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.families import procedural
-from meshonet.geometry.growth import growing_steps
-from meshonet.geometry.naca import naca
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.parts import wake_nodes
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.topology import o_boundary
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers import hyperbolic as module
 from meshonet.solvers.guard import guard
 from meshonet.solvers.hyperbolic import hyperbolic

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from march_shapes import deviation, first_cells
 
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.boundary import Boundary, polygon_area
-from meshonet.geometry.naca import naca
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic import hyperbolic
 
 

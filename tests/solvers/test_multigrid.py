@@ -7,7 +7,7 @@ import pytest
 from solver_shapes import arch, hole, naca
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from meshonet.solvers.elliptic.winslow import metric_terms, residual

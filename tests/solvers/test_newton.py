@@ -6,8 +6,8 @@ from random_quads import random_quad
 from solver_shapes import arch, bump, wrench
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.tfi import tfi
 from meshonet.solvers.variational.descent import newton, stiffness_of
 from meshonet.solvers.variational.functional import Weights, aspect_of

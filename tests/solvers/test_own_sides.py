@@ -9,7 +9,7 @@ import pytest
 from random_quads import random_quad
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.own_sides import Element, OwnSides
 from meshonet.solvers.tfi import tfi

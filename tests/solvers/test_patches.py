@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from solver_shapes import arch, bump, hexagon, l_shape, spike, wrench
 
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.corners import find_corners
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.polygon.corners import find_corners
 from meshonet.solvers.elliptic import patches
 from meshonet.solvers.elliptic.patches import reentrant
 from meshonet.solvers.elliptic.solve import solve

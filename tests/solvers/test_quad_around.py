@@ -11,11 +11,11 @@ import pytest
 from quad_models import random_model
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.bodies import boundary
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.topology import straight
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.far_field import straight
 from meshonet.solvers.neural.quads.approach import approach
 from meshonet.solvers.neural.quads.features import features
 from meshonet.solvers.neural.quads.inference import infer_quads

@@ -9,7 +9,7 @@ import pytest
 from quad_models import random_model
 from random_quads import random_quad
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.quads.inference import infer_quads
 
 torch = pytest.importorskip("torch")

@@ -12,7 +12,7 @@ from random_quads import random_quad
 from solver_shapes import arch, hexagon, ring, segment, wrench
 
 from meshonet.geometry.arrays import SIDES, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.coarse import evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow

@@ -7,8 +7,8 @@ import pytest
 from random_quads import random_quad
 from solver_shapes import arch
 
-from meshonet.geometry.compare import compare
-from meshonet.geometry.quality import count_folded, measure
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.quads.inference import infer_quads
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.coarsen import coarser_grid
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.nested import coarser_grid
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.refine import solve_refined
 from meshonet.solvers.solution import Solution

@@ -5,7 +5,7 @@ import pytest
 from solver_shapes import arch, folded, hole, l_shape, meets, naca, spike, wrench
 
 from meshonet.geometry.arrays import Floats, as_planar
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import family
 from meshonet.solvers import unfold as unfolding
 from meshonet.solvers.elliptic.solve import solve

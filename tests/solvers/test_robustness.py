@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from solver_shapes import folded, horseshoe, l_shape, quad, segment, spike, wrench
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
 from meshonet.solvers.guard import guard

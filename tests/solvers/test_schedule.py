@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.growth import growing_steps
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.hyperbolic import hyperbolic
 from meshonet.solvers.schedule import Edge, level_steps, sharpest_edge
 

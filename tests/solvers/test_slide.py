@@ -5,8 +5,8 @@ import pytest
 from solver_shapes import arch, folded, hexagon, hole, quad, segment
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.curves import Curve
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.walls.heights import Heights

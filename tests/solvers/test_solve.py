@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from solver_shapes import arch, corner_jacobians, folded, hexagon, hole, naca, quad, spike, wrench
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.elliptic import solve as module
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.winslow import residual, root_mean_square

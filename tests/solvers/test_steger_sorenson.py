@@ -19,7 +19,7 @@ from solver_shapes import (
 from test_slide import CHANNELS, channel, leans
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.elliptic import steger_sorenson as module
 from meshonet.solvers.elliptic.solve import solve

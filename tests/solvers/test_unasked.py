@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshonet.geometry.naca import naca
-from meshonet.geometry.parts import wake_nodes
-from meshonet.geometry.quality import count_folded, measure
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.quality.measure import count_folded, measure
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.automatic import solve_automatic
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.unasked import GROWTH, MOST, PART, first_cell, march_unasked

@@ -21,13 +21,13 @@ from solver_shapes import (
 )
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.families.bodies import boundary as random_body
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.naca import naca as naca_section
-from meshonet.geometry.quality import Summary, measure
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.quality.measure import Summary, measure
+from meshonet.geometry.shapes.airfoil.naca import naca as naca_section
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.coarse import solve_coarse, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.tfi import tfi

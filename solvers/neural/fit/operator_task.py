@@ -11,7 +11,7 @@ from torch import Tensor, nn
 from torch.nn.functional import mse_loss
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.harmonic import extend
 from meshonet.solvers.neural.layers import Arrays, initial

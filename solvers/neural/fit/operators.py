@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.compare import compare
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.compare import compare
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.neural.fit.checkpoint import beside
 from meshonet.solvers.neural.fit.loop import Progress, fit
 from meshonet.solvers.neural.fit.operator_task import OperatorTask

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 from meshonet.solvers.neural.models.model import Frame, Operator
 

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 from meshonet.solvers.neural.models.model import Frame, Operator

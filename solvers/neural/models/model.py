@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.layers import Arrays, Shapes, Weights
 from meshonet.solvers.neural.places import sensors
 from meshonet.solvers.neural.samples import Samples

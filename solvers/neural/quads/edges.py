@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.spline import between
 from solvers._tfi import fill_all
 

@@ -11,9 +11,9 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.geometry.grid import Grid
 from meshonet.solvers.coarse import thinned
 from meshonet.solvers.neural.operator import Polish
 from meshonet.solvers.neural.quads import around

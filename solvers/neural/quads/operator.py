@@ -17,7 +17,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers import evaluation
 from meshonet.solvers.neural.quads.approach import AFTER, nodes_after, step_all
 from meshonet.solvers.neural.quads.edges import Edges

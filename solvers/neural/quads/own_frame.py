@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
-from meshonet.geometry.quality import count_folded
-from meshonet.geometry.topology import straight
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.far_field import straight
 
 STEP = 2.0**-30
 """Of the rounding, over the size of the walls up to the next power of two."""

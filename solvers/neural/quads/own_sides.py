@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.quads.own_frame import complex_edge, rounding
 

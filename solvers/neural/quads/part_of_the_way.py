@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality import count_folded
+from meshonet.geometry.quality.measure import count_folded
 
 SHARES = (0.95, 0.9, 0.8)
 """Of the way from the grid that the network sees to its answer, the first of them without folds; else all."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.families.bodies import CLEARANCE, boundary
-from meshonet.geometry.simple import find_crossing
+from meshonet.geometry.polygon.self_intersection import find_crossing
 
 SEEDS = range(24)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.families.four_sided import LEAST, MOST, boundary
-from meshonet.geometry.simple import find_crossing
+from meshonet.geometry.polygon.self_intersection import find_crossing
 
 SEEDS = range(20)
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.topology import straight
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.neural.operator import infer
 
 torch = pytest.importorskip("torch")

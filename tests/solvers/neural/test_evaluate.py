@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import planar_nodes
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.neural.evaluate import StripGrid
 from meshonet.solvers.neural.operator import walls
 from meshonet.solvers.neural.strip import MODES, across, harmonic, interpolation, modes, wavenumbers

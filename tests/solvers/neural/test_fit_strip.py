@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import torch
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.families import procedural
-from meshonet.geometry.naca import naca
-from meshonet.geometry.sampling import Sampling
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.neural.export import distance
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan

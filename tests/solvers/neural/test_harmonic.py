@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.solvers.neural.harmonic import extend
 

@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from meshonet.geometry.airfoil import Airfoil
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.families.family import family
-from meshonet.geometry.naca import naca
-from meshonet.geometry.outline import Outline
-from meshonet.geometry.quality import count_folded, measure
-from meshonet.geometry.sampling import Sampling
-from meshonet.geometry.topology import o_boundary
+from meshonet.geometry.quality.measure import count_folded, measure
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.airfoil.naca import naca
+from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.neural.operator import Polish, infer, infer_strips
 

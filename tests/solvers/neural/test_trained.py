@@ -75,7 +75,7 @@ def test_the_page_counts_every_models_parameters() -> None:
 @pytest.mark.parametrize("size", [None, 40, 150])
 @pytest.mark.parametrize("modes", [0, 4])
 def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int | None, modes: int) -> None:
-    from meshonet.geometry.sampling import Sampling
+    from meshonet.geometry.spacing.sampling import Sampling
 
     samples = FAMILIES[topology]
     trained = random("meshonet-hard", samples, modes=modes)
@@ -156,7 +156,7 @@ def test_a_batch_answers_like_its_members() -> None:
 
 def test_large_grids_agree_with_small_ones() -> None:
     """281 nodes are every second of 561: the interpolated table against the network's own values."""
-    from meshonet.geometry.sampling import Sampling
+    from meshonet.geometry.spacing.sampling import Sampling
 
     samples = FAMILIES["quad"]
     trained = random("meshonet", samples)

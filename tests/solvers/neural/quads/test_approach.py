@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.geometry.boundary import Boundary
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.neural.quads.approach import approach, approached
 from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled

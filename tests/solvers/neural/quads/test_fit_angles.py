@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import torch
 
-from meshonet.geometry.grid import Grid
-from meshonet.geometry.quality import per_cell
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import per_cell
 from meshonet.solvers.neural.fit.angles import excess, extremes
 
 

@@ -1,0 +1,70 @@
+"""Every k-th node of a grid or boundary: the coarser member of a family whose members share their nodes.
+
+::
+
+    fine      o--o--o--o--o--o--o--o--o       nine nodes, eight cells
+    k = 2     o-----o-----o-----o-----o       five of them
+    k = 4     o-----------o-----------o       three
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from meshonet.geometry.arrays import SIDES
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.errors import InputError
+
+
+def coarser_grid(grid: Grid, k: int) -> Grid:
+    """Return the grid of every `k`-th node along both directions, its parts along.
+
+    Raises
+    ------
+    InputError
+        `k` does not divide the cells along a direction, or a part would lose an end.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, y = np.meshgrid(np.arange(5.0), np.arange(3.0), indexing="ij")
+    >>> coarser_grid(Grid(np.stack([x, y], axis=-1)), 2).x[:, 0]
+    array([0., 2., 4.])
+    """
+    _check(grid.ni, grid.nj, k)
+    facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
+    return replace(grid, nodes=grid.nodes[::k, ::k], parts=_parts(grid.parts, k), provenance=facts)
+
+
+def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
+    """Return the boundary of every `k`-th node, as `coarser_grid` does of a grid."""
+    _check(boundary.ni, boundary.nj, k)
+    edges = {side: getattr(boundary, side)[::k] for side in SIDES}
+    return replace(boundary, **edges, parts=_parts(boundary.parts, k), sensors=None)
+
+
+def _check(ni: int, nj: int, k: int) -> None:
+    common = math.gcd(ni - 1, nj - 1)
+    if k >= 1 and common % k == 0:
+        return
+    whole = max(k, 1)
+    near = [whole * max(1, (n - 1) // whole) + 1 for n in (ni, nj)]
+    remedy = f"make the grid with {near[0]}x{near[1]} nodes, say"
+    if common > 1:
+        remedy = f"use a number that divides {common}, or {remedy}"
+    cells = f"{ni}x{nj} nodes are {ni - 1}x{nj - 1} cells, which {k} does not divide"
+    raise InputError(cells, remedy)
+
+
+def _parts(parts: tuple[Part, ...], k: int) -> tuple[Part, ...]:
+    for part in parts:
+        for node in (part.start, part.stop):
+            if node % k:
+                raise InputError(
+                    f"part {part.name!r} ends at node {node} of {part.side}, which every {k}-th leaves out",
+                    f"make the grid with ends at multiples of {k} (--wake-nodes for a wake), or coarsen less",
+                )
+    return tuple(Part(part.name, part.side, part.start // k, part.stop // k) for part in parts)

@@ -1,0 +1,107 @@
+"""Do the edges of a boundary cross or touch, and where: no grid can be made inside those.
+
+::
+
+    quad   one closed line: south, east, north, west      o   two: the body, and the far field around it
+    c      three: the body, its wake, and west, north and east around both
+
+Lines that meet where they are meant to, a wake and its body for instance, do not cross; nor do opposite
+sides of a quad that are one line, the cut of a grid that goes round.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.self_intersection import Crossing, find_crossings
+
+REMEDY = "correct these points: no grid can be made inside edges that cross"
+_MOST = 4096
+_SEAM = 1e-6
+"""Opposite sides are one line when they are no farther apart than this, in lengths of their shortest cell."""
+
+
+def check_edges(boundary: Boundary) -> None:
+    """Raise InputError, with the place, when edges of `boundary` cross or touch, or a body lies outside.
+
+    Examples
+    --------
+    >>> t = np.linspace(0.0, 1.0, 5)
+    >>> south, west = np.stack([t, 0.0 * t], axis=1), np.stack([0.0 * t, t], axis=1)
+    >>> check_edges(Boundary(south, south + [0.0, 1.0], west, west + [1.0, 0.0]))
+    """
+    if boundary.topology == "quad" and not find_crossings(boundary.outline(), limit=1):
+        return
+    lines = _lines(boundary)
+    path = np.concatenate(lines)
+    joints = np.cumsum([len(line) for line in lines[:-1]]) - 1  # segments that only lead to the next line
+    ends = np.array([line[k] for line in lines for k in (0, -1)])
+    for found in sorted(find_crossings(path, closed=False, limit=_MOST), key=lambda c: (c.first, c.second)):
+        if found.first not in joints and found.second not in joints and not _meant(path, found, ends):
+            raise InputError(_told(boundary, path, found), REMEDY)
+    if len(lines) > 1 and boundary.topology != "quad" and not _inside(lines[0][0], lines[-1]):
+        x, y = lines[0][0]
+        told = f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field"
+        raise InputError(told, "use a far field around the body")
+
+
+def _lines(boundary: Boundary) -> list[Floats]:
+    """Return lines (n, 2) that may not cross, the outermost last."""
+    south, north, west, east = (getattr(boundary, side) for side in ("south", "north", "west", "east"))
+    if boundary.topology == "o" or _coincide(west, east):
+        return [south, north]
+    wake = wake_nodes(south)
+    if wake > 1:
+        outer = np.concatenate([west, north[1:], east[-2::-1]])
+        return [south[wake - 1 : len(south) - wake + 1], south[:wake], outer]
+    if _coincide(south, north):
+        return [west, east]
+    outline = boundary.outline()
+    return [np.concatenate([outline, outline[:1]])]
+
+
+def _coincide(one: Floats, other: Floats) -> bool:
+    step = float(np.abs(np.diff(one, axis=0)).sum(axis=1).min())
+    return bool(np.abs(one - other).max() <= _SEAM * step)
+
+
+def _meant(path: Floats, found: Crossing, ends: Floats) -> bool:
+    """Return whether two segments have nothing in common but a node that is one of the `ends` of lines."""
+    (a, b), (c, d) = path[found.first : found.first + 2], path[found.second : found.second + 2]
+    shared = [(p, q - p, s - p) for p, q in ((a, b), (b, a)) for r, s in ((c, d), (d, c)) if (p == r).all()]
+    if len(shared) != 1:
+        return False
+    ((at, u, v),) = shared
+    return bool((at == ends).all(axis=1).any() and (u[0] * v[1] != u[1] * v[0] or u @ v < 0))
+
+
+def _told(boundary: Boundary, path: Floats, found: Crossing) -> str:
+    """Return which edges cross, behind which of their nodes, and where."""
+    (one, k), (other, m) = (_place(boundary, path[n : n + 2]) for n in (found.first, found.second))
+    at = f"({found.x:.6g}, {found.y:.6g})"
+    if one == other:
+        return f"{one} crosses itself at {at}, behind its nodes {min(k, m)} and {max(k, m)}"
+    return f"{one} and {other} cross at {at}, behind node {k} of {one} and node {m} of {other}"
+
+
+def _place(boundary: Boundary, segment: Floats) -> tuple[str, int]:
+    """Return the side that a segment (2, 2) of it lies on, and the number of the node it begins at there."""
+    for side in SIDES:
+        edge = getattr(boundary, side)
+        for way in (segment, segment[::-1]):
+            begins = (edge[:-1] == way[0]).all(axis=1) & (edge[1:] == way[1]).all(axis=1)
+            if begins.any():
+                return side, int(np.argmax(begins))
+    return "the boundary", 0  # lines consist of sides: not reached
+
+
+def _inside(point: Floats, ring: Floats) -> bool:
+    """Return whether a ray from `point` (2,) meets a closed line (n, 2) an odd number of times."""
+    (x, y), (u, v) = point, ring.T
+    over = np.flatnonzero((v[:-1] > y) != (v[1:] > y))
+    at = u[over] + (y - v[over]) / (v[over + 1] - v[over]) * (u[over + 1] - u[over])
+    return bool(np.count_nonzero(at > x) % 2)

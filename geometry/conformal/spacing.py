@@ -1,0 +1,155 @@
+"""Wall spacing by the conformal map of the body's outside to the outside of a circle.
+
+Equal steps of the circle's angle give the nodes an elliptic O-grid wants: fine where the body turns, with
+s ~ angle^k near a corner of exterior angle k pi on both of its sides, so that grid lines leave the wall at
+right angles and every corner along its bisector.
+
+Theodorsen's iteration finds the circle's angle t from the lifted wall psi(phi)::
+
+    phi(t) = t - H[psi(phi(t))],   H the conjugation of Fourier series: cos kt -> sin kt
+
+Theodorsen & Garrick, NACA Report 452 (1933); Henrici, Applied and Computational Complex Analysis 3 (1986),
+16.8.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.conformal.lift import lift_body, mirrored
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+
+ANGLES = 1024
+ITERATIONS = 40
+RELAXATION = 0.7
+DENSE = 640  # points along the whole wall that stand for the curve
+
+
+def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
+    """Return arc lengths (count,) on a closed curve at equal steps of its circle's angle.
+
+    Parameters
+    ----------
+    curve : closed, clockwise, its arc length 0 where the first node belongs.
+    marks : rising arc lengths in (0, length) that must be nodes, e.g. the corners of a blunt edge. The
+        angles between are shared out smoothly.
+    count : nodes; the last is the curve's length, its first node again.
+
+    Raises
+    ------
+    InputError
+        the lifted wall is not star-shaped, or the iteration does not settle.
+    """
+    one = _one_way(curve, marks, count, mirror=False)
+    other = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
+    # the two differ by the accuracy of the iteration; their mean makes a mirrored body's nodes mirror images
+    knots = 0.5 * (one + (curve.length - other[::-1]))
+    knots[np.searchsorted(knots, marks - 1e-9 * curve.length)] = marks
+    return knots
+
+
+def _one_way(curve: Curve, marks: Floats, count: int, *, mirror: bool) -> Floats:
+    """Return arc lengths (count,) walking clockwise, or along the mirrored curve walked the other way."""
+    s, u = _dense(curve, marks)
+    nodes = curve.at(curve.length - s[:-1]) * np.array([1.0, -1.0]) if mirror else curve.at(s[:-1])
+    _, w, _ = lift_body(mirrored(nodes))
+    phi = np.append(w.imag, 2.0 * np.pi)
+    if np.diff(phi).min() <= 0.0:
+        raise InputError("the lifted wall is not star-shaped", "use another spacing")
+    t = _circle_angle(phi, np.append(w.real, w.real[0]))
+    index = _shared_out(np.interp(marks, s, t), count)
+    return _smooth_inverse(t, u, s, index)
+
+
+def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
+    """Return rising arc lengths (m,), clustered at both ends of every piece, and their parameter u.
+
+    u counts pieces: on piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
+    """
+    ends = np.concatenate([[0.0], marks, [curve.length]])
+    pieces_s, pieces_u = [], []
+    for k, (a, b) in enumerate(pairwise(ends)):
+        n = max(24, round(DENSE * np.sqrt((b - a) / curve.length)))
+        v = np.arange(n) / n
+        pieces_s.append(a + (b - a) * 0.5 * (1.0 - np.cos(np.pi * v)))
+        pieces_u.append(k + v)
+    return np.append(np.concatenate(pieces_s), curve.length), np.append(
+        np.concatenate(pieces_u), len(ends) - 1.0
+    )
+
+
+def _circle_angle(phi: Floats, psi: Floats) -> Floats:
+    """Return the circle's angle t at every wall point, 0 at the first and 2 pi at the last."""
+    t = 2.0 * np.pi * np.arange(ANGLES) / ANGLES
+    k = np.fft.rfftfreq(ANGLES, 1.0 / ANGLES)
+    conjugate = -1j * np.exp(-((k / (ANGLES / 3.0)) ** 8))
+    conjugate[0] = 0.0
+    at = t.copy()
+    for _ in range(ITERATIONS):
+        h = np.fft.irfft(conjugate * np.fft.rfft(np.interp(np.mod(at, 2.0 * np.pi), phi, psi)), ANGLES)
+        new = t - h
+        change = float(np.abs(new - at).max())
+        at += RELAXATION * (new - at)
+        if change < 1e-7:
+            break
+    if not change < 1e-3 or np.diff(at).min() <= 0.0:
+        raise InputError("the conformal spacing does not settle", "use another spacing")
+    around = np.concatenate([at - 2.0 * np.pi, at, at + 2.0 * np.pi])
+    angle = np.interp(phi, around, np.concatenate([t - 2.0 * np.pi, t, t + 2.0 * np.pi]))
+    return np.asarray(angle - angle[0])
+
+
+def _shared_out(marks: Floats, count: int) -> Floats:
+    """Return rising angles (count,) from 0 to 2 pi, near equal steps, with every mark on a node."""
+    cells = count - 1
+    nodes = np.clip(
+        np.round(marks / (2.0 * np.pi) * cells),
+        1 + np.arange(len(marks)),
+        cells - 1 - np.arange(len(marks))[::-1],
+    )
+    return monotone_cubic(
+        np.concatenate([[0.0], nodes, [float(cells)]]),
+        np.concatenate([[0.0], marks, [2.0 * np.pi]]),
+        np.arange(count, dtype=np.float64),
+        periodic=True,
+    )
+
+
+def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
+    """Return arc lengths where the circle's angle is `at`, by way of u: s is analytic in it at corners."""
+    where = monotone_cubic(t, u, at, periodic=False)
+    k = np.minimum(where.astype(np.intp), round(u[-1]) - 1)
+    ends = s[np.searchsorted(u, np.arange(round(u[-1]) + 1.0))]
+    knots = ends[k] + (ends[k + 1] - ends[k]) * 0.5 * (1.0 - np.cos(np.pi * (where - k)))
+    knots[0], knots[-1] = s[0], s[-1]
+    on_mark = np.abs(where - np.round(where)) < 1e-9
+    knots[on_mark] = ends[np.round(where[on_mark]).astype(np.intp)]
+    return np.asarray(knots)
+
+
+def monotone_cubic(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
+    """Return the piecewise cubic through rising (x, y) that rises everywhere, at points inside x.
+
+    Slopes are the weighted harmonic means of the neighbouring differences; `periodic` lets the two ends
+    share one. Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
+    """
+    h = np.diff(x)
+    rise = np.diff(y) / h
+    if periodic:
+        h, rise = np.append(h, h[0]), np.append(rise, rise[0])
+    w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
+    inner = (w1 + w2) / (w1 / rise[:-1] + w2 / rise[1:])
+    slope = np.concatenate([inner[-1:], inner]) if periodic else np.concatenate([rise[:1], inner, rise[-1:]])
+    h = np.diff(x)
+    k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
+    v = (at - x[k]) / h[k]
+    value = (
+        y[k] * (1 + 2 * v) * (1 - v) ** 2
+        + y[k + 1] * v**2 * (3 - 2 * v)
+        + h[k] * (slope[k] * v * (1 - v) ** 2 - slope[k + 1] * v**2 * (1 - v))
+    )
+    return np.asarray(value)

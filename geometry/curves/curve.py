@@ -1,0 +1,206 @@
+"""Curves through given points, measured by arc length."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from geometry._curve import locate, slopes, speeds, values
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.curves.spline import spline_slopes
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices, find_corners
+from meshonet.geometry.spacing.sampling import monotone_cubic
+
+_STEPS = 8
+"""Parts of an interval in the table of arc length."""
+_GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
+_WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)
+_INNER = ((np.arange(_STEPS)[:, None] + _GAUSS) / _STEPS).ravel()
+_EDGES = np.arange(_STEPS + 1) / _STEPS
+
+
+class Curve:
+    """A smooth curve bitwise through given points, one cubic an interval (`meshonet.geometry.curves.spline`).
+
+    Parameters
+    ----------
+    points : (n, 2), any unit of length, neighbours distinct, at least 2 (closed: 3). A closed curve may
+        repeat its first point at the end.
+    closed : the curve returns from the last point to the first.
+    corners : indices of points where the tangent may jump; None finds them (`meshonet.geometry.polygon.corners`). The ends
+        of an open curve are corners anyway.
+    straight : (intervals,) true where the curve is to follow the chord instead of the spline.
+
+    Raises
+    ------
+    InputError
+        too few points, a point that is not finite or equals its neighbour, a corner out of range.
+
+    Examples
+    --------
+    >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
+    >>> square.length, square.corners.tolist()
+    (4.0, [0.0, 1.0, 2.0, 3.0])
+    >>> square.at(np.array([2.5])).tolist()
+    [[0.5, 1.0]]
+    """
+
+    points: Floats
+    """(n, 2) the given points; a closed curve's first is not repeated."""
+    length: float
+    """Arc length of all of the curve."""
+    knots: Floats
+    """(n,) arc length at each given point."""
+    corners: Floats
+    """Arc lengths at the corners."""
+    corner_index: Indices
+    """Which points the corners are."""
+
+    def __init__(
+        self,
+        points: Floats,
+        *,
+        closed: bool = False,
+        corners: Sequence[int] | Indices | None = None,
+        straight: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None,
+    ) -> None:
+        self.points, self.closed = _checked(points, closed), closed
+        n = len(self.points)
+        if corners is None:
+            self.corner_index = find_corners(self.points, closed=closed)
+        else:
+            self.corner_index = distinct(np.asarray(corners, dtype=np.intp))
+            if self.corner_index.size and (self.corner_index[0] < 0 or self.corner_index[-1] >= n):
+                raise InputError(
+                    f"a curve of {n} points has no corner {self.corner_index[-1]}", "count points from 0"
+                )
+        ends = np.concatenate([self.points, self.points[:1]]) if closed else self.points
+        chord = np.diff(ends, axis=0)
+        h = np.hypot(chord[:, 0], chord[:, 1])[:, None]
+        start, stop = spline_slopes(self.points, closed=closed, corners=self.corner_index)
+        first, last = h * start, h * stop
+        if straight is not None:
+            first, last = (np.where(straight[:, None], chord, slope) for slope in (first, last))
+        self._cubic = np.stack([ends[:-1], first, 3 * chord - 2 * first - last, first + last - 2 * chord])
+        self._measure(len(h))
+
+    def _measure(self, intervals: int) -> None:
+        """Make the table of arc length, and the slopes of its inverse."""
+        inner, speed = np.empty((intervals, len(_INNER))), np.empty((intervals, len(_EDGES)))
+        speeds(self._cubic, _INNER, inner)
+        speeds(self._cubic, _EDGES, speed)
+        pieces = (inner.reshape(-1, _STEPS, 3) @ _WEIGHTS).ravel()
+        self._table: Floats = np.concatenate([[0.0], np.cumsum(pieces)])
+        # dt/ds in units of the piece; at most 3 keeps the inverse monotone
+        rate = pieces.reshape(-1, _STEPS) * _STEPS
+        self._rate_start = np.minimum(rate / np.maximum(speed[:, :-1], 1e-300), 3.0).ravel()
+        self._rate_stop = np.minimum(rate / np.maximum(speed[:, 1:], 1e-300), 3.0).ravel()
+        self.length = float(self._table[-1])
+        self.knots = self._table[::_STEPS][: len(self.points)].copy()
+        self.corners = self.knots[self.corner_index]
+
+    def _locate(self, s: Floats) -> tuple[Indices, Floats]:
+        """Return the interval and the parameter in it (0 to 1) at arc lengths s (m,)."""
+        s = np.ascontiguousarray(s, dtype=np.float64)
+        i, t = np.empty(s.shape, dtype=np.intp), np.empty(s.shape)
+        locate(s, self._table, self._rate_start, self._rate_stop, _STEPS, self.closed, i, t)
+        return i, t
+
+    def at(self, s: Floats) -> Floats:
+        """Return the points (m, 2) at arc lengths `s` (m,).
+
+        A closed curve takes any s, an open one clips it to its ends. The points at `knots` are the given
+        ones, bitwise.
+        """
+        i, t = self._locate(s)
+        points = np.empty((len(t), 2))
+        values(self._cubic, i, t, self.points[0 if self.closed else -1], points)
+        return points
+
+    def tangent(self, s: Floats) -> Floats:
+        """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the side that leaves it."""
+        d = self._derivative(*self._locate(s))
+        return np.asarray(d / _norm(d)[..., None])
+
+    def _derivative(self, i: Indices, t: Floats) -> Floats:
+        d = np.empty((len(t), 2))
+        slopes(self._cubic, i, t, d)
+        return d
+
+    def curvature(self, s: Floats) -> Floats:
+        """Return the curvature (m,), 1/length, at arc lengths `s` (m,), positive where it turns left."""
+        i, t = self._locate(s)
+        d = self._derivative(i, t)
+        _, _, c, e = self._cubic
+        bend = 2 * c[i] + 6 * t[..., None] * e[i]
+        return np.asarray((d[..., 0] * bend[..., 1] - d[..., 1] * bend[..., 0]) / _norm(d) ** 3)
+
+    def polyline(self, places: Floats) -> Floats:
+        """Return points on the curve at `places`, 0 to below 1, of each interval, and an open one's end."""
+        i = np.arange(self._cubic.shape[1])[:, None]
+        t = places[None, :, None]
+        a, b, c, d = self._cubic[:, i]
+        points = np.asarray((a + t * (b + t * (c + t * d))).reshape(-1, 2))
+        return points if self.closed else np.concatenate([points, self.points[-1:]])
+
+
+def resample_like(nodes: Floats, m: int, *, closed: bool) -> Floats:
+    """Return `m` nodes (m, 2) on the curve through `nodes` (n, 2), spaced by the same law.
+
+    Arc length as a function of the place along the edge, 0 to 1, is kept; corners of the curve stay
+    nodes as far as `m` suffices; the end nodes are kept bitwise.
+
+    Parameters
+    ----------
+    nodes : a closed edge repeats its first node at the end.
+    m : at least 2.
+    closed : the edge returns to its start.
+
+    Examples
+    --------
+    >>> resample_like(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
+    [0.0, 0.5, 1.0, 1.5, 2.0]
+    """
+    n = len(nodes)
+    curve = Curve(nodes, closed=closed)
+    knots = np.append(curve.knots, curve.length) if closed else curve.knots
+    stops = distinct(np.concatenate([[0], curve.corner_index, [n - 1]]))
+    place = np.rint(stops * ((m - 1) / (n - 1))).astype(np.intp)
+    kept = np.concatenate([[True], (np.diff(place[:-1]) > 0) & (place[1:-1] < m - 1), [True]])
+    s = np.empty(m)
+    for a, b, p, q in zip(stops[kept][:-1], stops[kept][1:], place[kept][:-1], place[kept][1:], strict=True):
+        law = monotone_cubic(
+            np.linspace(0.0, 1.0, b - a + 1), knots[a : b + 1], np.linspace(0.0, 1.0, q - p + 1)
+        )
+        s[p : q + 1] = law
+    out = curve.at(s)
+    out[0], out[-1] = nodes[0], nodes[-1]
+    return out
+
+
+def _checked(points: Floats, closed: bool) -> Floats:
+    given = np.array(points, dtype=np.float64)
+    if given.ndim != 2 or given.shape[1] != 2:
+        raise InputError(f"curve points have shape {given.shape}", "give (n, 2)")
+    bad = np.flatnonzero(~np.isfinite(given).all(axis=1))
+    if bad.size:
+        raise InputError(f"curve point {bad[0]} is not finite", "check the input for NaN or infinity")
+    if closed and len(given) > 1 and np.array_equal(given[0], given[-1]):
+        given = given[:-1]
+    least = 3 if closed else 2
+    if len(given) < least:
+        raise InputError(
+            f"{len(given)} points make no {'closed ' if closed else ''}curve", f"give at least {least}"
+        )
+    step = np.diff(given, axis=0, append=given[:1]) if closed else np.diff(given, axis=0)
+    same = np.flatnonzero((step == 0).all(axis=1))
+    if same.size:
+        x, y = given[same[0]]
+        raise InputError(f"curve point {same[0]} and the next are the same, ({x:.6g}, {y:.6g})", "remove one")
+    return given
+
+
+def _norm(d: Floats) -> Floats:
+    return np.asarray(np.hypot(d[..., 0], d[..., 1]))

@@ -1,0 +1,157 @@
+"""What OpenFOAM's checkMesh says of a grid one cell thick: non-orthogonality, skewness, aspect ratio.
+
+::
+
+    own  o-----.-- nei      d: from the centre of the owner to that of the neighbour
+               |            S: normal of the face, its length the face's
+               f            f: the face's centre
+
+===================  =======================================================================================
+non_orthogonality    angle between d and S, degrees, of every face inside (90 and more is an error there); its
+                     mean is the angle of the mean cosine
+face_skewness        distance from f to where d crosses the face's plane, over the larger of 0.2 abs(d) and
+                     the face's reach from f in that direction; at the outer boundary d is the way from the
+                     owner's centre square to the face, and counts 0.4
+box_ratio            sum of abs(Sx) over the faces of a cell against that of abs(Sy), the larger over the
+                     smaller: its aspect ratio for cells along the axes
+===================  =======================================================================================
+
+Faces on the seam of an O grid and on the wake of a C grid are inside, as they are in a mesh whose nodes were
+merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/primitiveMeshTools.C and
+primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import beyond_seam, wake_cells
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.growth import Extreme, Tally, blocks
+
+SEVERE = 70.0
+"""Non-orthogonality from which checkMesh counts faces."""
+
+
+@dataclass(frozen=True)
+class Faces:
+    """Measures of the faces, the greatest at cell (i, j), whose face it is; None where there is no such face.
+
+    `severe` counts the faces with a non-orthogonality beyond 70 degrees.
+    """
+
+    non_orthogonality: Extreme | None
+    severe: int
+    face_skewness: Extreme | None
+    box_ratio: Extreme | None
+
+
+def faces(grid: Grid) -> Faces:
+    """Return the measures of the faces of `grid`.
+
+    Examples
+    --------
+    >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 4.0, 8.0], indexing="ij")
+    >>> measured = faces(Grid(np.stack([x, y], axis=-1)))
+    >>> measured.non_orthogonality.max, measured.face_skewness.max, measured.box_ratio.max
+    (0.0, 0.0, 4.0)
+    """
+    angles, skews, boxes = Tally(), Tally(), Tally()
+    severe, cosines = 0, Tally()
+    for i, j, angle, skew in _inside(grid):
+        severe += int((angle > SEVERE).sum())
+        angles.add(i, j, angle)
+        cosines.add(i, j, np.cos(np.radians(angle)))
+        skews.add(i, j, skew)
+    for i, j, skew in _outside(grid):
+        skews.add(i, j, skew)
+    for i, block in blocks(grid.nodes, 1):
+        boxes.add(i, 0, _box_ratio(block))
+    turned, mean = angles.extreme, cosines.extreme
+    if turned and mean:
+        turned = replace(turned, mean=math.degrees(math.acos(min(1.0, max(-1.0, mean.mean)))))
+    return Faces(turned, severe, skews.extreme, boxes.extreme)
+
+
+def _inside(grid: Grid) -> Iterator[tuple[int, int, Floats, Floats]]:
+    """Yield angles and skewness (m, n) of the faces inside, with the cell (i, j) of the first."""
+    for i, block in blocks(beyond_seam(grid), 2):
+        centre = centroids(block)
+        yield i, 0, *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:])
+    for i, block in blocks(grid.nodes, 1):
+        centre = centroids(block)
+        yield i, 0, *_between(centre[:, :-1], centre[:, 1:], block[1:, 1:-1], block[:-1, 1:-1])
+    wake = wake_cells(grid)
+    if wake:
+        first, last = centroids(grid.nodes[: wake + 1, :2]), centroids(grid.nodes[-wake - 1 :, :2])[::-1]
+        yield 0, 0, *_between(last, first, grid.nodes[1 : wake + 1, :1], grid.nodes[:wake, :1])
+
+
+def _outside(grid: Grid) -> Iterator[tuple[int, int, Floats]]:
+    """Yield the skewness (m, n) of the faces of the outer boundary, with the cell (i, j) of the first."""
+    nodes, wake = grid.nodes, wake_cells(grid)
+    body = nodes[wake : grid.ni - wake]
+    yield wake, 0, _at_boundary(centroids(body[:, :2]), body[:-1, :1], body[1:, :1])
+    yield 0, grid.nj - 2, _at_boundary(centroids(nodes[:, -2:]), nodes[:-1, -1:], nodes[1:, -1:])
+    if grid.topology != "o":
+        yield 0, 0, _at_boundary(centroids(nodes[:2]), nodes[:1, :-1], nodes[:1, 1:])
+        yield grid.ni - 2, 0, _at_boundary(centroids(nodes[-2:]), nodes[-1:, :-1], nodes[-1:, 1:])
+
+
+def centroids(nodes: Floats) -> Floats:
+    """Return the centroids (ni-1, nj-1, 2) of the cells of `nodes` (ni, nj, 2), by two triangles each."""
+    a = nodes[:-1, :-1]
+    b, c, d = nodes[1:, :-1] - a, nodes[1:, 1:] - a, nodes[:-1, 1:] - a
+    first, second = _cross(b, c), _cross(c, d)
+    area = first + second
+    area = np.where(area == 0, np.finfo(float).tiny, area)[..., None]
+    return np.asarray(a + ((b + c) * first[..., None] + (c + d) * second[..., None]) / (3 * area))
+
+
+def _between(own: Floats, other: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
+    """Return angle and skewness of faces from `a` to `b`; (b - a) turned right points to the `other` side."""
+    edge, way = b - a, other - own
+    square = edge[..., 0] * way[..., 1] - edge[..., 1] * way[..., 0]
+    square = -square  # abs(S) abs(d) cos: the normal is the edge turned right
+    angle = np.degrees(np.arctan2(np.abs(_dot(edge, way)), square))
+    middle = 0.5 * (a + b) - own
+    crossing = _cross(middle, edge) / np.where(square == 0, np.finfo(float).tiny, square)
+    off = middle - crossing[..., None] * way
+    return angle, _skewness(off, edge, 0.2 * np.hypot(way[..., 0], way[..., 1]))
+
+
+def _at_boundary(own: Floats, a: Floats, b: Floats) -> Floats:
+    """Return the skewness of boundary faces from `a` to `b` of cells with their centres at `own`."""
+    edge, middle = b - a, 0.5 * (a + b) - own
+    length = np.hypot(edge[..., 0], edge[..., 1])
+    unit = edge / np.maximum(length, np.finfo(float).tiny)[..., None]
+    off = _dot(middle, unit)[..., None] * unit
+    return _skewness(off, edge, 0.4 * np.abs(_cross(middle, unit)))
+
+
+def _skewness(off: Floats, edge: Floats, least: Floats) -> Floats:
+    """Return abs(off) over the larger of `least` and half the face's extent along it."""
+    size = np.hypot(off[..., 0], off[..., 1])
+    tiny = np.finfo(float).tiny
+    reach = 0.5 * np.abs(_dot(off, edge)) / np.maximum(size, tiny)
+    return np.asarray(size / np.maximum(np.maximum(least, reach), tiny))
+
+
+def _box_ratio(nodes: Floats) -> Floats:
+    along, across = np.abs(np.diff(nodes, axis=0)), np.abs(np.diff(nodes, axis=1))
+    extent = along[:, :-1] + along[:, 1:] + across[:-1] + across[1:]
+    least = np.maximum(extent.min(axis=-1), np.finfo(float).tiny)
+    return np.asarray(extent.max(axis=-1) / least)
+
+
+def _cross(u: Floats, v: Floats) -> Floats:
+    return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
+
+def _dot(u: Floats, v: Floats) -> Floats:
+    return np.asarray(u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1])

@@ -1,0 +1,76 @@
+"""How far two grids of the same size are apart."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+NEAR = 0.1
+"""Part of the rows that counts as near the wall."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Distances between the nodes of two grids.
+
+    Parameters
+    ----------
+    max, mean : greatest and mean distance, in the grids' unit of length.
+    at : node (i, j) of the greatest.
+    relative_l2 : root of the mean squared distance over that of the other grid's coordinates, taken from
+        the mean of its nodes so that it does not depend on where the origin is.
+    near_wall : the same with the distances of the rows next to the wall only, the tenth of all rows from
+        j = 0 on.
+    boundary : greatest distance on the four sides; on the two walls of O grids.
+    """
+
+    max: float
+    mean: float
+    at: tuple[int, int]
+    relative_l2: float
+    near_wall: float
+    boundary: float
+
+
+def compare(grid: Grid, other: Grid) -> Difference:
+    """Return how far the nodes of `grid` are from those of `other`.
+
+    Raises
+    ------
+    InputError
+        their node counts differ.
+
+    Examples
+    --------
+    >>> square = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
+    >>> compare(Grid(square + [3.0, 4.0]), Grid(square)).max
+    5.0
+    """
+    if grid.nodes.shape != other.nodes.shape:
+        counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {other.ni}x{other.nj}"
+        raise InputError(counts, "compare grids of one size")
+    away = np.hypot(grid.x - other.x, grid.y - other.y)
+    i, j = np.unravel_index(int(away.argmax()), away.shape)
+    spread = _root_mean_square(np.hypot(other.x - other.x.mean(), other.y - other.y.mean()))
+    extent = max(spread, float(np.finfo(float).tiny))  # all nodes in one place
+    rows = max(1, round(NEAR * grid.nj))
+    sides = [away[:, 0], away[:, -1]]
+    if grid.topology != "o":  # the cut of an O grid is no boundary
+        sides += [away[0], away[-1]]
+    return Difference(
+        max=float(away.max()),
+        mean=float(away.mean()),
+        at=(int(i), int(j)),
+        relative_l2=_root_mean_square(away) / extent,
+        near_wall=_root_mean_square(away[:, :rows]) / extent,
+        boundary=max(float(side.max()) for side in sides),
+    )
+
+
+def _root_mean_square(values: Floats) -> float:
+    return float(np.sqrt(np.mean(values**2)))

@@ -1,0 +1,95 @@
+"""How fast the cells grow along grid lines, from one to the next.
+
+The growth at a node is the ratio of the two steps of a grid line that meet there, the larger over the
+smaller: 1 for equal steps. Lines run on over the seam of an O grid and over the wake of a C grid.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import across_wake, beyond_seam
+from meshonet.geometry.blocks.grid import Grid
+
+ROWS = 128
+"""Columns of nodes that are worked on at a time, so that large grids need no more memory than they have."""
+
+LARGE = 1e30
+"""Growth beside a step of no length."""
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest."""
+
+    max: float
+    mean: float
+    at: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Growth:
+    """Growth along both families of grid lines; None where a line has one step only."""
+
+    xi: Extreme | None
+    eta: Extreme | None
+
+
+class Tally:
+    """Extreme of values that come block by block."""
+
+    def __init__(self) -> None:
+        self._max, self._at, self._total, self._count = -np.inf, (0, 0), 0.0, 0
+
+    def add(self, i: int, j: int, values: Floats) -> None:
+        """Add values (m, n) of the nodes or cells from (i, j) on."""
+        if values.size == 0:
+            return
+        here = divmod(int(values.argmax()), values.shape[1])
+        if values[here] > self._max:
+            self._max, self._at = float(values[here]), (i + here[0], j + here[1])
+        self._total += float(values.sum())
+        self._count += values.size
+
+    @property
+    def extreme(self) -> Extreme | None:
+        """The extreme of all values so far, None when there were none."""
+        return Extreme(self._max, self._total / self._count, self._at) if self._count else None
+
+
+def growth(grid: Grid) -> Growth:
+    """Return the growth of the steps of `grid` along xi and eta.
+
+    Examples
+    --------
+    >>> x, y = np.meshgrid([0.0, 1.0, 3.0, 5.0], [0.0, 1.0], indexing="ij")
+    >>> growth(Grid(np.stack([x, y], axis=-1)))
+    Growth(xi=Extreme(max=2.0, mean=1.5, at=(1, 0)), eta=None)
+    """
+    xi, eta = Tally(), Tally()
+    for i, block in blocks(beyond_seam(grid), 2):
+        xi.add(i + 1, 0, _ratios(block))
+    for i, block in blocks(grid.nodes, 0):
+        eta.add(i, 1, _ratios(block.swapaxes(0, 1)).T)
+    eta.add(0, 0, _ratios(across_wake(grid).swapaxes(0, 1)).T)
+    return Growth(xi.extreme, eta.extreme)
+
+
+def blocks(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
+    """Yield parts of `nodes` (ni, nj, 2) with the index of their first column; `more` columns overlap."""
+    for i in range(0, max(len(nodes) - more, 0), ROWS):
+        yield i, nodes[i : i + ROWS + more]
+
+
+def _ratios(nodes: Floats) -> Floats:
+    """Return the growth (m-2, n) along the first axis of `nodes` (m, n, 2)."""
+    step = np.diff(nodes, axis=0)
+    length = np.hypot(step[..., 0], step[..., 1])
+    before, after = length[:-1], length[1:]
+    small = np.minimum(before, after)
+    ratio = np.divide(np.maximum(before, after), small, out=np.full_like(small, LARGE), where=small > 0)
+    return np.minimum(ratio, LARGE)

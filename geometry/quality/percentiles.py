@@ -1,0 +1,122 @@
+"""Percentiles of every metric over all cells, exact, without keeping the values of all cells.
+
+A few tiles of the grid say roughly where a percentile is: between two values of theirs, the bracket. One run
+over all cells counts what lies below the bracket and keeps what lies in it, a few hundredths of all; the
+percentile is among those. Where a bracket missed, or held too much, all values of that metric are sorted out.
+The result is that of `numpy.percentile` (linear interpolation between cells) to the last bit either way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geometry import _cells
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality.metrics import METRICS
+
+TILES, TILE = 4096, 8
+"""Tiles of the sample, and their cells along each direction."""
+
+MARGIN = 0.3
+"""Percent of the cells that a bracket reaches to each side of its percentile."""
+
+ROOM = 0.03
+"""Part of all cells that there is room for in a bracket."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one run over all cells needs beforehand and leaves behind, see `geometry._cells.measure`.
+
+    Parameters
+    ----------
+    brackets : (metrics, percentiles, 2).
+    counts : (metrics, percentiles, 4).
+    caught : (metrics, percentiles, room).
+    """
+
+    brackets: Floats
+    counts: NDArray[np.int64]
+    caught: Floats
+
+    def percentile(self, metric: int, which: int, cells: int, percent: float) -> float | None:
+        """Return percentile number `which` of a metric, None when the bracket does not hold it."""
+        at = (cells - 1) * (percent / 100)
+        first = int(at)
+        pair = [self._ranked(metric, which, rank) for rank in (first, min(first + 1, cells - 1))]
+        if pair[0] is None or pair[1] is None:
+            return None
+        low, high, t = pair[0], pair[1], at - first
+        # numpy's own order of operations, which makes the last bit the same
+        return high - (high - low) * (1 - t) if t >= 0.5 else low + (high - low) * t
+
+    def _ranked(self, metric: int, which: int, rank: int) -> float | None:
+        """Return the value that `rank` others come before."""
+        before, up_to, below, all_up_to = (int(count) for count in self.counts[metric, which])
+        low, high = (float(end) for end in self.brackets[metric, which])
+        if before <= rank < up_to:
+            return low
+        if below <= rank < all_up_to:
+            return high
+        held = self.caught[metric, which, : below - up_to]
+        if not up_to <= rank < below or len(held) < below - up_to:
+            return None
+        return float(np.partition(held, rank - up_to)[rank - up_to])
+
+
+def no_run() -> Run:
+    """Return a run that looks for nothing."""
+    n = len(METRICS)
+    return Run(np.empty((n, 0, 2)), np.zeros((n, 0, 4), dtype=np.int64), np.empty((n, 0, 1)))
+
+
+def prepared(x: Floats, y: Floats, percents: tuple[float, ...]) -> Run:
+    """Return a run that brackets the percentiles `percents` of every metric of the grid (ni, nj)."""
+    sample = _sample(x, y)
+    ends = [(max(0.0, p - MARGIN), min(100.0, p + MARGIN)) for p in percents]
+    found = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
+    n = len(METRICS)
+    brackets = np.ascontiguousarray(found.T).reshape(n, len(percents), 2)
+    room = int(ROOM * (x.shape[0] - 1) * (x.shape[1] - 1)) + 1
+    return Run(brackets, np.zeros((n, len(percents), 4), dtype=np.int64), np.empty((n, len(percents), room)))
+
+
+def _sample(x: Floats, y: Floats) -> Floats:
+    """Return the metrics (metrics, n) of tiles that cover the grid evenly.
+
+    Tiles stand on a lattice of rank one, steps of the golden ratio across: what fills a hundredth of the grid
+    fills about a hundredth of the tiles. Those at the sides reach beyond the grid, or its outermost cells
+    would be in fewer tiles than the others. All of them side by side make one grid to run over.
+    """
+    n = len(METRICS)
+    i, inside_i = _tiles(np.linspace(0, 1, TILES), x.shape[0] - 1)
+    j, inside_j = _tiles(np.arange(TILES) * 0.6180339887498949 % 1.0, x.shape[1] - 1)
+    tiles = (np.swapaxes(plane[i[:, :, None], j[:, None, :]], 0, 1) for plane in (x, y))
+    u, v = (tile.reshape(i.shape[1], -1) for tile in tiles)
+    table, where, run = np.empty((n, 3)), np.empty((n, 2, 2), dtype=np.int64), no_run()
+    values = np.empty((n, i.shape[1] - 1, u.shape[1] - 1))
+    _cells.measure(u, v, False, 0, table, where, 0, values, run.brackets, run.counts, run.caught)
+    inside = np.zeros((TILES, i.shape[1] - 1, j.shape[1]), dtype=bool)
+    # the last column of a tile joins it to the next one
+    inside[..., :-1] = inside_i[:, :, None] & inside_j[:, None, :]
+    return values[:, inside.swapaxes(0, 1).reshape(i.shape[1] - 1, -1)[:, :-1]]
+
+
+def _tiles(t: NDArray[np.floating[Any]], cells: int) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Return the nodes (tiles, size + 3) of tiles with a cell more to each side.
+
+    They are placed by t (tiles,) from 0 to 1. Beyond the first and the last node the grid is mirrored, so
+    that cells there have neighbours of their own area. The second result (tiles, size + 2) says which cells
+    are in the tile and in the grid.
+    """
+    size = min(TILE, cells)
+    start = np.rint(t * (cells + size - 2)).astype(np.intp) - (size - 1)
+    cell = start[:, None] + np.arange(-1, size + 1)
+    inside = (cell >= 0) & (cell < cells)
+    inside[:, [0, -1]] = False
+    node = np.append(cell, cell[:, -1:] + 1, axis=1)
+    return cells - np.abs(cells - np.abs(node)), inside

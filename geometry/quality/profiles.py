@@ -1,0 +1,191 @@
+"""Thresholds of quality that others use: what OpenFOAM, Pointwise, Verdict and boundary layers ask for.
+
+=========  =================================================================================================
+openfoam   checkMesh: folded cells, non-orthogonality (warns beyond 70 degrees, an error from 90), skewness at
+           most 4; its aspect ratio, which boundary layers often exceed, warns beyond 1000
+pointwise  equiangle skewness: good below 0.8, acceptable below 0.9
+verdict    scaled Jacobian from 0.3 to 1; the largest angle to 135 and the least from 45 degrees warn
+viscous    Drag Prediction Workshop guidelines: growth away from walls below 1.25; at least 2 equal cells at
+           the wall and a far field at 100 chords, or it warns; angles from 18 degrees (ICEM practice), or it
+           warns
+=========  =================================================================================================
+
+All of them fail a grid with folded cells. Sources: OpenFOAM primitiveMeshCheck.C; Pointwise user manual,
+Equiangle Skewness; C. J. Stimpson et al., SAND2007-1751 (2007); J. C. Vassberg et al., Gridding Guidelines of
+the AIAA Drag Prediction Workshops.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.quality.checkmesh import Faces, faces
+from meshonet.geometry.quality.growth import Extreme, Growth, growth
+from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.walls import WallRow, wall_row
+
+Level = Literal["warn", "fail"]
+Verdict = Literal["pass", "warn", "fail", "none"]
+_HOLDS = {">": operator.gt, ">=": operator.ge, "<": operator.lt}
+
+
+@dataclass(frozen=True)
+class Limit:
+    """A condition that a figure must not fulfil, and what follows when it does."""
+
+    level: Level
+    compare: Literal[">", ">=", "<"]
+    value: float
+
+    def broken(self, value: float) -> bool:
+        """Say whether `value` fulfils the condition; what is not a number does."""
+        return bool(_HOLDS[self.compare](value, self.value)) or value != value
+
+
+@dataclass(frozen=True)
+class Check:
+    """A figure and its limits."""
+
+    figure: str
+    limits: tuple[Limit, ...]
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What a check found: the figure (None: this grid has none), the node or cell it is at, the verdict."""
+
+    check: Check
+    value: float | None
+    at: tuple[int, int] | None
+    verdict: Verdict
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A profile's checks on one grid."""
+
+    profile: str
+    checked: tuple[Checked, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether no check failed; warnings pass."""
+        return all(checked.verdict != "fail" for checked in self.checked)
+
+
+def _check(figure: str, *limits: tuple[Level, Literal[">", ">=", "<"], float]) -> Check:
+    return Check(figure, tuple(Limit(*limit) for limit in limits))
+
+
+_FOLDED = _check("folded", ("fail", ">", 0))
+PROFILES: dict[str, tuple[Check, ...]] = {
+    "openfoam": (
+        _FOLDED,
+        _check("non_orthogonality", ("warn", ">", 70), ("fail", ">=", 90)),
+        _check("face_skewness", ("fail", ">", 4)),
+        _check("box_ratio", ("warn", ">", 1000)),
+    ),
+    "pointwise": (_FOLDED, _check("skewness", ("warn", ">=", 0.8), ("fail", ">=", 0.9))),
+    "verdict": (
+        _FOLDED,
+        _check("scaled_jacobian", ("fail", "<", 0.3)),
+        _check("max_angle", ("warn", ">", 135)),
+        _check("min_angle", ("warn", "<", 45)),
+    ),
+    "viscous": (
+        _FOLDED,
+        _check("wall_growth", ("fail", ">=", 1.25)),
+        _check("equal_wall_cells", ("warn", "<", 2)),
+        _check("far_field", ("warn", "<", 100)),
+        _check("min_angle", ("warn", "<", 18)),
+    ),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Figures:
+    """The figures of a grid by name, each group of them measured when it is first asked for.
+
+    Parameters
+    ----------
+    grid : what is measured.
+    quality : of it.
+    walls : its stretches of wall.
+    """
+
+    grid: Grid
+    quality: Quality
+    walls: Sequence[Part]
+
+    @cached_property
+    def faces(self) -> Faces:
+        """What checkMesh says of its faces."""
+        return faces(self.grid)
+
+    @cached_property
+    def growth(self) -> Growth:
+        """How fast its cells grow."""
+        return growth(self.grid)
+
+    @cached_property
+    def wall_rows(self) -> tuple[WallRow, ...]:
+        """The cells at its walls."""
+        return tuple(wall_row(self.grid, part) for part in self.walls)
+
+    def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, int] | None] | None:
+        """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
+
+        ``wall_growth`` is the growth along the lines that leave the walls, ``far_field`` the least distance
+        of the far field from the middle of the body in chords, which quads do not have.
+        """
+        if name == "folded":
+            return float(self.quality.folded), None
+        if name in NAMES:
+            summary = self.quality[name]
+            return (summary.min if low else summary.max), summary.worst
+        if name == "equal_wall_cells":
+            return (float(min(row.equal_cells for row in self.wall_rows)), None) if self.wall_rows else None
+        if name == "far_field":
+            return self._far_field()
+        found = self._wall_growth() if name == "wall_growth" else getattr(self.faces, name)
+        return None if found is None else (found.max, found.at)
+
+    def _wall_growth(self) -> Extreme | None:
+        sides = {part.side for part in self.walls}
+        along = [
+            self.growth.eta if sides & {"south", "north"} else None,
+            self.growth.xi if sides & {"west", "east"} else None,
+        ]
+        return max((one for one in along if one), key=lambda one: one.max, default=None)
+
+    def _far_field(self) -> tuple[float, None] | None:
+        if self.grid.topology == "quad" or not self.walls:
+            return None
+        wall = np.concatenate([self.grid.nodes[part.start : part.stop + 1, 0] for part in self.walls])
+        middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
+        start = wall[np.argmax(np.hypot(*(wall - middle).T))]
+        chord = float(np.hypot(*(wall - start).T).max())
+        return float(np.hypot(*(self.grid.nodes[:, -1] - middle).T).min()) / chord, None
+
+
+def judge(figures: Figures, profile: str) -> Judgement:
+    """Return what `profile`, one of `PROFILES`, says of a grid."""
+    checked = []
+    for check in PROFILES[profile]:
+        found = figures.value(check.figure, low=check.limits[0].compare == "<")
+        if found is None:
+            checked.append(Checked(check, None, None, "none"))
+            continue
+        broken = [limit.level for limit in check.limits if limit.broken(found[0])]
+        verdict: Verdict = "fail" if "fail" in broken else "warn" if broken else "pass"
+        checked.append(Checked(check, *found, verdict))
+    return Judgement(profile, tuple(checked))

@@ -1,0 +1,83 @@
+"""The cells at a wall: how high the first ones are, and at what angle the grid lines leave it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+
+DEPTH = 33
+"""Nodes along a line that are looked at."""
+
+SAME = 0.01
+"""Relative difference up to which two heights count as equal."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Least, mean and greatest of something."""
+
+    min: float
+    mean: float
+    max: float
+
+
+@dataclass(frozen=True)
+class WallRow:
+    """The row of cells at one named stretch of wall.
+
+    Parameters
+    ----------
+    name, side : of the stretch.
+    height : distance from each wall node to the next node of the line that leaves it, in the grid's unit.
+    off_square : deviation from 90 degrees of the two angles of every cell at the wall.
+    equal_cells : how many cells from the wall on are as high as the first, within 1 %, at the node where they
+        are fewest; 32 at the most.
+    """
+
+    name: str
+    side: str
+    height: Spread
+    off_square: Spread
+    equal_cells: int
+
+
+def wall_row(grid: Grid, part: Part) -> WallRow:
+    """Return the figures of the cells at `part` of the boundary of `grid`.
+
+    Examples
+    --------
+    >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 0.1, 0.2, 0.4], indexing="ij")
+    >>> row = wall_row(Grid(np.stack([x, y], axis=-1)), Part("wall", "south", 0, 2))
+    >>> row.height.max, row.off_square.max, row.equal_cells
+    (0.1, 0.0, 2)
+    """
+    lines = leaving(grid, part)
+    steps = np.diff(lines, axis=1)
+    heights = np.hypot(steps[..., 0], steps[..., 1])
+    equal = np.abs(heights - heights[:, :1]) <= SAME * heights[:, :1]
+    alike = np.where(equal.all(axis=1), equal.shape[1], np.argmin(equal, axis=1))
+    along = np.diff(lines[:, 0], axis=0)
+    off = [_off_square(along, steps[:-1, 0]), _off_square(along, steps[1:, 0])]
+    return WallRow(part.name, part.side, _spread(heights[:, 0]), _spread(np.stack(off)), int(alike.min()))
+
+
+def leaving(grid: Grid, part: Part) -> Floats:
+    """Return the lines (n, depth, 2) that leave the nodes of `part`, the wall first."""
+    nodes = grid.nodes if part.side in ("south", "north") else grid.nodes.swapaxes(0, 1)
+    nodes = nodes[part.start : part.stop + 1]
+    return (nodes if part.side in ("south", "west") else nodes[:, ::-1])[:, :DEPTH]
+
+
+def _off_square(along: Floats, away: Floats) -> Floats:
+    """Return how far the angles between two families of vectors (n, 2) are from 90 degrees."""
+    sine = np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0])
+    return np.degrees(np.arctan2(np.abs((along * away).sum(axis=1)), sine))
+
+
+def _spread(values: Floats) -> Spread:
+    return Spread(float(values.min()), float(values.mean()), float(values.max()))

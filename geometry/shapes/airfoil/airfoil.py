@@ -1,0 +1,321 @@
+"""An airfoil: the curve through its points, its edges, and nodes along its wall."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
+from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section, clean_section
+from meshonet.geometry.shapes.airfoil.te_fillet import rounded_base
+from meshonet.geometry.shapes.airfoil.te_wedge import wedged_base
+from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, wake_axis, wake_cells
+from meshonet.geometry.spacing.airfoil import Stations, wall_arcs
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+
+__all__ = ["SHARP_GAP", "Airfoil"]
+
+_CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
+"""Where an interval of the curve is cut into straight pieces to be searched for crossings."""
+
+
+_PARTS = 128
+"""Parts into which a stretch is cut to find the place farthest from the trailing edge."""
+_WIDEST_WEDGE = 50.0
+"""Largest angle in degrees between surfaces whose edge a C grid takes by itself."""
+
+
+class CrossingError(InputError):
+    """A wall so coarse, where the section is thin, that its polygon crosses itself."""
+
+
+class Airfoil:
+    """A closed section with one trailing and one leading edge.
+
+    ::
+
+                  upper  <----.             The curve runs clockwise: it starts at the trailing edge
+               .-----------------.___       (of a blunt one, at the middle of its straight base), goes
+        LE    (                      --- TE along the lower side to the leading edge and back along the
+               '-------------------'''      upper side. The leading edge is the point of the curve that
+                  lower  ---->              is farthest from the trailing edge.
+
+    Parameters
+    ----------
+    points : (n, 2) around the section, any unit, either way, from any start (`meshonet.geometry.shapes.airfoil.clean`).
+    name : what the input called it.
+    places : (n,) where each point stands in its source, such as ``line 12``, for messages.
+
+    Raises
+    ------
+    InputError
+        the points are no airfoil, or its surfaces cross; says where.
+    """
+
+    curve: Curve
+    """Through the points; see the drawing."""
+    chord: float
+    """Distance from the leading to the trailing edge."""
+    leading_edge: Floats
+    """(2,)"""
+    trailing_edge: Floats
+    """(2,) the middle of the base when blunt."""
+    gap: float
+    """Distance between the ends of the two surfaces."""
+    blunt: bool
+    """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
+
+    def __init__(self, points: Floats, name: str = "", places: Sequence[str] = ()) -> None:
+        self.name, self._round = name, False
+        self._section = section = clean_section(points)
+        self.gap, self.blunt = section.gap, section.blunt
+        self.curve = _fitted(section, places)
+        self.trailing_edge = self.curve.points[0]
+        arc = _farthest(self.curve, self.trailing_edge)
+        self.leading_edge = self.curve.at(np.array([arc]))[0]
+        self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
+        first, last = (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
+        self._arcs = float(first), arc, float(last)
+
+    @property
+    def unit(self) -> float:
+        """What cells at the wall are measured in: the chord, or 1 where that is the nominal chord.
+
+        From its trailing edge to the point farthest from it a cambered section is longer than the chord it
+        was drawn with: by 8e-5 for NACA 2412. Within 1 % of 1 the unit of the drawing is meant.
+        """
+        return 1.0 if abs(self.chord - 1.0) < 0.01 else self.chord
+
+    @cached_property
+    def wedge(self) -> float:
+        """Angle in degrees between the two surfaces over the last 1 % of the chord."""
+        first, _, last = self._arcs
+        step = 0.01 * self.chord
+        lower, a, b, upper = self.curve.at(np.array([first + step, first, last, last - step]))
+        u, v = upper - b, lower - a
+        return float(np.degrees(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v)))
+
+    @cached_property
+    def nose_radius(self) -> float:
+        """Radius of the leading edge: of the parabola as thick as the section 2 % of the chord behind it."""
+        _, middle, _ = self._arcs
+        axis = (self.trailing_edge - self.leading_edge) / self.chord
+        step = np.linspace(0.0, 0.2 * self.chord, 81)
+        sides = []
+        for sign in (-1.0, 1.0):
+            off = self.curve.at(middle + sign * step) - self.leading_edge
+            along = np.maximum.accumulate(off @ axis)
+            sides.append(float(np.interp(0.02 * self.chord, along, off @ np.array([-axis[1], axis[0]]))))
+        return (0.5 * (sides[1] - sides[0])) ** 2 / (0.04 * self.chord)
+
+    def normalised(self) -> Airfoil:
+        """Return the same airfoil turned, scaled and moved to have its edges at (0, 0) and (1, 0)."""
+        axis = (self.trailing_edge - self.leading_edge) / self.chord**2
+        off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
+        return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
+
+    def rounded(self) -> Airfoil:
+        """Return the same airfoil with the corners of its blunt base rounded off (`meshonet.geometry.shapes.airfoil.te_fillet`)."""
+        if not self.blunt:
+            return self
+        body = copy(self)
+        body.__dict__.pop("wedge", None)
+        body.curve, end = rounded_base(self.curve, self.chord)
+        arc = _farthest(body.curve, body.trailing_edge)
+        body.blunt, body._round, body._arcs = False, True, (end, arc, body.curve.length - end)
+        return body
+
+    def moved_apart(self) -> Airfoil:
+        """Return the same airfoil with surfaces at least 9e-5 chords apart where they all but touch."""
+        section = self._section.moved_apart()
+        return Airfoil(section.points, self.name)
+
+    def wall(self, ni: int, sampling: Sampling) -> Floats:
+        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
+
+        Raises
+        ------
+        InputError
+            fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
+        """
+        stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
+        nodes = self.curve.at(wall_arcs(stations, ni, sampling))
+        nodes[-1] = nodes[0]
+        crossing = find_crossing(nodes[:-1])
+        if crossing is None:
+            return nodes
+        if sampling.spacing == "auto":  # where one distribution cuts through a thin edge another may not
+            return self.wall(ni, replace(sampling, spacing="tanh"))
+        raise CrossingError(
+            f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
+            "use more nodes where the section is thin",
+        )
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return this wall in a far field: a circle (o), or half of one and a wake behind the body (c).
+
+        ``auto`` is ``o``, unless wall cells are to be thin and the edge is sharp, with surfaces at most
+        50 degrees apart (once it is as `Sampling.te` wants it).
+
+        Raises
+        ------
+        InputError
+            four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
+        """
+        if sampling.topology == "quad":
+            raise InputError("topology quad is not made from an airfoil", "use o or c")
+        if sampling.corners is not None:
+            raise InputError("an airfoil has no corners to choose", "leave --corners out")
+        body = self.normalised() if sampling.normalise else self
+        try:
+            return body._around(sampling)
+        except CrossingError:
+            return body.moved_apart()._around(sampling)
+
+    def wedged(self) -> Airfoil:
+        """Return the same airfoil with its blunt base closed by a wedge (`meshonet.geometry.shapes.airfoil.te_wedge`)."""
+        if not self.blunt:
+            return self
+        first, _, last = self._arcs
+        step = 0.01 * self.chord
+        a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
+        ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
+        return Airfoil(wedged_base(self.curve.points[1:], ways), self.name)
+
+    def _around(self, sampling: Sampling) -> Boundary:
+        topology, te = sampling.topology, sampling.te
+        if te == "auto":
+            te = "wedge" if topology == "c" else "exact"
+        body = self.rounded() if te == "round" else self.wedged() if te == "wedge" else self
+        if topology == "auto":
+            sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
+            topology = "c" if sampling.viscous and sharp else "o"
+        if topology == "o" and (sampling.wake or sampling.wake_nodes):
+            raise InputError(
+                "an O grid has no wake", "leave --wake out, or add --topology c", source=self.name
+            )
+        notes: tuple[str, ...] = ()
+        if te == "wedge" and self.blunt:
+            length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
+            notes = (
+                f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide, is closed by a "
+                f"wedge {length:.3g} chords long",
+            )
+        if topology == "c":
+            return body._c_boundary(sampling, self, notes)
+        centre = 0.5 * (body.leading_edge + body.trailing_edge)
+        wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
+        radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
+        found = o_boundary(
+            wall, nj, centre, radius, body.curve, self.name, self.unit, turned=not sampling.viscous
+        )
+        return replace(found, notes=notes) if notes else found
+
+    def _c_boundary(self, sampling: Sampling, given: Airfoil, notes: tuple[str, ...]) -> Boundary:
+        """Return the C boundary around this body, which was `given` once, with its units."""
+        if self.blunt or self._round:
+            raise InputError(
+                "a C grid needs a sharp trailing edge", "close it with --te wedge, or use topology o"
+            )
+        chord, ni = given.chord, sampling.ni or DEFAULT_NI
+        length = (sampling.wake or sampling.radius) * chord
+        step = (sampling.te_spacing or C_EDGE / ni) * chord
+        cells = wake_cells(ni, sampling.wake_nodes, step, length)
+        law = "curvature" if sampling.spacing == "auto" else sampling.spacing
+        te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
+        wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
+        axis = wake_axis(given.leading_edge, given.trailing_edge)
+        line = Wake.behind(wall, axis, chord, length)
+        first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
+        wake = line.nodes(first, cells)
+        centre = 0.5 * (given.leading_edge + given.trailing_edge)
+        return c_boundary(
+            wall,
+            sampling.nj or DEFAULT_NJ,
+            wake,
+            centre,
+            sampling.radius * chord,
+            axis=axis,
+            curve=self.curve,
+            name=given.name,
+            chord=given.unit,
+            notes=notes,
+        )
+
+
+def _fitted(section: Section, places: Sequence[str]) -> Curve:
+    """Return the curve through a section's points, straight where it would otherwise cross itself.
+
+    Points whose surfaces touch or cross by rounding are moved apart first (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
+    """
+    crossing = find_crossing(section.points)
+    if crossing is not None:
+        section = section.moved_apart()
+        if find_crossing(section.points) is not None:
+            raise _crossed(section, crossing, places)
+    points, corners = section.points, section.corners
+    if section.blunt:  # node 0 is the middle of the base
+        points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
+    straight = np.zeros(len(points), dtype=bool)
+    for left in reversed(range(8)):
+        curve = Curve(points, closed=True, corners=corners, straight=straight)
+        found = find_crossings(curve.polyline(_CUTS), limit=4096)
+        where = np.array([k // len(_CUTS) for c in found for k in (c.first, c.second)], dtype=np.intp)
+        if straight[where].all():
+            break
+        straight[where if left > 1 else slice(None)] = True
+    return curve
+
+
+def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:
+    """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
+    n = len(section.points)
+    ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
+    told = [places[k] if places else f"point {k}" for k in ends]
+    return InputError(
+        f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
+        f"between {told[0]} and {told[1]} and between {told[2]} and {told[3]}",
+        "correct these points: no grid can be made around crossing surfaces",
+    )
+
+
+def _farthest(curve: Curve, point: Floats) -> float:
+    """Return the arc length of the place on the curve that is farthest from `point`.
+
+    Of several equally far places (a flat front) it is the middle one, so that a symmetric section keeps
+    its symmetry. Where the distance is smooth, its derivative is brought to zero.
+    """
+    s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
+    s = np.sort(s)
+    off = curve.at(s) - point
+    distance = np.hypot(off[:, 0], off[:, 1])
+    best = np.flatnonzero(distance >= distance.max() * (1 - 1e-12))
+    if best[-1] - best[0] > 1:
+        return float(0.5 * (s[best[0]] + s[best[-1]]))
+    low, high = float(s[best[0] - 1]), float(s[min(best[-1] + 1, len(s) - 1)])
+
+    slopes = _slopes(curve, point, arcs := np.array([low, high]))
+    if slopes[0] <= 0 or slopes[1] >= 0:
+        return float(s[best[0]])
+    for _ in range(2):  # parts of parts, all places at once: a call costs more than a place
+        arcs = np.linspace(low, high, _PARTS + 1)
+        slopes = _slopes(curve, point, arcs)
+        k = max(int(np.argmax(slopes <= 0)), 1)
+        low, high = float(arcs[k - 1]), float(arcs[k])
+    fall = float(slopes[k - 1] - slopes[k])
+    return low + (high - low) * float(slopes[k - 1]) / fall if fall > 0 else low
+
+
+def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
+    """Return by how much half the squared distance from `point` grows (m,) along the curve at `arcs` (m,)."""
+    points, ways = curve.at(arcs) - point, curve.tangent(arcs)
+    return np.asarray(points[:, 0] * ways[:, 0] + points[:, 1] * ways[:, 1])

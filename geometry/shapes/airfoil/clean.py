@@ -1,0 +1,296 @@
+"""From the points of an airfoil as somebody wrote them to a clean ring that starts at the trailing edge.
+
+Nothing is moved here, except that the two ends of a trailing-edge gap too small to matter become their mean.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.blocks.boundary import polygon_area
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices, find_corners, turning
+from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
+
+SHARP_GAP = 2e-4
+"""Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without it."""
+SAME_POINT = 1e-5
+"""Points closer than this, in extents, are one: the direction between them is noise of the last digit."""
+ON_BASE = 5e-5
+"""How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
+MOST_CORNERS = 12
+"""More corners than this, the trailing edge's among them, are noise of the points and count as none."""
+_CORNER = np.radians(35.0)
+_EDGE = np.radians(120.0)
+_REACH = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """A clean ring of points, clockwise, closed by its trailing edge.
+
+    Parameters
+    ----------
+    points : (n, 2). A sharp section begins with its trailing edge; a blunt one begins with the lower
+        corner of its base and ends with the upper one, the base being the segment from last to first.
+    index : (n,) which given point each is.
+    blunt : the trailing edge has a base.
+    gap : distance between the two ends of the surfaces, before a sharp edge was closed.
+    corners : indices of points where the tangent jumps, those of the trailing edge included.
+    """
+
+    points: Floats
+    index: Indices
+    blunt: bool
+    gap: float
+    corners: Indices
+
+    def moved_apart(self) -> Section:
+        """Return the section with its surfaces moved apart where they all but touch (`meshonet.geometry.shapes.airfoil.separate_surfaces`)."""
+        edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
+        return replace(self, points=moved_apart(self.points, int(np.argmax(_distance(self.points, edge)))))
+
+
+def clean_section(points: Floats) -> Section:
+    """Return the section that `points` (n, 2) describe, whichever way they run around it.
+
+    They may run either way and start anywhere; the usual start at the trailing edge is believed unless the
+    other end is clearly the sharper one. Repeated points are dropped, as are points on a straight base, and
+    neighbours that stand in the wrong order are swapped.
+
+    Raises
+    ------
+    InputError
+        fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
+    """
+    given = np.asarray(points, dtype=np.float64)
+    extent = float(np.hypot(*np.ptp(given, axis=0))) if len(given) else 0.0
+    check_extent(extent)
+    index = _in_order(given, _distinct(given, SAME_POINT * extent))
+    ring = given[index]
+    open_gap = np.hypot(*(ring[0] - ring[-1])) > SAME_POINT * extent
+    if not open_gap:
+        ring, index = ring[:-1], index[:-1]
+    if len(ring) < 4:
+        raise InputError(
+            f"{len(ring)} distinct points", "an airfoil needs at least 4, and many more to be smooth"
+        )
+    area = polygon_area(ring)
+    if abs(area) < 1e-5 * extent**2:
+        raise InputError("the points enclose no area", "give both surfaces of an airfoil")
+    if area > 0:
+        order = np.arange(len(ring))[::-1] if open_gap else np.roll(np.arange(len(ring))[::-1], 1)
+        ring, index = ring[order], index[order]
+    return _opened_at_edge(ring, index, bool(open_gap))
+
+
+def check_extent(extent: float) -> None:
+    """Raise InputError when the size of a shape is nothing, or beyond what can be multiplied a few times."""
+    if not 1e-60 < extent < 1e60:
+        what = "no extent" if extent == 0 else f"an extent of {extent:.3g}"
+        raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")
+
+
+def _distinct(points: Floats, tolerance: float) -> Indices:
+    """Return indices of points that differ from their neighbour, both ends kept, the same from either end."""
+    n = len(points)
+    if n < 2:
+        return np.arange(n)
+    half = n // 2
+    first = _thinned(points[: half + 1], tolerance)
+    second = n - 1 - _thinned(points[half:][::-1], tolerance)[::-1]
+    keep = distinct(np.concatenate([first, second]))
+    # the two halves meet in the middle, where both kept their last point
+    close = np.flatnonzero(np.hypot(*np.diff(points[keep], axis=0).T) <= tolerance)
+    inner = close[(close > 0) & (close < len(keep) - 2)] + 1
+    return np.delete(keep, inner)
+
+
+def _in_order(points: Floats, index: Indices) -> Indices:
+    """Return indices with neighbours swapped where they clearly stand in the wrong order.
+
+    Swapping them shortens the way by more than their distance: 0 2 1 3 on a line by twice that, the two
+    sides of a thin edge by next to nothing.
+    """
+    order = index.copy()
+    for _ in range(50):
+        p = points[order]
+        gain = _distance(p[:-3], p[1:-2]) + _distance(p[2:-1], p[3:])
+        gain -= _distance(p[:-3], p[2:-1]) + _distance(p[1:-2], p[3:]) + _distance(p[1:-2], p[2:-1])
+        if len(gain) == 0 or gain.max() <= 0:
+            break
+        k = int(np.argmax(gain))
+        order[k + 1], order[k + 2] = order[k + 2], order[k + 1]
+    return order
+
+
+def _thinned(points: Floats, tolerance: float) -> Indices:
+    """Return indices of points farther than `tolerance` from the one kept before."""
+    step = np.hypot(*np.diff(points, axis=0).T)
+    if (step > tolerance).all():
+        return np.arange(len(points))
+    keep = [0]
+    for k in range(1, len(points)):
+        if np.hypot(*(points[k] - points[keep[-1]])) > tolerance:
+            keep.append(k)
+    return np.array(keep, dtype=np.intp)
+
+
+def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
+    """Return the section of a clockwise ring whose points start, or whose gap lies, where the file starts."""
+    seam = 0.5 * (ring[0] + ring[-1]) if open_gap else ring[0]
+    nose = int(np.argmax(_distance(ring, seam)))
+    chord = float(_distance(ring[nose], seam))
+    gap = float(_distance(ring[0], ring[-1])) if open_gap else 0.0
+    if gap > 0.5 * chord and gap > 3 * np.median(_distance(ring[1:], ring[:-1])):
+        raise InputError(
+            f"the first and the last point lie {gap / chord:.2g} chords apart",
+            "give both surfaces of an airfoil",
+        )
+    tail = int(np.argmax(_distance(ring, ring[nose])))
+    start = tail if open_gap else 0
+    turn = -turning(ring, closed=True)
+    if _distance(ring[tail], seam) > max(0.15 * chord, gap):
+        edge = max((nose, tail), key=lambda k: _sharpness(ring, k, tail if k == nose else nose)[0])
+    elif _starts_at_nose(ring, start, nose, open_gap):
+        edge = nose
+    elif not open_gap and turn[0] < _CORNER < turn[tail]:
+        edge = tail  # the points start beside their edge, or on its base
+    else:
+        edge = -1
+    if edge >= 0:
+        ring, index, open_gap = np.roll(ring, -edge, axis=0), np.roll(index, -edge), False
+        chord = float(_distance(ring, ring[0]).max())
+    return _based(ring, index, open_gap, chord)
+
+
+def _starts_at_nose(ring: Floats, start: int, other: int, open_gap: bool) -> bool:
+    """Say whether the place where the points start is round and the other end is clearly the edge."""
+    mine, his = _sharpness(ring, start, other), _sharpness(ring, other, start)
+    if mine[0] >= 0.6:
+        return False
+    if his[0] > 0.7 and his[1] < 0.7 * mine[1]:
+        return True
+    return not open_gap and _has_base(ring, other) and not _has_base(ring, start)
+
+
+def _has_base(ring: Floats, k: int) -> bool:
+    """Say whether two neighbouring points near point k turn by more than 50 degrees each and 130 together."""
+    n = len(ring)
+    turn = -turning(ring, closed=True)
+    near = np.arange(k - 3, k + 4) % n
+    one, next_one = turn[near], turn[(near + 1) % n]
+    return bool(
+        (
+            (one > np.radians(50.0)) & (next_one > np.radians(50.0)) & (one + next_one > np.radians(130.0))
+        ).any()
+    )
+
+
+def _sharpness(ring: Floats, end: int, other: int) -> tuple[float, float]:
+    """Return (p, t): from ring[end] on thickness grows like distance to the power p, and is t at 5 % chord.
+
+    p is about 0.35 at a round leading edge, 0.85 at a wedge, 1.5 at a cusp, measured between 5 % and 20 %.
+    """
+    n = len(ring)
+    axis = ring[other] - ring[end]
+    chord = np.hypot(*axis)
+    along, across = (
+        (ring - ring[end]) @ axis / chord,
+        (ring - ring[end]) @ np.array([-axis[1], axis[0]]) / chord,
+    )
+    thick = []
+    for part in (0.05, 0.2):
+        sides = []
+        for arc in (
+            np.arange(end, end + (other - end) % n + 1) % n,
+            np.arange(other, other + (end - other) % n + 1) % n,
+        ):
+            order = np.argsort(along[arc], kind="stable")
+            sides.append(float(np.interp(part * chord, along[arc][order], across[arc][order])))
+        thick.append(max(abs(sides[1] - sides[0]), 1e-9 * chord))
+    return float(np.log(thick[1] / thick[0]) / np.log(4.0)), thick[0]
+
+
+def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Section:
+    """Return the section of a ring that starts at its trailing edge: find out whether that is a base."""
+    gap = float(_distance(ring[0], ring[-1])) if open_gap else 0.0
+    if open_gap and gap < SHARP_GAP * chord:
+        ring = ring.copy()
+        ring[0] = 0.5 * (ring[0] + ring[-1])
+        return _section(ring[:-1], index[:-1], False, gap)
+    turn = -turning(ring, closed=True)
+    last = len(ring) - 1
+    ahead = [k for k in range(min(_REACH, len(ring) // 3) + 1) if turn[k] > _CORNER]
+    behind = [k for k in range(last, last - min(_REACH, len(ring) // 3), -1) if turn[k] > _CORNER]
+    if open_gap:
+        pairs = [(behind[0], ahead[0])] if behind and ahead else []
+        edges = [k for k in (*ahead[:1], *behind[:1]) if turn[k] > _EDGE and k in (0, last)]
+    elif turn[0] > _CORNER:
+        pairs = [] if turn[0] > _EDGE else [(0, k) for k in ahead[1:2]] + [(k, 0) for k in behind[:1]]
+        edges = [0]
+    else:
+        pairs = [(behind[0], ahead[0])] if behind and ahead else []
+        edges = [0]
+    for upper, lower in pairs:
+        base = _between(ring, upper, lower)
+        if turn[upper] + turn[lower] > np.radians(100.0) and _off_line(base) <= ON_BASE * chord:
+            keep = np.arange(lower, lower + (upper - lower) % len(ring) + 1) % len(ring)
+            gap = float(_distance(ring[upper], ring[lower]))
+            ring, index = ring[keep], index[keep]
+            if gap >= SHARP_GAP * chord:
+                return _section(ring, index, True, gap)
+            ring[0] = 0.5 * (ring[0] + ring[-1])
+            return _section(ring[:-1], index[:-1], False, gap)
+    if edges:
+        return _section(np.roll(ring, -edges[0], axis=0), np.roll(index, -edges[0]), False, gap)
+    return _section(ring, index, open_gap, gap)
+
+
+def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
+    """Return the section with its corners; a coarsely given round leading edge is none, a sharp one is."""
+    edge = 0.5 * (ring[0] + ring[-1]) if blunt else ring[0]
+    distance = _distance(ring, edge)
+    nose = int(np.argmax(distance))
+    turn = np.abs(turning(ring, closed=True))
+    n = len(ring)
+    if blunt and nose in (0, n - 1):
+        raise InputError("the base is wider than the section is long", "give both surfaces of an airfoil")
+    found = find_corners(ring, closed=True, few=0)
+    apart = np.minimum((found - nose) % n, (nose - found) % n)
+    near_nose = (apart <= 1) | (_distance(ring[found], ring[nose]) < 0.03 * distance[nose])
+    far = found[~near_nose]
+    corners = set(far.tolist() if len(far) <= MOST_CORNERS else [])
+    if turn[nose] > np.radians(60.0) and _sharpness(ring, nose, 0)[0] > 0.7:
+        corners.add(nose)
+    for k in (nose - 1, nose):  # a flat front: two corners side by side, and straight on from both
+        around = turn[np.arange(k - 1, k + 3) % n]
+        if around[1:3].min() > np.radians(70.0) and around[[0, 3]].max() < np.radians(15.0):
+            corners |= {k, (k + 1) % n}
+    if blunt:
+        corners |= {0, n - 1}
+    elif turn[0] > np.radians(60.0):
+        corners.add(0)
+    return Section(ring, index, blunt, gap, np.array(sorted(corners), dtype=np.intp))
+
+
+def _between(ring: Floats, start: int, stop: int) -> Floats:
+    """Return the points of the ring from `start` on to `stop`, both included."""
+    return ring[np.arange(start, start + (stop - start) % len(ring) + 1) % len(ring)]
+
+
+def _off_line(points: Floats) -> float:
+    """Return the largest distance of points (n, 2) from the straight line between the first and the last."""
+    along = points[-1] - points[0]
+    length = np.hypot(*along)
+    if len(points) < 3 or length == 0:
+        return 0.0
+    off = points[1:-1] - points[0]
+    return float(np.abs(along[0] * off[:, 1] - along[1] * off[:, 0]).max() / length)
+
+
+def _distance(points: Floats, other: Floats) -> Floats:
+    return np.asarray(np.hypot(points[..., 0] - other[..., 0], points[..., 1] - other[..., 1]))

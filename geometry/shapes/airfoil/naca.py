@@ -1,0 +1,136 @@
+"""NACA four- and five-digit airfoils from their formulas.
+
+::
+
+    NACA 2412                      NACA 23012                          NACA 23112
+         | | '- thickness, %            | |||'- thickness, %                  |
+         | '--- its place, tenths       | ||'-- 0 simple mean line            '-- 1 reflexed
+         '----- camber, %               | |'--- place of the camber, 1 to 5 (twentieths)
+                                        '-'---- design lift coefficient in 3/20
+
+The thickness polynomial leaves a base of 0.0021 times the thickness in percent, in chords per hundred; with
+``-sharp`` behind the digits its last coefficient closes it. Jacobs, Ward and Pinkerton, NACA Report 460
+(1933); Jacobs and Pinkerton, NACA Report 537 (1935); reflexed mean lines as in Ladson and Brooks, NASA TM
+X-3284 (1975).
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+
+POINTS = 161
+"""Points a surface: the spline through them is then within 2e-6 chord of the formula."""
+
+_SIMPLE = {
+    1: (0.0580, 361.400),
+    2: (0.1260, 51.640),
+    3: (0.2025, 15.957),
+    4: (0.2900, 6.643),
+    5: (0.3910, 3.230),
+}
+_REFLEX = {
+    2: (0.1300, 51.990, 0.000764),
+    3: (0.2170, 15.793, 0.00677),
+    4: (0.3180, 6.520, 0.0303),
+    5: (0.4410, 3.191, 0.1355),
+}
+_KNOWN = "use four digits such as 2412 or five such as 23012, with -sharp for a closed trailing edge"
+
+
+def naca(designation: str) -> Airfoil:
+    """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, chord 1.
+
+    Raises
+    ------
+    InputError
+        a designation that stands for no airfoil.
+
+    Examples
+    --------
+    >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
+    ('NACA 2412', True, False)
+    """
+    return Airfoil(naca_points(designation), f"NACA {_split(designation)[0]}")
+
+
+def naca_points(designation: str, n: int = POINTS) -> Floats:
+    """Return points (2 n - 1, 2) from the trailing edge over the upper side to the leading edge and back.
+
+    Parameters
+    ----------
+    designation : see `naca`.
+    n : points a surface, by the cosine law in x.
+    """
+    digits, sharp = _split(designation)
+    x = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
+    half = thickness(x, int(digits[-2:]) / 100, sharp=sharp)
+    camber, slope = _mean_line(digits, x)
+    angle = np.arctan(slope)
+    upper = np.stack([x - half * np.sin(angle), camber + half * np.cos(angle)], axis=1)
+    lower = np.stack([x + half * np.sin(angle), camber - half * np.cos(angle)], axis=1)
+    return np.concatenate([upper[::-1], lower[1:]])
+
+
+def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
+    """Return half the thickness in chords at places x (any shape, 0 to 1) of a section `ratio` thick.
+
+    y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), or 0.1036 at the end when sharp.
+
+    Examples
+    --------
+    >>> thickness(np.array([0.0, 0.3, 1.0]), 0.12).round(5).tolist()
+    [0.0, 0.06002, 0.00126]
+    """
+    last = -0.1036 if sharp else -0.1015
+    inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))
+    inner = np.where((x == 1.0) & sharp, 0.0, inner)
+    return np.asarray(5.0 * ratio * inner)
+
+
+def _split(designation: str) -> tuple[str, bool]:
+    match = re.fullmatch(r"(?:naca)?[\s_-]*(\d{4,5})(-sharp)?", designation.strip().lower())
+    if match is None:
+        raise InputError(f"{designation!r} is no NACA designation", _KNOWN)
+    digits = match[1]
+    if int(digits[-2:]) == 0:
+        raise InputError(f"NACA {digits} has no thickness", _KNOWN)
+    if len(digits) == 4 and digits[0] != "0" and digits[1] == "0":
+        raise InputError(
+            f"NACA {digits} has its camber at the leading edge", "use 1 to 9 as the second digit"
+        )
+    if len(digits) == 5:
+        known = {"0": set(_SIMPLE), "1": set(_REFLEX)}.get(digits[2], set())
+        if int(digits[1]) not in known:
+            raise InputError(
+                f"NACA {digits} has no tabulated mean line",
+                "use 10 to 50 or 21 to 51 as its second and third digit",
+            )
+    return digits, match[2] is not None
+
+
+def _mean_line(digits: str, x: Floats) -> tuple[Floats, Floats]:
+    """Return camber and its slope at x (n,)."""
+    if len(digits) == 4:
+        m, p = int(digits[0]) / 100, int(digits[1]) / 10
+        if m == 0:
+            return np.zeros_like(x), np.zeros_like(x)
+        scale = np.where(x < p, m / p**2, m / (1 - p) ** 2)
+        return scale * (np.where(x < p, 0.0, 1 - 2 * p) + 2 * p * x - x * x), scale * 2 * (p - x)
+    lift, place = int(digits[0]) / 2, int(digits[1])
+    if digits[2] == "0":
+        r, k = _SIMPLE[place]
+        k *= lift / 6
+        front = x < r
+        camber = k * np.where(front, x**3 - 3 * r * x**2 + r**2 * (3 - r) * x, r**3 * (1 - x))
+        return camber, k * np.where(front, 3 * x**2 - 6 * r * x + r**2 * (3 - r), -(r**3))
+    r, k, ratio = _REFLEX[place]
+    k *= lift / 6
+    scale = np.where(x < r, 1.0, ratio)
+    constant = -ratio * (1 - r) ** 3 - r**3
+    return k * (scale * (x - r) ** 3 + constant * x + r**3), k * (3 * scale * (x - r) ** 2 + constant)

@@ -1,0 +1,109 @@
+"""Blunt trailing edges with their two corners rounded off.
+
+::
+
+    upper surface ----.       The fillet, a cubic Bezier curve, leaves the surface at `along` from the corner
+                       )      and meets the base at `across` from it: 0.9 of half the base, capped, and twice
+                       |      that along the surface. The rest of the outline stays.
+    base               |
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.geometry.spacing.size_field import GROWTH, limited_size
+
+_ACROSS = 0.9
+_ALONG = 2.0
+_CAP = 5e-3
+"""Largest part of the base that a fillet takes, in chords."""
+_PULL = 0.6
+"""Where the control points of the fillet are between its ends (0) and the corner (1)."""
+_POINTS = 24
+_TURN = 0.5
+"""Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
+_MORE = 1.3
+"""Factor up to which cells are added so that neither half has fewer than were asked for."""
+_NEAR = 0.1
+"""Chords from the corner within which the surface is given by points taken from the curve."""
+
+
+def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
+    """Return the curve of a blunt section with its trailing corners rounded, and where the rounding ends.
+
+    Parameters
+    ----------
+    curve : closed; its first point is the middle of the base, its second and its last are the corners.
+    chord : unit of the caps.
+
+    Returns
+    -------
+    tuple
+        the curve, from the middle of the base on as before, and the arc length at which it leaves the rounded
+        part; it comes back to it as far before its end.
+    """
+    length, half = curve.length, float(curve.knots[1])
+    across = min(_ACROSS * half, _CAP * chord)
+    along = _ALONG * across
+    near = along * 1.25 ** np.arange(1 + int(np.log(max(_NEAR * chord / along, 1.25)) / np.log(1.25)))
+    inner = (curve.knots > half + 1.2 * near[-1]) & (curve.knots < length - half - 1.2 * near[-1])
+    corner_arcs = curve.corners[(curve.corners > half + along) & (curve.corners < length - half - along)]
+    arcs = np.unique(
+        np.concatenate([half + near, curve.knots[inner], length - half - near[::-1], corner_arcs])
+    )
+    lower = _fillet(curve, half - across, half, half + along)
+    upper = _fillet(curve, length - half + across, length - half, length - half - along)[::-1]
+    points = np.concatenate([curve.points[:1], lower[:-1], curve.at(arcs), upper[1:]])
+    corners = len(lower) + np.searchsorted(arcs, corner_arcs)
+    rounded = Curve(points, closed=True, corners=corners)
+    return rounded, float(rounded.knots[len(lower)])
+
+
+def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
+    """Return distances (n + 1,) from the middle of a rounded base to its lower end, and to its upper end.
+
+    Nodes are shared out by length and by turning together, the latter averaged over two cells to each side:
+    without it the cells where the base turns most are the skewest of the grid, by half of what they turn. A
+    slanted base turns more at one end than at the other, and has more cells there.
+
+    Parameters
+    ----------
+    curve : of `rounded_base`.
+    end : arc length at which the rounding ends.
+    cells : of a half that turns by a right angle, at least 3.
+    """
+    per_cell = 64
+    n = per_cell * cells  # on either half; place n is the middle
+    s = np.linspace(-end, end, 2 * n + 1)
+    way = curve.tangent(s)
+    turn = np.abs(np.diff(np.unwrap(np.arctan2(way[:, 1], way[:, 0]))))
+    reach = 2 * per_cell
+    ends = [np.full(reach, part.mean()) for part in (turn[:per_cell], turn[-per_cell:])]
+    total = np.concatenate([[0.0], np.cumsum(np.concatenate([ends[0], turn, ends[1]]))])
+    around = total[2 * reach :] - total[: -2 * reach]  # two cells to each side of every place
+    turn = (around[1:] + around[:-1]) / (4 * reach)
+    weight = 1.0 + _TURN * turn * (2.0 * n / np.pi)
+    size = limited_size(s[1:], (1.0 + _TURN) * end / cells / weight, GROWTH)
+    count = np.concatenate([[0.0], np.cumsum(end / n / size)])
+    halves = count[n] - count[n::-1], count[n:] - count[n]
+    more = min(max(cells / float(min(halves[0][-1], halves[1][-1])), 1.0), _MORE)
+    upper, lower = (max(3, round(more * float(half[-1]))) for half in halves)
+    # halves of 12.6 and 15.4 make 13 and 15 cells without a step in size between them
+    places = np.arange(-upper, lower + 1.0)
+    knots, counts = np.array([-upper, 0.0, lower]), np.array([-halves[0][-1], 0.0, halves[1][-1]])
+    distances = np.interp(monotone_cubic(knots, counts, places), count - count[n], s)
+    distances[0], distances[upper], distances[-1] = -end, 0.0, end
+    return distances[upper:], -distances[upper::-1]
+
+
+def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
+    """Return points (n, 2) from the base to the surface, both ends on the curve."""
+    a, c, b = curve.at(np.array([begin, corner, end]))
+    p, q = a + _PULL * (c - a), b + _PULL * (c - b)
+    u = np.linspace(0.0, 1.0, _POINTS)[:, None]
+    v = 1.0 - u
+    return np.asarray(v**3 * a + 3 * v * v * u * p + 3 * v * u * u * q + u**3 * b)

@@ -1,0 +1,62 @@
+"""A body within a far field that the input draws too."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.laws import stretch_arcs
+from meshonet.geometry.spacing.sampling import Sampling
+
+
+class Annulus:
+    """A body and the closed curve around it.
+
+    Parameters
+    ----------
+    body : the inner curve.
+    outer : the outer one, clockwise.
+    name : what the input called it.
+    """
+
+    topology: Topology = "o"
+
+    def __init__(self, body: Shape, outer: Curve, name: str = "") -> None:
+        self._body, self._outer, self.name = body, outer, name
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return the O boundary: the body sampled as by itself, the outer curve in place of its circle.
+
+        Raises
+        ------
+        InputError
+            another topology, or a setting that the body has no use for.
+        """
+        if sampling.topology not in ("auto", "o"):
+            raise InputError("a body in a far field makes an O grid", "use --topology o", source=self.name)
+        found = self._body.boundary(replace(sampling, topology="o"))
+        north = self._around(found.north)
+        cut = straight(found.south[0], north[0], found.nj)
+        return replace(found, north=north, west=cut, east=cut)
+
+    def _around(self, circle: Floats) -> Floats:
+        """Return nodes (n, 2) of the outer curve in about equal steps, its corners among them.
+
+        They begin where the circle does, seen from its middle.
+        """
+        middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
+        wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
+        arcs = np.linspace(0.0, self._outer.length, 2049)[:-1]
+        off = self._outer.at(arcs) - middle
+        first = float(arcs[int(np.argmax(off @ wanted / np.hypot(*off.T)))])
+        steps = stretch_arcs(self._outer, first, first, len(circle) - 1, "uniform")
+        nodes = self._outer.at(steps % self._outer.length)
+        nodes[-1] = nodes[0]
+        return nodes

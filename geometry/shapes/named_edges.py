@@ -1,0 +1,80 @@
+"""Names carried over from the edges of a file to the parts of the boundary sampled from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+
+import numpy as np
+
+from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.sampling import Sampling
+
+_BLOCK = 1 << 22
+"""Distances worked out at a time."""
+
+
+class Labelled:
+    """A shape whose curve has names, which its boundaries get as parts.
+
+    Parameters
+    ----------
+    shape : what is sampled.
+    edges : (n, 2, 2) both ends of each straight edge of its curves.
+    names : (n,) name of each, empty for none.
+    """
+
+    def __init__(self, shape: Shape, edges: Floats, names: Sequence[str]) -> None:
+        self._shape, self._edges, self._names = shape, edges, tuple(names)
+
+    @property
+    def name(self) -> str:
+        """What the input called it."""
+        return self._shape.name
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return the boundary of the shape, each cell of it called as the edge nearest to its middle."""
+        boundary = self._shape.boundary(sampling)
+        sides: tuple[Side, ...] = SIDES if boundary.topology == "quad" else ("south", "north")
+        parts = []
+        for side in sides:
+            nodes = getattr(boundary, side)
+            near = self._nearest(0.5 * (nodes[1:] + nodes[:-1]))
+            reach = float(np.hypot(*np.ptp(self._edges.reshape(-1, 2), axis=0)))
+            names = [self._names[k] if gap < 0.01 * reach else "" for k, gap in near]
+            parts += runs(side, names)
+        return replace(boundary, parts=tuple(parts))
+
+    def _nearest(self, points: Floats) -> list[tuple[int, float]]:
+        """Return the nearest edge to each of `points` (m, 2), and its distance."""
+        found: list[tuple[int, float]] = []
+        start, along = self._edges[:, 0], self._edges[:, 1] - self._edges[:, 0]
+        square = np.maximum((along**2).sum(axis=1), 1e-300)
+        step = max(1, _BLOCK // len(self._edges))
+        for first in range(0, len(points), step):
+            off = points[first : first + step, None] - start
+            t = np.clip((off * along).sum(axis=-1) / square, 0.0, 1.0)
+            gap = np.hypot(*np.moveaxis(off - t[..., None] * along, -1, 0))
+            k = gap.argmin(axis=1)
+            found += zip(k.tolist(), gap[np.arange(len(k)), k].tolist(), strict=True)
+        return found
+
+
+def runs(side: Side, names: Sequence[str]) -> list[Part]:
+    """Return the parts of a side whose cells are called `names`; those without a name are called by the side.
+
+    Examples
+    --------
+    >>> runs("south", ["wall", "wall", "slot"])
+    [Part(name='wall', side='south', start=0, stop=2), Part(name='slot', side='south', start=2, stop=3)]
+    """
+    parts, start = [], 0
+    for name, cells in groupby(names):
+        stop = start + len(list(cells))
+        parts.append(Part(name or side, side, start, stop))
+        start = stop
+    return parts

@@ -1,0 +1,231 @@
+"""A closed curve that is no airfoil: the outline of a four-sided domain, or a body in a far field.
+
+::
+
+      D ---- north ---> C         quad: south is the edge that lies lowest, or starts at the first corner
+      ^                 ^         asked for; the others follow counter-clockwise.
+     west              east
+      |                 |         o: the nodes run clockwise from the rightmost place of the body, and the
+      A ---- south ---> B         far field is a circle around the middle of its box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices, turning
+from meshonet.geometry.polygon.self_intersection import check_outline
+from meshonet.geometry.shapes.airfoil.clean import check_extent
+from meshonet.geometry.shapes.far_field import o_boundary
+from meshonet.geometry.spacing.laws import stretch_arcs
+from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
+
+_LEAST_TURN = np.radians(30.0)
+"""A corner that turns less does not count as one of the four of a domain."""
+
+
+class Outline:
+    """A closed curve through points.
+
+    Parameters
+    ----------
+    points : (n, 2), at least 3, any unit, either way round; the first may be repeated at the end.
+    name : what the input called it.
+    corners : the four points that are corners of a quad domain, when the input says so; south-west first.
+    places : (n,) where each point stands in its source, for messages.
+
+    Raises
+    ------
+    InputError
+        too few points, repeated ones, an outline that crosses itself or has no area.
+    """
+
+    def __init__(
+        self,
+        points: Floats,
+        name: str = "",
+        corners: tuple[int, int, int, int] | None = None,
+        places: Sequence[str] = (),
+    ) -> None:
+        self.name, self.corners = name, corners
+        check_extent(float(np.ptp(points, axis=0).max()) if len(points) else 0.0)
+        self.curve = Curve(points, closed=True)
+        p = self.curve.points
+        if corners is not None:
+            self.curve = Curve(p, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
+        area, extent = polygon_area(p), float(np.ptp(p, axis=0).max())
+        if not _on_a_line(p, extent):  # such points run back on themselves, which says less
+            check_outline(p, places)
+        if abs(area) < 1e-9 * extent**2:
+            raise InputError("the outline has no area", "give the points around a domain or a body")
+        self._left = area > 0  # counter-clockwise
+
+    @property
+    def topology(self) -> Topology:
+        """What ``auto`` means for it: ``quad`` with four or more corners that point outwards, else ``o``."""
+        return "quad" if self.corners is not None or len(self._sharp()) >= 4 else "o"
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return the four edges of the domain, or the O boundary around the body.
+
+        Spacing is by arc length on each edge (around all of the body): ``uniform`` and ``auto`` in equal
+        steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``; around a smooth body
+        ``auto`` is ``conformal`` (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
+
+        Raises
+        ------
+        InputError
+            a topology or spacing that does not fit, corners that are no points of the outline.
+        """
+        if sampling.topology == "c":
+            raise InputError(
+                "topology c needs the trailing edge of an airfoil", "use o or quad", source=self.name
+            )
+        if sampling.le_spacing or sampling.te_spacing:
+            raise InputError("le_spacing and te_spacing need an airfoil", "leave them out", source=self.name)
+        if sampling.te != "auto":
+            raise InputError("only an airfoil has a trailing edge", "leave --te out", source=self.name)
+        if sampling.wake or sampling.wake_nodes:
+            raise InputError("only an airfoil has a wake", "leave --wake out", source=self.name)
+        if sampling.normalise:
+            raise InputError("only an airfoil can be normalised", "leave --normalise out", source=self.name)
+        topology = self.topology if sampling.topology == "auto" else sampling.topology
+        if sampling.corners is not None:
+            if sampling.topology == "o":
+                raise InputError(
+                    "an O grid has no corners",
+                    "leave --corners out, or add --topology quad",
+                    source=self.name,
+                )
+            topology = "quad"
+        if topology == "quad" and sampling.far_field is not None:
+            raise InputError(
+                "a four-sided domain has no far field",
+                "leave --far-field out, or add --topology o",
+                source=self.name,
+            )
+        if topology == "quad" and sampling.spacing == "conformal":
+            raise InputError("conformal spacing needs a body in a far field", "use another", source=self.name)
+        return self._quad(sampling) if topology == "quad" else self._body(sampling)
+
+    def _sharp(self) -> Indices:
+        """Return the corners that point outwards, in order along the curve."""
+        turn = turning(self.curve.points, closed=True) * (1.0 if self._left else -1.0)
+        index = self.curve.corner_index
+        return np.asarray(index[turn[index] > _LEAST_TURN])
+
+    def _quad(self, sampling: Sampling) -> Boundary:
+        ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
+        asked = sampling.corners or self.corners
+        corners = self._asked_corners(asked) if asked is not None else self._found_corners()
+        curve = Curve(
+            self.curve.points, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners))
+        )
+        knots = curve.knots[list(corners)]
+        edges = []
+        for k, count in enumerate((ni, nj, ni, nj)):
+            begin, end = knots[k], knots[(k + 1) % 4]
+            arcs = stretch_arcs(
+                curve, float(begin), float(end), count - 1, sampling.spacing, forward=self._left
+            )
+            edge = curve.at(arcs)
+            edge[0], edge[-1] = curve.points[corners[k]], curve.points[corners[(k + 1) % 4]]
+            edges.append(edge)
+        south, east, north, west = edges
+        return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
+
+    def _asked_corners(self, asked: tuple[int, int, int, int]) -> tuple[int, ...]:
+        """Return the corners asked for, counter-clockwise from the first."""
+        n = len(self.curve.points)
+        for corner in asked:
+            if not 0 <= corner < n:
+                raise InputError(
+                    f"corner {corner} of {n} points does not exist", f"use 0 to {n - 1}", source=self.name
+                )
+        ahead = [(corner - asked[0]) % n for corner in asked]
+        if ahead != sorted(ahead) and ahead[1:] != sorted(ahead[1:], reverse=True):
+            raise InputError(
+                f"corners {','.join(map(str, asked))} are not in order along the outline",
+                "sort them",
+                source=self.name,
+            )
+        ordered = [(asked[0] + step) % n for step in sorted(ahead)]
+        return tuple(ordered if self._left else [ordered[0], *ordered[:0:-1]])
+
+    def _found_corners(self) -> tuple[int, ...]:
+        """Return the four sharpest corners, counter-clockwise, the lowest edge between the first two.
+
+        Of equally sharp ones (to a degree) those nearest the corners of the box count; where there are not
+        four, those places of a round outline that reach farthest into the corners of the box.
+        """
+        p = self.curve.points
+        middle, half = 0.5 * (p.max(axis=0) + p.min(axis=0)), 0.5 * np.maximum(np.ptp(p, axis=0), 1e-300)
+        unit = (p - middle) / half
+        sharp = self._sharp()
+        if len(sharp) >= 4:
+            turn = np.round(np.degrees(np.abs(turning(p, closed=True)[sharp])))
+            inward = np.hypot(1.0 - np.abs(unit[sharp, 0]), 1.0 - np.abs(unit[sharp, 1]))
+            chosen = np.sort(sharp[np.lexsort((inward, -turn))[:4]])
+        else:
+            reach = [int(np.argmax(unit @ np.array(d))) for d in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            if len(set(reach)) < 4:
+                raise InputError("no four corners can be told", "name them with --corners", source=self.name)
+            chosen = np.sort(np.array(reach))
+        order = chosen if self._left else chosen[::-1]
+        knots, length = self.curve.knots, self.curve.length
+        heights = []
+        for k in range(4):
+            begin, end = (knots[order[k]], knots[order[(k + 1) % 4]])[:: 1 if self._left else -1]
+            places = begin + ((end - begin) % length) * np.linspace(0.0, 1.0, 33)
+            heights.append(self.curve.at(places)[:, 1].mean())
+        first = int(np.argmin(np.round(np.array(heights) / half[1], 9)))
+        return tuple(int(k) for k in np.roll(order, -first))
+
+    def _body(self, sampling: Sampling) -> Boundary:
+        ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
+        curve = self._clockwise()
+        wall = curve.at(self._around(curve, ni, sampling))
+        wall[-1] = wall[0]
+        box = np.stack([curve.points.min(axis=0), curve.points.max(axis=0)])
+        extent = float(np.ptp(box, axis=0).max())
+        return o_boundary(wall, nj, box.mean(axis=0), sampling.radius * extent, curve, self.name, extent)
+
+    def _clockwise(self) -> Curve:
+        """Return the curve clockwise from the rightmost place, the middle of a straight right side."""
+        order = np.arange(len(self.curve.points))[:: -1 if self._left else 1]
+        p, corner = self.curve.points[order], np.isin(order, self.curve.corner_index)
+        right = p[:, 0] >= p[:, 0].max() - 1e-9 * np.ptp(p[:, 0])
+        start = int(np.flatnonzero(right & ~np.roll(right, 1))[0]) if not right.all() else 0
+        p, corner, right = np.roll(p, -start, axis=0), np.roll(corner, -start), np.roll(right, -start)
+        if right[1]:  # from the topmost point of the right side down to its last
+            last = int(np.argmin(right)) - 1
+            middle = 0.5 * (p[0] + p[last])
+            inside = int(np.searchsorted(-p[: last + 1, 1], -middle[1]))
+            if p[inside, 1] != middle[1]:
+                p, corner = np.insert(p, inside, middle, axis=0), np.insert(corner, inside, False)
+            p, corner = np.roll(p, -inside, axis=0), np.roll(corner, -inside)
+        return Curve(p, closed=True, corners=np.flatnonzero(corner))
+
+    def _around(self, curve: Curve, ni: int, sampling: Sampling) -> Floats:
+        """Return the arc lengths (ni,) of the nodes around a body."""
+        if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
+            from meshonet.geometry.conformal.spacing import conformal_knots
+
+            try:
+                return conformal_knots(curve, curve.corners[curve.corners > 0], ni)
+            except InputError:
+                if sampling.spacing == "conformal":
+                    raise
+        return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing)
+
+
+def _on_a_line(points: Floats, extent: float) -> bool:
+    away = points - points[0]
+    u, v = away[int(np.argmax(np.abs(away).sum(axis=1)))]
+    return bool(np.abs(away[:, 0] * v - away[:, 1] * u).max() < 1e-12 * extent**2)

@@ -1,0 +1,38 @@
+"""What a geometry file holds before it is sampled."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.validate import check_edges
+from meshonet.geometry.spacing.sampling import Sampling
+
+
+class Shape(Protocol):
+    """Anything that can be sampled into a boundary: an airfoil, an outline, a boundary itself."""
+
+    @property
+    def name(self) -> str:
+        """What the input called it."""
+        ...
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return the four edges with the node counts and spacing of `sampling`."""
+        ...
+
+
+def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
+    """Return the boundary of `shape`, looked through before anything is made of it.
+
+    Raises
+    ------
+    InputError
+        what `shape` raises; edges that cross or touch, a body outside its far field.
+    """
+    if isinstance(shape, Boundary):
+        check_edges(shape)  # first as given, for the numbers of the user's own nodes
+    boundary = shape.boundary(sampling)
+    if boundary is not shape:
+        check_edges(boundary)
+    return boundary

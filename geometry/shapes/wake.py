@@ -1,0 +1,252 @@
+r"""C boundaries: the cut behind a sharp trailing edge, and the far field around both.
+
+::
+
+       .---------- north ----------+        south runs along the wake to the trailing edge, clockwise
+     /                             | east   around the wall, and back along the wake: one array used both
+    |      ___                     |        ways, so that its nodes coincide bitwise. West and east are the
+    |    <_____>-- - - wake - - - -+        outlet, straight; the far field is half a circle around the
+    |                              | west   middle of the body and a straight line on each side of the wake.
+     \                             |
+       '---------------------------+
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.patches import Part, c_parts, wake_nodes
+from meshonet.geometry.curves.curve import Curve, resample_like
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.far_field import straight
+from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_ratio
+from meshonet.geometry.spacing.sampling import TanhLaw
+
+C_EDGE = 1.6
+"""Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
+grows by more than 15 % each at 250 nodes."""
+_GROWTH = 1.135
+"""Growth of wake cells that is enough, and below which cells are better spent on the wall."""
+_SHARES = 0.2, 0.23
+"""Smallest and largest part of all cells that one side of the wake takes by itself."""
+_RAMP = 3.0
+"""Cells of a wake over which growth sets in: the lines that leave its first ones converge."""
+_LATE = 0.05
+"""Part by which cells at the outlet grow faster than on average, and those at the edge slower."""
+_STEEPEST = math.radians(34.0)
+"""Largest angle at which the wake leaves the trailing edge."""
+_LEAST_WALL = 5
+
+
+def wake_cells(ni: int, asked: int | None, first: float, length: float) -> int:
+    """Return the cells of the wake of a C grid with `ni` nodes along xi.
+
+    Parameters
+    ----------
+    ni : nodes of south, both sides of the wake included.
+    asked : nodes of the wake, the trailing edge included, or None for as many as cells that grow from `first`
+        on by 13 % need, between 12 and 22 % of all.
+    first : the cell at the trailing edge.
+    length : of the wake.
+
+    Raises
+    ------
+    InputError
+        no room for the wall.
+    """
+    if asked is not None:
+        cells = asked - 1
+    else:
+        least, most = (max(2, round(share * (ni - 1))) for share in _SHARES)
+        cells = min(max(cells_for_growth(first, length, _GROWTH), least), most)
+    if ni - 2 * cells < _LEAST_WALL:
+        raise InputError(
+            f"{ni} nodes along a C grid, twice {cells + 1} of them on the wake, leave too few for the wall",
+            f"use at least {2 * cells + _LEAST_WALL} or fewer wake nodes",
+        )
+    return cells
+
+
+def wake_axis(leading_edge: Floats, trailing_edge: Floats) -> Floats:
+    """Return the unit direction (2,) in which a wake ends: along x, or the chord where that is steeper."""
+    chord = np.asarray(trailing_edge - leading_edge)
+    if abs(chord[1]) <= abs(chord[0]):
+        return np.array([math.copysign(1.0, chord[0]), 0.0])
+    return np.asarray(chord / np.hypot(*chord))
+
+
+@dataclass(frozen=True)
+class Wake:
+    """The line that a wake follows: from a trailing edge along the bisector of its wedge, then the axis.
+
+    In coordinates x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with b the angle of the
+    bisector (at most 34°) and l the relaxation length.
+
+    Parameters
+    ----------
+    begin : (2,) the trailing edge.
+    axis : (2,) unit direction of the far end.
+    slope : tan(b).
+    relaxation : l.
+    length : of the wake along the axis.
+    """
+
+    begin: Floats
+    axis: Floats
+    slope: float
+    relaxation: float
+    length: float
+
+    @classmethod
+    def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Wake:
+        """Return the wake behind a closed wall (n, 2) which begins and ends at its sharp trailing edge."""
+        upper, lower = wall[0] - wall[-2], wall[0] - wall[1]
+        along = upper / np.hypot(*upper) + lower / np.hypot(*lower)
+        angle = math.atan2(axis[0] * along[1] - axis[1] * along[0], float(axis @ along))
+        slope = math.tan(min(max(angle, -_STEEPEST), _STEEPEST))
+        return cls(wall[0], axis, slope, chord, length)
+
+    def nodes(self, first: float, cells: int) -> Floats:
+        """Return nodes (cells + 1, 2) from the trailing edge on, growing from `first` (`_growing`)."""
+        x = _growing(first / math.hypot(1.0, self.slope), self.length, cells)
+        x *= self.length / x[-1]
+        y = -self.slope * self.relaxation * np.expm1(-x / self.relaxation)
+        nodes = self.begin + x[:, None] * self.axis + y[:, None] * np.array([-self.axis[1], self.axis[0]])
+        nodes[0] = self.begin
+        return np.asarray(nodes)
+
+
+def _growing(first: float, length: float, cells: int) -> Floats:
+    """Return distances (cells + 1,) in units of `first`, of growing cells that fill `length`.
+
+    The logarithm of a cell's size grows by g (1 - exp(-k/m)) (1 + b (2k/n - 1)) at cell k of n; g is found by
+    Newton's method, from above.
+    """
+    if first * cells >= length or cells < 2:
+        return np.arange(cells + 1.0)
+    try:
+        growth_ratio(first, length, cells)
+    except InputError:
+        raise InputError(
+            f"{cells} cells from {first:.3g} on along a wake of {length:.3g} would grow by more than "
+            f"{LARGEST:g} each",
+            "use more nodes, --wake-nodes or a larger --te-spacing",
+        ) from None
+    k = np.arange(1.0, cells)
+    shape = np.append(0.0, np.cumsum(-np.expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
+    g = math.log(length / first) / shape[-1]
+    for _ in range(100):
+        sizes = np.exp(g * shape)
+        change = (float(sizes.sum()) - length / first) / float(shape @ sizes)
+        g -= change
+        if change < 1e-14:
+            break
+    return np.concatenate([[0.0], np.cumsum(np.exp(g * shape))])
+
+
+def c_boundary(
+    wall: Floats,
+    nj: int,
+    wake: Floats,
+    centre: Floats,
+    radius: float,
+    *,
+    axis: Floats,
+    curve: Curve | None = None,
+    name: str = "",
+    chord: float = 0.0,
+    notes: tuple[str, ...] = (),
+) -> Boundary:
+    """Return the C boundary of a closed wall and the wake behind it.
+
+    Parameters
+    ----------
+    wall : (n, 2) clockwise from the sharp trailing edge, which is repeated at the end.
+    nj : nodes from the wall to the far field.
+    wake : (m, 2) from the trailing edge to the outlet.
+    centre, radius : of the half circle in front.
+    axis : (2,) unit direction of the wake's far end.
+    curve, name, chord, notes : see `Boundary`.
+
+    Raises
+    ------
+    InputError
+        the wake leaves the far field, or crosses the wall.
+    """
+    south = np.concatenate([wake[:0:-1], wall[:-1], wake])
+    normal = np.array([-axis[1], axis[0]])
+    behind = float((wake[-1] - centre) @ axis)
+    if behind <= 0 or abs(float((wake[-1] - centre) @ normal)) >= radius:
+        raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
+    north = _far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, behind)
+    ni = len(south)
+    west, east = straight(south[0], north[0], nj), straight(south[-1], north[-1], nj)
+    return Boundary(
+        south,
+        north,
+        west,
+        east,
+        topology="c",
+        parts=c_parts(ni, nj, len(wake)),
+        name=name,
+        wall=curve,
+        chord=chord,
+        notes=notes,
+    )
+
+
+def resampled(boundary: Boundary, ni: int, nj: int) -> Boundary:
+    """Return a C boundary with other counts, shared out over wall and wake as they are.
+
+    Raises
+    ------
+    InputError
+        no room for the wall.
+    """
+    had = max(wake_nodes(boundary.south), 1) - 1
+    wake = max(round(had * (ni - 1) / (boundary.ni - 1)), 1) if had else 0
+    cells = wake, ni - 1 - 2 * wake, wake
+    if cells[1] < 2:
+        raise InputError(f"{ni} nodes along a C boundary with a wake", f"use at least {2 * wake + 3}")
+    ends, places = (0, had, boundary.ni - 1 - had, boundary.ni - 1), (0, wake, ni - 1 - wake, ni - 1)
+
+    def along(side: Floats) -> Floats:
+        pieces = [side[a : b + 1] for a, b in pairwise(ends)]
+        made = [resample_like(p, n + 1, closed=False) for p, n in zip(pieces, cells, strict=True) if n]
+        return np.concatenate([*(part[:-1] for part in made[:-1]), made[-1]])
+
+    def moved(part: Part) -> Part:
+        law = (ends, places) if part.side in ("south", "north") else ((0, boundary.nj - 1), (0, nj - 1))
+        start, stop = (round(float(np.interp(k, *law))) for k in (part.start, part.stop))
+        start = min(start, law[1][-1] - 1)
+        return replace(part, start=start, stop=max(stop, start + 1))
+
+    south, north = along(boundary.south), along(boundary.north)
+    south[ni - 1 - wake :] = south[: wake + 1][::-1]
+    west, east = (resample_like(side, nj, closed=False) for side in (boundary.west, boundary.east))
+    parts = tuple(moved(part) for part in boundary.parts)
+    return replace(boundary, south=south, north=north, west=west, east=east, parts=parts, sensors=None)
+
+
+def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
+    """Return nodes of the far field (body + 2 wake + 1, 2), clockwise from below the outlet.
+
+    Equal steps around the front; behind it they grow or shrink evenly to the outlet.
+    """
+    normal = np.array([-axis[1], axis[0]])
+    angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
+    front = centre + radius * (np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * normal)
+    front[[0, -1]] = centre - radius * normal, centre + radius * normal
+    step = min(np.pi * radius / body, 0.9 * behind)
+    mean = behind / wake
+    s = np.linspace(0.0, 1.0, wake + 1)
+    if wake > 1:
+        s = TanhLaw(min(max(step / mean, 0.05), 20.0), max(2.0 - step / mean, 0.2))(s)
+    side = behind * s[1:, None] * axis
+    return np.concatenate([front[0] + side[::-1], front, front[-1] + side])

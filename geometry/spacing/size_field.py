@@ -1,0 +1,210 @@
+"""Cell sizes that follow the shape: small at edges and where the curve turns, growing slowly in between."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.spacing.sampling import monotone_cubic
+
+GROWTH = math.log(1.10)
+"""How fast a cell may grow along the wall: by 10 % from one to the next."""
+HURRY = 1.3
+"""Factor by which it may grow faster where nodes are few, before curvature and the nose alone get fewer."""
+_SCARCE = 5.0
+"""Factor from which on, curvature and the nose getting that much fewer, cells grow faster again."""
+_RAMP = 3.0
+"""Cells over which growth sets in behind a trailing edge whose step is asked for."""
+_EDGE = 0.025
+"""Part of the wall, at either end, where curvature asks for no less than the step of the edge."""
+TURN = math.radians(3.0)
+"""How much of the curve's turning one cell may take."""
+_WINDOW = 2e-3
+"""Chords over which curvature is averaged, so that the last digit of the points does not count."""
+_SAMPLES = 1600
+_SCARCEST = math.log(64.0)
+"""Logarithm of the largest factor by which curvature and the leading edge get less."""
+_REACH = 8.0
+"""Cells over which the field is bent to meet a step asked for."""
+
+
+def arcs_by_curvature(
+    curve: Curve,
+    stations: tuple[float, float, float],
+    cells: int,
+    *,
+    chord: float,
+    steps: tuple[float, float],
+    exact: tuple[bool, bool],
+    hurried: bool = True,
+) -> Floats:
+    """Return arc lengths (cells + 1,) from one end of the trailing edge round the nose to the other.
+
+    The size field h is the smooth least of four terms, 1/h⁴ = Σ 1/hₖ⁴: a step at the trailing and one at the
+    leading edge that grow with the distance from it, `TURN` over the curvature limited to the same growth,
+    and a largest cell chosen so that the integral of ds/h is the number of cells. With too few cells for
+    the first three, curvature and the leading edge get less, and the growth is up to `HURRY` times as fast
+    where it is `hurried`; where that is not enough, all are scaled up together.
+
+    Parameters
+    ----------
+    curve : the wall.
+    stations : arc lengths of the lower end, of the nose and of the upper end.
+    cells : wanted.
+    chord : unit of the averaging window.
+    steps : cells at the trailing and at the leading edge.
+    exact : whether these are to be met, to 0.5 % where the field can be bent so far.
+    hurried : cells may grow faster where nodes are few, as in C grids, whose wake takes half of them.
+    """
+    lower, nose, upper = stations
+    s = _samples(stations, steps)
+    size = TURN / _bend(curve, s, chord)
+    hurry = HURRY if hurried else 1.0
+    known = _affordable(cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer, hurry))
+    mend, places = np.zeros(2), np.arange(cells + 1.0)
+    away = np.minimum(s - lower, upper - s), np.abs(s - nose)
+    for _ in range(12):
+        relief = np.exp(
+            sum(m * np.exp(-d / (_REACH * step)) for m, d, step in zip(mend, away, steps, strict=True))
+        )
+        density = _density(s, known, relief, cells)
+        count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
+        arcs = monotone_cubic(count * (cells / count[-1]), s, places)
+        arcs[0], arcs[-1] = lower, upper
+        width = np.diff(arcs)
+        got = 0.5 * (width[0] + width[-1]), width[np.searchsorted(arcs, nose) - 1]
+        error = np.where(exact, np.log(np.array(steps) / np.array(got)), 0.0)
+        if np.abs(error).max() < 5e-3:
+            break
+        mend += error
+    return arcs
+
+
+def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
+    """Return distances (cells + 1,) along a closed curve from `begin` on, following curvature alone.
+
+    Parameters
+    ----------
+    curve : closed.
+    begin : arc length to start from.
+    way : length to go, negative against the curve's direction.
+    cells : wanted.
+    """
+    s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
+    bend = _bend(curve, begin + np.sign(way) * s, curve.length)
+    known = _quartic(limited_size(s, TURN / bend, GROWTH))
+    density = _density(s, known, np.ones_like(s), cells)
+    count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
+    distance = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
+    distance[0], distance[-1] = 0.0, abs(way)
+    return distance
+
+
+def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -> Floats:
+    """Return arc lengths from the lower to the upper end, close together where the steps are small."""
+    lower, nose, upper = stations
+    half = 0.5 * (upper - lower)
+    te, le = (np.geomspace(0.1 * step, half, _SAMPLES // 8) for step in steps)
+    even = np.linspace(lower, upper, _SAMPLES // 2)
+    every = np.concatenate([even, lower + te, upper - te, nose + le, nose - le, [nose]])
+    s = np.unique(every[(every >= lower) & (every <= upper)])
+    kept = s[np.concatenate([[True], np.diff(s) > 1e-9 * half])]
+    kept[-1] = upper
+    return kept
+
+
+def _bend(curve: Curve, s: Floats, chord: float) -> Floats:
+    """Return the absolute curvature at arc lengths s, averaged over `_WINDOW`, at least 0.01 a chord."""
+    low, high = min(s[0], s[-1]), max(s[0], s[-1])
+    t = np.linspace(low, high, 2 * _SAMPLES)
+    d = curve.tangent(np.clip(t, low + 1e-9 * (high - low), high - 1e-9 * (high - low)))
+    angle = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
+    before, after = np.maximum(s - _WINDOW * chord, low), np.minimum(s + _WINDOW * chord, high)
+    turned = np.abs(np.interp(after, t, angle) - np.interp(before, t, angle))
+    return np.asarray(np.maximum(turned / (after - before), 1e-2 / chord))
+
+
+def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floats:
+    """Return `known` (the sum of 1/h⁴ at s) with the least factor, 1 or more, that `cells` suffice for."""
+    goal, width = math.log(cells), 0.5 * np.diff(s)
+
+    def excess(log_factor: float) -> tuple[float, Floats]:
+        found = known(math.exp(log_factor))
+        density = np.sqrt(np.sqrt(found))
+        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, found
+
+    low, (above, found) = 0.0, excess(0.0)
+    high, (below, at_most) = _SCARCEST, (0.0, found) if above <= 0 else excess(_SCARCEST)
+    if above <= 0 or below >= 0:
+        return found if above <= 0 else at_most
+    for _ in range(30):  # Illinois method
+        middle = (low * below - high * above) / (below - above)
+        value, found = excess(middle)
+        if abs(value) < 1e-3:
+            break
+        if value > 0:
+            low, above, below = middle, value, 0.5 * below
+        else:
+            high, below, above = middle, value, 0.5 * above
+    return found
+
+
+def _known(
+    s: Floats,
+    size: Floats,
+    stations: tuple[float, float, float],
+    steps: tuple[float, float],
+    ramp: bool,
+    fewer: float,
+    hurry: float,
+) -> Floats:
+    """Return the sum of 1/h⁴ over the terms of both edges and of curvature, which alone gives `size`.
+
+    `fewer` is the factor by which size and the leading edge's step are larger, `hurry` that by which growth
+    is faster at the most before they are much larger. With `ramp`, growth sets in slowly behind the trailing
+    edge: the lines that leave there converge, and what is beside them does not.
+    """
+    lower, nose, upper = stations
+    growth = GROWTH * max(min(fewer, hurry), fewer / _SCARCE)
+    away = np.minimum(s - lower, upper - s)
+    size = fewer * size
+    near = away < _EDGE * (upper - lower)
+    size[near] = np.maximum(size[near], steps[0])
+    size[[0, -1]] = size[[0, -1]].min()  # the two surfaces meet here
+    size = limited_size(s, size, growth)
+    reach = _RAMP * steps[0]
+    late = reach * -np.expm1(-away / reach) if ramp else 0.0
+    trailing = steps[0] + growth * (away - late)
+    leading = fewer * steps[1] + growth * np.abs(s - nose)
+    return np.asarray(_quartic(trailing) + _quartic(leading) + _quartic(size))
+
+
+def _quartic(h: Floats) -> Floats:
+    """Return 1/h⁴."""
+    square = h * h
+    return np.asarray(1.0 / (square * square))
+
+
+def limited_size(s: Floats, size: Floats, growth: float) -> Floats:
+    """Return h(s) = min over s' of size(s') + growth |s - s'|, by one pass each way."""
+    size = np.minimum.accumulate(size - growth * s) + growth * s
+    return np.asarray(np.minimum.accumulate((size + growth * s)[::-1])[::-1] - growth * s)
+
+
+def _density(s: Floats, known: Floats, relief: Floats, cells: int) -> Floats:
+    """Return 1/h with the largest cell that makes its integral the number of cells."""
+    width, weight = 0.5 * np.diff(s), relief**-4
+    share = np.concatenate([width, [0.0]]) + np.concatenate([[0.0], width])
+    more = 0.0  # of the largest cell, 1/h⁴
+    for _ in range(60):
+        total = (known + more) * weight
+        density = np.sqrt(np.sqrt(total))
+        lack = cells - float(share @ density)
+        if lack < 1e-9 * cells:
+            break
+        more += lack / float(share @ (0.25 * weight * density / total))  # Newton's, which never overshoots
+    return np.asarray(density)
