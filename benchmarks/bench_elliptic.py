@@ -27,10 +27,10 @@ from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
-from meshonet.solvers.guard import guard
-from meshonet.solvers.walls.heights import Heights
-from meshonet.solvers.walls.slide import slide_walls
-from meshonet.solvers.walls.spread import spread, worst_first_cell
+from meshonet.solvers.layers.first_cells import Heights
+from meshonet.solvers.layers.redistribute import spread, worst_first_cell
+from meshonet.solvers.layers.slide_nodes import slide_walls
+from meshonet.solvers.pipeline.fallback import guard
 
 Result = TypeVar("Result")
 

@@ -31,10 +31,10 @@ from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.automatic import solve_automatic
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.hyperbolic import hyperbolic
-from meshonet.solvers.variational.solve import solve as minimise
+from meshonet.solvers.energy.variational import solve as minimise
+from meshonet.solvers.hyperbolic.march import hyperbolic
+from meshonet.solvers.pipeline.select import solve_automatic
 
 SEED = 20_000_003
 REPEAT = 3

@@ -36,14 +36,14 @@ from meshonet.geometry.families.family import FAMILIES
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.elliptic.solve import solve as winslow
-from meshonet.solvers.guard import guard
-from meshonet.solvers.neural.harmonic import extend
+from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.operator import infer
+from meshonet.solvers.pipeline.coarse import solve_coarse
+from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.variational.solve import solve as variational
 
 OURS = "**infer (base, polish auto)**"
 SOLVER = "multigrid Winslow"

@@ -34,14 +34,14 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.quads.edges import Edges
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.operator import evaluate, near_grids
+from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.variational.solve import solve as variational
 
 NEAR = "4 Picard steps, 33"
 

@@ -16,7 +16,7 @@ from functools import partial
 import numpy as np
 
 from meshonet.geometry.families.family import family
-from meshonet.solvers.tfi import tfi
+from meshonet.solvers.algebraic.tfi import tfi
 
 
 def median_seconds(act: Callable[[], object], repeats: int) -> float:

@@ -18,8 +18,8 @@ from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded, per_cell
 from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.variational.solve import solve as variational
 
 Way = Callable[[Boundary], Solution]
 NEAR = 1.5

@@ -17,7 +17,7 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.quality.measure import count_folded, measure, worst_cells
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.guard import guard
+from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.progress import listening
 from meshonet.solvers.solution import Solution
 from meshonet_cli.batch import Destination, items
@@ -31,7 +31,7 @@ from meshonet_cli.together import Sampled, Together, shared
 from meshonet_cli.watching import Live, Recorder, Row, check_file, write
 
 if TYPE_CHECKING:
-    from meshonet.solvers.tfi import Blending
+    from meshonet.solvers.algebraic.tfi import Blending
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Recipe:
         """Return what there is to tell of first cells that the guard changed."""
         if not any(key == "wall_spacing" or key.startswith("spacing_") for key in grid.provenance):
             return ()
-        from meshonet.solvers.walls.spread import worst_first_cell
+        from meshonet.solvers.layers.redistribute import worst_first_cell
 
         error = worst_first_cell(grid)
         if error < 1e-8:
@@ -213,7 +213,7 @@ class Clock:
 
 def interpolated(edges: Boundary, blending: Blending) -> Solution:
     """Return the transfinite interpolation of `edges` as a solution."""
-    from meshonet.solvers.tfi import tfi
+    from meshonet.solvers.algebraic.tfi import tfi
 
     begun = time.perf_counter()
     grid = tfi(edges, blending)

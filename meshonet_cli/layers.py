@@ -131,7 +131,7 @@ def spacing_along(layers: Layers | None, asked: SpacingName) -> SpacingName:
 def march(boundary: Boundary, layers: Layers, constant: int = 1) -> Solution:
     """Return the grid marched from the wall of `boundary`, with `constant` equal first layers."""
     from meshonet.geometry.errors import InputError
-    from meshonet.solvers.hyperbolic import check_layers, hyperbolic
+    from meshonet.solvers.hyperbolic.march import check_layers, hyperbolic
 
     try:
         check_layers(layers.wall_spacing, layers.growth)

@@ -118,7 +118,7 @@ def _train_strip(
     sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
 ) -> dict[str, Any]:
     from meshonet.solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
-    from meshonet.solvers.neural.strips import solve_strips
+    from meshonet.solvers.neural.strip_dataset import solve_strips
 
     if run.settings:
         raise InputError("the strip operator takes no --set", "leave it out, or choose another --model")

@@ -27,23 +27,23 @@ def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0
         coarse and refine together; coarse and a grid to start from: that has the counts of the result.
     """
     if refine:
-        from meshonet.solvers.refine import solve_refined
+        from meshonet.solvers.pipeline.sequence import solve_refined
 
         if isinstance(coarse, int):
             raise InputError("--coarse and --refine both solve on fewer nodes first", "give one of them")
         return partial(solve_refined, method=method, levels=refine)
     settings: dict[str, Any] = method.keywords
     if coarse == "auto" and not settings:
-        from meshonet.solvers.automatic import solve_automatic
+        from meshonet.solvers.pipeline.select import solve_automatic
 
         return partial(solve_automatic, method=method, name=name)
     if not isinstance(coarse, int):
         return method
     if settings.get("initial") is not None:
         raise InputError("a coarse solve has no use for a grid to start from", "drop --initial or --coarse")
-    from meshonet.solvers.coarse import solve_coarse
     from meshonet.solvers.elliptic.solve import solve_thomas_middlecoff
     from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
+    from meshonet.solvers.pipeline.coarse import solve_coarse
 
     # the sweeps know no control functions
     uncontrolled = method.func not in (solve_thomas_middlecoff, solve_steger_sorenson)
@@ -53,7 +53,7 @@ def at_any_resolution(method: partial[Solution], coarse: Coarse, refine: int = 0
 def solver_of(name: str) -> Callable[..., Solution]:
     """Return the solver behind a value of ``--method``: Winslow's where that is no other one's."""
     if name == "variational":
-        from meshonet.solvers.variational.solve import solve as minimise
+        from meshonet.solvers.energy.variational import solve as minimise
 
         return minimise
     if name == "steger-sorenson":

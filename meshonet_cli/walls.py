@@ -11,8 +11,8 @@ import typer
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.errors import InputError
+    from meshonet.solvers.layers.first_cells import Heights
     from meshonet.solvers.solution import Solution
-    from meshonet.solvers.walls.heights import Heights
     from meshonet_cli.layers import Layers
 
 SIDES = ("south", "north", "west", "east")
@@ -183,8 +183,8 @@ class WithWalls:
         from time import perf_counter
 
         from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401  (loaded before the clock starts)
+        from meshonet.solvers.layers.redistribute import spread
         from meshonet.solvers.walls import slide  # noqa: F401
-        from meshonet.solvers.walls.spread import spread
 
         begun = perf_counter()
         solution = self._solved(boundary, heights)
@@ -211,8 +211,8 @@ class WithWalls:
         if channel:
             self._refuse(("--model", "--polish", "--answer"), "a channel with given wall nodes")
         fewer = getattr(self._whole_function(), "__module__", "") in (
-            "meshonet.solvers.coarse",
-            "meshonet.solvers.refine",
+            "meshonet.solvers.pipeline.coarse",
+            "meshonet.solvers.pipeline.sequence",
         )
         if (channel or self.name == "steger-sorenson") and not fewer:
             return self._turned(boundary, heights)
@@ -222,7 +222,7 @@ class WithWalls:
         """Return the method, solving on all nodes whatever their number."""
         from functools import partial
 
-        from meshonet.solvers.automatic import solve_automatic
+        from meshonet.solvers.pipeline.select import solve_automatic
 
         automatic = isinstance(self.method, partial) and self.method.func is solve_automatic
         return self.method.keywords["method"] if automatic else self.method  # type: ignore[attr-defined]
@@ -231,7 +231,7 @@ class WithWalls:
         return getattr(self._whole(), "func", None)
 
     def _slid(self, boundary: Boundary) -> Solution:
-        from meshonet.solvers.walls.slide import slide_walls
+        from meshonet.solvers.layers.slide_nodes import slide_walls
 
         slid, controls = slide_walls(boundary)
         told = "wall nodes slid along south and north"
@@ -274,7 +274,7 @@ class WithWalls:
         A wall spacing is in chords around a body and off south and north, in its own unit, in a four-sided
         domain. A y+ gives chords; the chord of a four-sided domain is the extent of its south side.
         """
-        from meshonet.solvers.walls.heights import Heights
+        from meshonet.solvers.layers.first_cells import Heights
 
         found: dict[str, float] = {}
         if self.layers is not None:

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.solvers.algebraic.tfi import Four, interpolate, parameters
 from meshonet.solvers.elliptic.coarsening import Direction, uniform
 from meshonet.solvers.elliptic.control import Controls
-from meshonet.solvers.elliptic.patches import Patch, patches, reentrant
-from meshonet.solvers.tfi import Four, interpolate, parameters
+from meshonet.solvers.elliptic.corner_relaxation import Patch, patches, reentrant
 from solvers.elliptic._multigrid import Level, scratch_size
 
 

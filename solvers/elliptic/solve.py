@@ -65,7 +65,7 @@ def solve(
     -------
     Solution
         the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be folded
-        at re-entrant corners: see `meshonet.solvers.guard`.
+        at re-entrant corners: see `meshonet.solvers.pipeline.fallback`.
 
     Raises
     ------

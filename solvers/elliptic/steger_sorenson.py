@@ -7,7 +7,7 @@
                              +------- until angles are right -------+    first on few nodes, then on all
 
 The sources are those of `meshonet.solvers.elliptic.wall_control`. They can hold first cells that are somewhat thinner
-than even rows; where thinner ones are asked for, the solver goes part of the way and `meshonet.solvers.walls.spread`
+than even rows; where thinner ones are asked for, the solver goes part of the way and `meshonet.solvers.layers.redistribute`
 the rest, along lines that by then leave the wall as they should.
 """
 
@@ -24,11 +24,11 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.coarse import evaluate, thinned
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import check_settings, solve
 from meshonet.solvers.elliptic.wall_control import ControlledEdge, layers_at
+from meshonet.solvers.pipeline.coarse import evaluate, thinned
 from meshonet.solvers.solution import Solution
 
 FEW = 129
@@ -48,7 +48,7 @@ CLOSE = 0.002
 
 THINNEST = 0.5
 """Thinnest first cells that sources are to hold, in those of Winslow's solution; below that
-`meshonet.solvers.walls.spread` takes over."""
+`meshonet.solvers.layers.redistribute` takes over."""
 
 RELAXATION = 0.5
 """Part of the linear answer by which sources are corrected."""

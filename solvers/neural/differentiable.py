@@ -12,12 +12,12 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.bisector import LARGEST, fading, shifts
+from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
+from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.strip import COLUMNS, MODES, across, interpolation, smoothing, wavenumbers
 from meshonet.solvers.neural.encoding import DEPTHS, SLOPE
-from meshonet.solvers.neural.evaluate import StripGrid
 from meshonet.solvers.neural.lifted import Lifted, lifted
 from meshonet.solvers.neural.models.strip_fno import StripFNO
-from meshonet.solvers.neural.strip import COLUMNS, MODES, across, interpolation, smoothing, wavenumbers
 from meshonet.solvers.neural.tensors import check_sides
 from meshonet.solvers.neural.weights import load_model
 

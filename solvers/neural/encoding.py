@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.solvers.neural.strip import MODES, decay, to_columns, wavenumbers
+from meshonet.solvers.conformal.strip import MODES, decay, to_columns, wavenumbers
 
 VERSION = 1
 DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta at which the network sees the harmonic base

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.solvers.conformal.strip import across, harmonic, picard
 from meshonet.solvers.neural.encoding import VERSION
-from meshonet.solvers.neural.strip import across, harmonic, picard
-from meshonet.solvers.neural.strips import Strips
+from meshonet.solvers.neural.strip_dataset import Strips
 from meshonet.solvers.neural.weights import KIND, write_tensors
 
 QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}

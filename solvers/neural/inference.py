@@ -20,7 +20,7 @@ from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
     from meshonet.solvers.neural.devices import Device
-    from meshonet.solvers.neural.trained import Trained
+    from meshonet.solvers.neural.model_file import Trained
 
 FOUR_SIDED = "quad-general"
 """Model for four-sided domains when none is named and a network is wanted: steps after it, or a device."""
@@ -68,7 +68,7 @@ def infer(
         from meshonet.solvers.neural.quads.inference import infer_quads
 
         return infer_quads([boundary], model, polish)[0]
-    from meshonet.solvers.neural.trained import load_trained
+    from meshonet.solvers.neural.model_file import load_trained
 
     trained = load_trained(model_path(model))
     begun = time.perf_counter()
@@ -154,7 +154,7 @@ def answered(trained: Trained, boundary: Boundary, *, paste: bool = True) -> tup
     """
     found = trained.difference(boundary)
     if trained.model.base == "harmonic":
-        from meshonet.solvers.neural.harmonic import extend
+        from meshonet.solvers.conformal.harmonic import extend
 
         found += extend(boundary)
     nodes = as_planar(found)

@@ -26,9 +26,9 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.mirror import Axis, handedness
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.neural.bisector import halve_corners
-from meshonet.solvers.neural.evaluate import StripGrid
-from meshonet.solvers.neural.strip import MODES, across, harmonic, modes, picard
+from meshonet.solvers.conformal.bisector import halve_corners
+from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.strip import MODES, across, harmonic, modes, picard
 from meshonet.solvers.neural.weights import Model, load_model
 from meshonet.solvers.solution import Solution
 
@@ -68,8 +68,8 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
         a model that does not exist or cannot be read.
     """
     if boundary.topology != "o":
-        from meshonet.solvers.automatic import solve_automatic
-        from meshonet.solvers.variational.solve import solve
+        from meshonet.solvers.energy.variational import solve
+        from meshonet.solvers.pipeline.select import solve_automatic
 
         if model is not None:
             told = f"model {model} makes o grids, and this boundary is {boundary.topology}"
@@ -251,11 +251,11 @@ def _evaluated(boundary: Boundary, found: Walls, c: Complexes) -> tuple[Floats, 
 
 def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:
     """Return the grid by `hole-o` of a compact body, None where that has folds."""
-    from meshonet.solvers.coarse import thinned
     from meshonet.solvers.neural.quads.around import compact
     from meshonet.solvers.neural.quads.encoding import LATENT
     from meshonet.solvers.neural.quads.inference import infer_quads
     from meshonet.solvers.neural.quads.unrolled import AROUND
+    from meshonet.solvers.pipeline.coarse import thinned
 
     if boundary.ni < LATENT or not compact(boundary):
         return None

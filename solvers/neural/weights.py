@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.conformal.strip import LEVELS, smoothing
 from meshonet.solvers.neural.encoding import CHANNELS, SCALARS, VERSION, decode, encode
 from meshonet.solvers.neural.network import Reals, StripNetwork, misfit
-from meshonet.solvers.neural.strip import LEVELS, smoothing
 
 DEFAULT = "airfoil-o"
 FOLDER = Path(__file__).parent / "pretrained"

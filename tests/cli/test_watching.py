@@ -18,8 +18,8 @@ from command_line import ROOT, Meshonet, dataset, ellipse
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.energy.functional import Weights, aspect_of, energy
 from meshonet.solvers.progress import Cycle, listening, tell
-from meshonet.solvers.variational.functional import Weights, aspect_of, energy
 from meshonet_cli.watching import COLUMNS, Live
 
 

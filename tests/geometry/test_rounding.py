@@ -11,7 +11,7 @@ from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.hyperbolic.march import hyperbolic
 
 
 def dense(curve: Curve) -> np.ndarray:

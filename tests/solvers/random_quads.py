@@ -9,7 +9,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
-from meshonet.solvers.tfi import tfi
+from meshonet.solvers.algebraic.tfi import tfi
 
 FINE = 801
 

@@ -7,10 +7,10 @@ from solver_shapes import arch
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers import acute
-from meshonet.solvers.coarse import evaluate, thinned
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.variational.solve import solve
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.energy.variational import solve
+from meshonet.solvers.pipeline.coarse import evaluate, thinned
 
 
 def spike(degrees: float, n: int) -> Boundary:

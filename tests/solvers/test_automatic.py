@@ -7,9 +7,9 @@ from solver_shapes import arch, folded, hole
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.automatic import solve_automatic
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.pipeline.select import solve_automatic
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.tfi import tfi
 
 
 def spied(seen: list[tuple[int, int]]) -> Callable[[Boundary], Solution]:

@@ -10,10 +10,10 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.winslow import residual
-from meshonet.solvers.tfi import tfi
+from meshonet.solvers.pipeline.coarse import solve_coarse
 
 METHODS: dict[str, Callable[[Boundary], Grid]] = {
     "tfi": tfi,

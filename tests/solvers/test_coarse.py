@@ -11,10 +11,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import measure
-from meshonet.solvers.coarse import divided, evaluate, solve_coarse, thinned
 from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.energy.variational import solve as variational
+from meshonet.solvers.pipeline.coarse import divided, evaluate, solve_coarse, thinned
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.variational.solve import solve as variational
 
 
 def error(nodes: np.ndarray, reference: np.ndarray) -> float:
@@ -125,7 +125,7 @@ def test_straight_lines_keep_valid_cells_valid() -> None:
 
 
 def test_what_kinks_fold_sweeps_unfold() -> None:
-    from meshonet.solvers.variational.solve import solve as minimise
+    from meshonet.solvers.energy.variational import solve as minimise
 
     boundary = wrench(400, 400)
     assert folded(solve_coarse(boundary, minimise, 65, smooth=True).grid.nodes) == 0

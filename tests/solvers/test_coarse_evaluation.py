@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers import acute
-from meshonet.solvers.inwards import REACH, inwards
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
+from meshonet.solvers.algebraic.resample.spline import bending, places
 from meshonet.solvers.neural.quads.edges import Edges, rims
-from meshonet.solvers.spline import bending, places
 from solvers._evaluate import begin_all, evaluate_all
 
 RNG = np.random.default_rng(5)

@@ -9,12 +9,12 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.spacing.growth import growing_steps
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic import solve as module
 from meshonet.solvers.elliptic.control import Controls, Factors, step_ratios, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from meshonet.solvers.elliptic.winslow import metric_terms, residual
-from meshonet.solvers.tfi import tfi
 
 
 def edges_of(nodes: Floats, topology: str = "quad") -> Boundary:

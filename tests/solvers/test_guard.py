@@ -22,9 +22,9 @@ from solver_shapes import (
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.guard import guard
-from meshonet.solvers.tfi import tfi
+from meshonet.solvers.pipeline.fallback import guard
 
 
 def cusp(ni: int, nj: int) -> Boundary:
@@ -73,7 +73,7 @@ def test_a_repaired_grid_says_so_and_keeps_its_names() -> None:
 
 
 def test_a_grid_beyond_repair_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("meshonet.solvers.repair.repair", lambda nodes, *_: folded(nodes))
+    monkeypatch.setattr("meshonet.solvers.energy.repair.repair", lambda nodes, *_: folded(nodes))
     boundary = arch(30, 20)
     nodes = tfi(boundary).nodes.copy()
     nodes[1:-1, 1:-1] = nodes[-2:0:-1, 1:-1]
@@ -97,7 +97,7 @@ def test_an_impossible_corner_is_named_at_once() -> None:
 
 
 def test_failure_counts_and_places_the_worst_cells(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("meshonet.solvers.repair.repair", lambda nodes, *_: folded(nodes))
+    monkeypatch.setattr("meshonet.solvers.energy.repair.repair", lambda nodes, *_: folded(nodes))
     boundary = wrench(60, 60)
     with pytest.raises(
         NoValidGridError, match=r"\d+ of 3481 cells stay folded after repair, winslow and tfi; use more"
@@ -111,7 +111,7 @@ def test_failure_counts_and_places_the_worst_cells(monkeypatch: pytest.MonkeyPat
 def test_winslows_equations_are_not_solved_again_for_their_own_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     boundary = wrench(60, 60)
     grid, asked = solve(boundary).grid, []
-    monkeypatch.setattr("meshonet.solvers.repair.repair", lambda nodes, *_: folded(nodes))
+    monkeypatch.setattr("meshonet.solvers.energy.repair.repair", lambda nodes, *_: folded(nodes))
     monkeypatch.setattr(
         "meshonet.solvers.elliptic.solve.solve", lambda *_, **__: asked.append(1) or solve(boundary)
     )

@@ -18,9 +18,9 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers import hyperbolic as module
-from meshonet.solvers.guard import guard
-from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.hyperbolic import march as module
+from meshonet.solvers.hyperbolic.march import hyperbolic
+from meshonet.solvers.pipeline.fallback import guard
 from solvers._hyperbolic import march, scratch_size
 
 DISSIPATION, THETA, BEND = 0.5, 0.5, 0.04

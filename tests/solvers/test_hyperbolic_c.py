@@ -9,7 +9,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.hyperbolic.march import hyperbolic
 
 
 def c_boundary(name: str = "2412", ni: int = 160, nj: int = 80, **settings: object) -> Boundary:

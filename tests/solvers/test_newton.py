@@ -8,10 +8,10 @@ from solver_shapes import arch, bump, wrench
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.variational.descent import newton, stiffness_of
-from meshonet.solvers.variational.functional import Weights, aspect_of
-from meshonet.solvers.variational.solve import solve
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.energy.descent import newton, stiffness_of
+from meshonet.solvers.energy.functional import Weights, aspect_of
+from meshonet.solvers.energy.variational import solve
 from solvers.variational._variational import energy, workspace
 from solvers.variational._variational import newton as compiled
 

@@ -10,9 +10,9 @@ from random_quads import random_quad
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.neural.quads.canonical_sides import Element, OwnSides
 from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.neural.quads.own_sides import Element, OwnSides
-from meshonet.solvers.tfi import tfi
 
 
 def domain(seed: int = 2003, ni: int = 33, nj: int = 33) -> Boundary:

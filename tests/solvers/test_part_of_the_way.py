@@ -9,9 +9,9 @@ from random_quads import random_quad
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.neural.quads.damping import share
 from meshonet.solvers.neural.quads.differentiable import QuadGrids
 from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.neural.quads.part_of_the_way import share
 
 
 def pushed(by: float) -> Floats:

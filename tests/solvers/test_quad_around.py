@@ -16,11 +16,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.bodies import boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
-from meshonet.solvers.neural.quads.approach import approach
 from meshonet.solvers.neural.quads.features import features
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.inside import inside
 from meshonet.solvers.neural.quads.network import Network, shapes
+from meshonet.solvers.neural.quads.picard import approach
 from meshonet.solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
 from solvers.neural.quads._network import activate, refine
 

@@ -14,7 +14,6 @@ from solver_shapes import arch, hexagon, ring, segment, wrench
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.coarse import evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.quads import operator
@@ -22,6 +21,7 @@ from meshonet.solvers.neural.quads.edges import Edges
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.model import load_quads
 from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER
+from meshonet.solvers.pipeline.coarse import evaluate, thinned
 
 SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
 
@@ -122,7 +122,7 @@ def test_the_report_names_model_and_steps(model: str) -> None:
 
 
 def test_polish_descends_the_functional(model: str) -> None:
-    from meshonet.solvers.variational.functional import Weights, aspect_of, energy
+    from meshonet.solvers.energy.functional import Weights, aspect_of, energy
 
     boundary = arch(65, 65)
     values = []

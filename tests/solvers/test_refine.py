@@ -8,9 +8,9 @@ from meshonet.geometry.blocks.coarsen import coarser_grid
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.refine import solve_refined
+from meshonet.solvers.energy.variational import solve as minimise
+from meshonet.solvers.pipeline.sequence import solve_refined
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.variational.solve import solve as minimise
 
 
 def bump(ni: int, nj: int) -> Boundary:

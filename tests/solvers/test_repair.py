@@ -7,11 +7,11 @@ from solver_shapes import arch, folded, hole, l_shape, meets, naca, spike, wrenc
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import family
-from meshonet.solvers import unfold as unfolding
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.repair import repair
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.unfold import FUTILE, Patience, reference_lengths, unfold
+from meshonet.solvers.energy import untangle as unfolding
+from meshonet.solvers.energy.repair import repair
+from meshonet.solvers.energy.untangle import FUTILE, Patience, reference_lengths, unfold
 from solvers._repair import energy, minimise
 
 

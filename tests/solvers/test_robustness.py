@@ -9,14 +9,14 @@ from solver_shapes import folded, horseshoe, l_shape, quad, segment, spike, wren
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
 from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
-from meshonet.solvers.guard import guard
+from meshonet.solvers.layers.first_cells import Heights
+from meshonet.solvers.layers.redistribute import spread, worst_first_cell
+from meshonet.solvers.layers.slide_nodes import slide_walls
+from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.walls.heights import Heights
-from meshonet.solvers.walls.slide import slide_walls
-from meshonet.solvers.walls.spread import spread, worst_first_cell
 
 METHODS: dict[str, Callable[..., Solution]] = {
     "winslow": solve,

@@ -6,8 +6,8 @@ import pytest
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.hyperbolic import hyperbolic
-from meshonet.solvers.schedule import Edge, level_steps, sharpest_edge
+from meshonet.solvers.hyperbolic.level_spacing import Edge, level_steps, sharpest_edge
+from meshonet.solvers.hyperbolic.march import hyperbolic
 
 
 def ratios(steps: np.ndarray) -> np.ndarray:

@@ -9,9 +9,9 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.walls.heights import Heights
-from meshonet.solvers.walls.slide import slide_walls
-from meshonet.solvers.walls.spread import spread
+from meshonet.solvers.layers.first_cells import Heights
+from meshonet.solvers.layers.redistribute import spread
+from meshonet.solvers.layers.slide_nodes import slide_walls
 
 
 def step(x: Floats, steepness: float) -> Floats:

@@ -7,10 +7,10 @@ from solver_shapes import arch, corner_jacobians, folded, hexagon, hole, naca, q
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic import solve as module
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.winslow import residual, root_mean_square
-from meshonet.solvers.tfi import tfi
 
 
 def conformal_quad(ni: int, nj: int) -> np.ndarray:

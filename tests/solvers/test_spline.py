@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from meshonet.solvers.spline import bending, places, spline_matrix
+from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
 
 
 @pytest.mark.parametrize("periodic", [False, True])

@@ -25,8 +25,8 @@ from meshonet.solvers.elliptic import steger_sorenson as module
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.steger_sorenson import solve_steger_sorenson
 from meshonet.solvers.elliptic.wall_control import ControlledEdge
-from meshonet.solvers.walls.heights import Heights
-from meshonet.solvers.walls.spread import spread
+from meshonet.solvers.layers.first_cells import Heights
+from meshonet.solvers.layers.redistribute import spread
 
 
 def wall_lines(nodes: Floats) -> Floats:

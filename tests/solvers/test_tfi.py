@@ -8,7 +8,7 @@ from solver_shapes import arch, circle, naca, quad, ring, segment
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.tfi import tfi
+from meshonet.solvers.algebraic.tfi import tfi
 
 
 def stretched(a: tuple[float, float], b: tuple[float, float], n: int, rng: np.random.Generator) -> np.ndarray:

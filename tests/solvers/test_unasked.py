@@ -9,9 +9,9 @@ from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.automatic import solve_automatic
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.unasked import GROWTH, MOST, PART, first_cell, march_unasked
+from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_unasked
+from meshonet.solvers.pipeline.select import solve_automatic
 
 
 @pytest.mark.parametrize(("section", "te"), [("0012", "wedge"), ("4415", "wedge"), ("23012", "wedge")])

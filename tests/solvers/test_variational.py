@@ -28,17 +28,17 @@ from meshonet.geometry.families.bodies import boundary as random_body
 from meshonet.geometry.quality.measure import Summary, measure
 from meshonet.geometry.shapes.airfoil.naca import naca as naca_section
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.coarse import solve_coarse, thinned
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.variational import descent as descent_module
-from meshonet.solvers.variational import solve as module
-from meshonet.solvers.variational.descent import descend, stiffness_of
-from meshonet.solvers.variational.functional import Weights, aspect_of, energy
-from meshonet.solvers.variational.preconditioner import minimiser
-from meshonet.solvers.variational.solve import solve
-from meshonet.solvers.variational.start import winslow_start
-from meshonet.solvers.variational.windowed import unfold
+from meshonet.solvers.energy import descent as descent_module
+from meshonet.solvers.energy import variational as module
+from meshonet.solvers.energy.descent import descend, stiffness_of
+from meshonet.solvers.energy.functional import Weights, aspect_of, energy
+from meshonet.solvers.energy.local_descent import unfold
+from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.start import winslow_start
+from meshonet.solvers.energy.variational import solve
+from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
 
 
 def angle(nodes: Floats) -> Summary:

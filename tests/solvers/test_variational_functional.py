@@ -6,9 +6,9 @@ from random_quads import random_quad
 from solver_shapes import bump, hole, naca, wrench
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.variational.functional import Weights, aspect_of, energy, relief_of
-from meshonet.solvers.variational.preconditioner import minimiser
+from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.energy.functional import Weights, aspect_of, energy, relief_of
+from meshonet.solvers.energy.preconditioner import minimiser
 from solvers.variational._variational import Minimiser, Stiffness, Waves, workspace
 from solvers.variational._variational import energy as compiled
 

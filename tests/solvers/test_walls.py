@@ -6,11 +6,11 @@ from solver_shapes import arch, bump, folded, hexagon, hole, horseshoe, l_shape,
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.layers.first_cells import Heights, cells_needed, edge_in_layers, layer_ratio
+from meshonet.solvers.layers.redistribute import spread, worst_first_cell
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.tfi import tfi
-from meshonet.solvers.walls.heights import Heights, cells_needed, edge_in_layers, layer_ratio
-from meshonet.solvers.walls.spread import spread, worst_first_cell
 from solvers._layers import fill_lines, fill_steps
 
 

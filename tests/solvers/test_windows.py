@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from meshonet.solvers.windows import windows
+from meshonet.solvers.energy.clusters import windows
 
 LARGEST = 2500
 

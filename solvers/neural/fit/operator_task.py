@@ -12,12 +12,12 @@ from torch.nn.functional import mse_loss
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.neural.fit.task import Task
-from meshonet.solvers.neural.harmonic import extend
 from meshonet.solvers.neural.layers import Arrays, initial
 from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.places import rim, square
 from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.sensors import rim, square
 
 
 class OperatorTask(Task):

@@ -20,11 +20,11 @@ from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.inference import answered
+from meshonet.solvers.neural.model_file import Trained, load_trained, write_trained
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.models.model import Frame, Operator
 from meshonet.solvers.neural.registry import settings_of
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.trained import Trained, load_trained, write_trained
 
 PLAN = Plan(epochs=15_000, points=(1000, 200))
 """The authors' published settings, with their thirty shapes in one step and places drawn at random."""

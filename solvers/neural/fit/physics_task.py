@@ -14,8 +14,8 @@ from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.layers import Arrays, initial
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.models.model import Frame
-from meshonet.solvers.neural.places import rim, square
 from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.sensors import rim, square
 
 
 class PhysicsTask(Task):

@@ -14,10 +14,10 @@ from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quads.approach import approached
 from meshonet.solvers.neural.quads.edges import Edges, rims
 from meshonet.solvers.neural.quads.encoding import LATENT
 from meshonet.solvers.neural.quads.frame import frame
+from meshonet.solvers.neural.quads.picard import approached
 from meshonet.solvers.neural.quads.unrolled import AROUND, even, factors, middles, unrolled
 from meshonet.solvers.neural.samples import Samples
 

@@ -20,8 +20,8 @@ from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.strip_fno import StripFNO
-from meshonet.solvers.neural.strips import Strips
-from meshonet.solvers.neural.targets import Targets, make_targets
+from meshonet.solvers.neural.pod import Targets, make_targets
+from meshonet.solvers.neural.strip_dataset import Strips
 
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 
 from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
 from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.places import lift
+from meshonet.solvers.neural.sensors import lift
 
 
 @dataclass(frozen=True)

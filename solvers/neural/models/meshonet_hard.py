@@ -30,8 +30,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
 from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.places import sensors
 from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.sensors import sensors
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
 from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.places import sensors
 from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.sensors import sensors
 
 SAME = 1e-4
 """Largest distance of a sensor, over the geometry's size, at which two geometries are one."""

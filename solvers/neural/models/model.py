@@ -11,8 +11,8 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.neural.layers import Arrays, Shapes, Weights
-from meshonet.solvers.neural.places import sensors
 from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.sensors import sensors
 
 
 @dataclass(frozen=True)

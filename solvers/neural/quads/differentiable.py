@@ -10,14 +10,14 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from meshonet.solvers.neural.quads.approach import AFTER, approach, nodes_after
+from meshonet.solvers.neural.quads.damping import share
 from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from meshonet.solvers.neural.quads.evaluated import arrays, between, evaluated, folded
 from meshonet.solvers.neural.quads.features import features
 from meshonet.solvers.neural.quads.frame import frame
 from meshonet.solvers.neural.quads.in_torch import loaded
 from meshonet.solvers.neural.quads.model import ANSWERS
-from meshonet.solvers.neural.quads.part_of_the_way import share
+from meshonet.solvers.neural.quads.picard import AFTER, approach, nodes_after
 from meshonet.solvers.neural.tensors import check_sides
 
 Sides = tuple[Tensor, Tensor, Tensor, Tensor]
@@ -102,7 +102,7 @@ def _moved(planes: Tensor, by: Tensor) -> Tensor:
 
 
 def interpolated(sides: Any, laws: Any) -> Tensor:
-    """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.tfi`.
+    """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.algebraic.tfi`.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """O grids around bodies in torch: gradients from every node to those of body and far field, on any device.
 
-The arithmetic of `meshonet.solvers.neural.quads.around` and `meshonet.solvers.coarse_around` once more, on tensors; without
+The arithmetic of `meshonet.solvers.neural.quads.around` and `meshonet.solvers.algebraic.resample.o_grid` once more, on tensors; without
 polish and guard.
 """
 
@@ -13,18 +13,18 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers import acute
-from meshonet.solvers.coarse_around import FLAT, SQUARINGS, STEEP
-from meshonet.solvers.neural.quads.approach import AFTER, approach
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample.o_grid import FLAT, SQUARINGS, STEEP
+from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
 from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from meshonet.solvers.neural.quads.evaluated import between, matrix
 from meshonet.solvers.neural.quads.features import features
 from meshonet.solvers.neural.quads.in_torch import loaded
 from meshonet.solvers.neural.quads.inside import inside, slope
 from meshonet.solvers.neural.quads.model import ANSWERS_AROUND
+from meshonet.solvers.neural.quads.picard import AFTER, approach
 from meshonet.solvers.neural.quads.unrolled import AROUND, TURN
 from meshonet.solvers.neural.tensors import check_sides
-from meshonet.solvers.spline import bending, places, spline_matrix
 
 
 class BodyGrids:
@@ -134,7 +134,7 @@ def _unrolled(walls: Tensor, centres: Tensor) -> tuple[Tensor, Any]:
 
 
 def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
-    """Return the nodes (batch, ni, nj), as `meshonet.solvers.coarse_around.evaluate_around`; the rim is not theirs."""
+    """Return the nodes (batch, ni, nj), as `meshonet.solvers.algebraic.resample.o_grid.evaluate_around`; the rim is not theirs."""
     m, ni = coarse.shape[1], south.shape[1]
     lines, share = _along_lines(coarse, nj)
     shares = matrix(acute.linear, m, ni, share) @ share

@@ -9,7 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.solvers.spline import between
+from meshonet.solvers.algebraic.resample.spline import between
 from solvers._tfi import fill_all
 
 Sides = tuple[Floats, Floats, Floats, Floats]

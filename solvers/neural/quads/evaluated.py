@@ -1,4 +1,4 @@
-"""`meshonet.solvers.evaluation` on tensors: grids on few nodes evaluated at many, with gradients."""
+"""`meshonet.solvers.algebraic.resample.quad` on tensors: grids on few nodes evaluated at many, with gradients."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from meshonet.solvers import acute
-from meshonet.solvers.evaluation import mended
-from meshonet.solvers.inwards import inwards
-from meshonet.solvers.spline import bending
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample.edge_blending import inwards
+from meshonet.solvers.algebraic.resample.quad import mended
+from meshonet.solvers.algebraic.resample.spline import bending
 
 
 def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
@@ -79,7 +79,7 @@ def arrays(planes: Tensor) -> Any:
 
 
 def between(values: Tensor, n: int) -> Tensor:
-    """Return (..., n), linear between the last axis' `values` (..., m), as `meshonet.solvers.spline.between`."""
+    """Return (..., n), linear between the last axis' `values` (..., m), as `meshonet.solvers.algebraic.resample.spline.between`."""
     m = values.shape[-1]
     return values if m == n else values @ matrix(acute.linear, m, n, values).mT
 

@@ -14,16 +14,16 @@ from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.solvers.coarse import thinned
 from meshonet.solvers.neural.operator import Polish
 from meshonet.solvers.neural.quads import around
+from meshonet.solvers.neural.quads.canonical_frame import OwnFrame
+from meshonet.solvers.neural.quads.canonical_sides import OwnSides
 from meshonet.solvers.neural.quads.edges import Edges
 from meshonet.solvers.neural.quads.encoding import WINSLOW
 from meshonet.solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, head_of, load_quads
 from meshonet.solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
-from meshonet.solvers.neural.quads.own_frame import OwnFrame
-from meshonet.solvers.neural.quads.own_sides import OwnSides
 from meshonet.solvers.neural.weights import model_path
+from meshonet.solvers.pipeline.coarse import thinned
 from meshonet.solvers.solution import Solution
 
 Counts: TypeAlias = tuple[int, int]
@@ -47,7 +47,7 @@ the own grid's Hessian in smooth moves, take out folds and kinks between its nod
 """
 
 STILL = 1e-4
-"""Moves at which a descent stops sooner, as `meshonet.solvers.variational.solve.STILL`."""
+"""Moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
 
 
 def infer_quads(
@@ -74,7 +74,7 @@ def infer_quads(
     Returns
     -------
     list
-        of a solution for each boundary, whose edges it has bitwise. Grids may be folded: see `meshonet.solvers.guard`.
+        of a solution for each boundary, whose edges it has bitwise. Grids may be folded: see `meshonet.solvers.pipeline.fallback`.
         Seconds are a batch's, divided by its members.
 
     Raises
@@ -187,8 +187,8 @@ def _newton(planes: Floats, steps: int, topology: Topology) -> int:
     """Take steps of Newton's method from the planes (2, m, n) in place; return how many."""
     if not steps:
         return 0
-    from meshonet.solvers.variational.descent import newton
-    from meshonet.solvers.variational.solve import WEIGHTS
+    from meshonet.solvers.energy.descent import newton
+    from meshonet.solvers.energy.variational import WEIGHTS
 
     return newton(np.moveaxis(planes, 0, -1), WEIGHTS[topology], steps)
 
@@ -197,8 +197,8 @@ def _descent(planes: Floats, steps: int, topology: Topology, own: Floats | None 
     """Descend from the planes (2, m, n) in place, steered by the network's `own`; return the steps taken."""
     if not steps:
         return 0
-    from meshonet.solvers.variational.descent import descend, stiffness_of
-    from meshonet.solvers.variational.solve import WEIGHTS
+    from meshonet.solvers.energy.descent import descend, stiffness_of
+    from meshonet.solvers.energy.variational import WEIGHTS
 
     weights = WEIGHTS[topology]
     every_second = None if own is None else np.moveaxis(own[:, ::2, ::2].copy(), 0, -1)

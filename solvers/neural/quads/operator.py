@@ -7,7 +7,7 @@
           -> splines -> grid at the edges' own counts
 
 Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations. The last step is
-`meshonet.solvers.evaluation`, as in `meshonet.solvers.coarse`.
+`meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.solvers import evaluation
-from meshonet.solvers.neural.quads.approach import AFTER, nodes_after, step_all
+from meshonet.solvers.algebraic.resample import quad as evaluation
+from meshonet.solvers.algebraic.resample.spline import places
+from meshonet.solvers.neural.quads.damping import share
 from meshonet.solvers.neural.quads.edges import Edges
 from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from meshonet.solvers.neural.quads.features import FEATURES
 from meshonet.solvers.neural.quads.model import QuadModel
 from meshonet.solvers.neural.quads.network import CHUNK, rim_factor
-from meshonet.solvers.neural.quads.part_of_the_way import share
-from meshonet.solvers.spline import places
+from meshonet.solvers.neural.quads.picard import AFTER, nodes_after, step_all
 from solvers._evaluate import begin_all
 from solvers.neural.quads._frame import add, put_back, take_out
 from solvers.neural.quads._network import look

@@ -8,10 +8,10 @@ import pytest
 from meshonet.geometry.arrays import planar_nodes
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.neural.evaluate import StripGrid
+from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.nufft import SHARPNESS, TAPS, columns
+from meshonet.solvers.conformal.strip import MODES, across, harmonic, interpolation, modes, wavenumbers
 from meshonet.solvers.neural.operator import walls
-from meshonet.solvers.neural.strip import MODES, across, harmonic, interpolation, modes, wavenumbers
-from meshonet.solvers.neural.waves import SHARPNESS, TAPS, columns
 
 
 @pytest.mark.parametrize("designation", ["0012", "4412-sharp"])

@@ -15,16 +15,16 @@ import torch
 from families import arches, rings
 
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.neural.fit.checkpoint import beside
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.operators import train_operator
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.fit.team import Team, team
-from meshonet.solvers.neural.harmonic import extend
+from meshonet.solvers.neural.model_file import load_trained
 from meshonet.solvers.neural.registry import OPERATORS, operator
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.trained import load_trained
 
 SMALL = Plan(epochs=8, batch=2, rate=3e-3, points=(20, 10), device="cpu")
 SIZES = {"sensors": 12, "hidden": [8], "features": 6}

@@ -14,13 +14,13 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.conformal.strip import across, harmonic, picard
 from meshonet.solvers.neural.export import distance
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.strip import Sizes, train_strip
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.strip import across, harmonic, picard
-from meshonet.solvers.neural.strips import Strips, solve_strips
+from meshonet.solvers.neural.strip_dataset import Strips, solve_strips
 from meshonet.solvers.neural.weights import load_model, read_tensors
 
 SMALL = Plan(

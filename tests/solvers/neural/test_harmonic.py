@@ -7,7 +7,7 @@ import pytest
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import FAMILIES, family
-from meshonet.solvers.neural.harmonic import extend
+from meshonet.solvers.conformal.harmonic import extend
 
 
 def rectangle(ni: int, nj: int, height: float, bump: float = 0.0) -> Boundary:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import torch
 
+from meshonet.solvers.conformal.strip import COLUMNS
 from meshonet.solvers.neural.encoding import CHANNELS, SCALARS
 from meshonet.solvers.neural.models.strip_fno import StripFNO
 from meshonet.solvers.neural.network import StripNetwork
-from meshonet.solvers.neural.strip import COLUMNS
 
 
 def test_numpy_equals_torch_to_round_off() -> None:

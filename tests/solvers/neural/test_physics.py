@@ -18,10 +18,10 @@ from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.inference import answered
+from meshonet.solvers.neural.model_file import load_trained
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.registry import operator
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.trained import load_trained
 
 PLAN = Plan(epochs=300, points=(60, 40), rate=5e-3, schedule="cosine", device="cpu", log_every=50)
 ALONE = Team(torch.device("cpu"))

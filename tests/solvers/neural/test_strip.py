@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshonet.solvers.neural.strip import (
+from meshonet.solvers.conformal.strip import (
     COLUMNS,
     MODES,
     across,

@@ -15,11 +15,11 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.fit.operator_task import differences
 from meshonet.solvers.neural.inference import answered, infer
 from meshonet.solvers.neural.layers import count, initial
+from meshonet.solvers.neural.model_file import Trained, load_trained, write_trained
 from meshonet.solvers.neural.models.model import Frame
-from meshonet.solvers.neural.places import lift, rim, sensors, square
 from meshonet.solvers.neural.registry import OPERATORS, operator
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.trained import Trained, load_trained, write_trained
+from meshonet.solvers.neural.sensors import lift, rim, sensors, square
 from meshonet.solvers.neural.weights import HEADER
 
 FAMILIES = {"quad": arches(), "o": rings()}

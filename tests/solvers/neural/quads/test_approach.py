@@ -5,10 +5,10 @@ import pytest
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.neural.quads.approach import approach, approached
+from meshonet.solvers.neural.quads.picard import approach, approached
 from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
-from meshonet.solvers.tfi import tfi
 
 
 def conformal(n: int, bend: float) -> Complexes:

@@ -12,19 +12,19 @@ import torch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.four_sided import boundary
 from meshonet.solvers.elliptic.solve import solve as winslow
+from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.quad_grids import Quads, quads
 from meshonet.solvers.neural.fit.quads import PARTS, Sizes, train_quads
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.quad_unet import QuadUNet
-from meshonet.solvers.neural.quads.approach import approach
 from meshonet.solvers.neural.quads.encoding import LATENT
 from meshonet.solvers.neural.quads.features import FEATURES, features
+from meshonet.solvers.neural.quads.picard import approach
 from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
 from meshonet.solvers.neural.samples import Samples, gathered
 from meshonet.solvers.neural.weights import read_tensors
-from meshonet.solvers.variational.solve import solve as variational
 
 SMALL = Plan(
     epochs=3, batch=6, rate=3e-3, schedule="cosine", warm_up=2, weight_decay=1e-3, clip=1.0, device="cpu"

@@ -9,10 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.solvers.neural.quads.approach import approach
 from meshonet.solvers.neural.quads.features import FEATURES, features
 from meshonet.solvers.neural.quads.kernels import at_points
 from meshonet.solvers.neural.quads.network import CHUNK, Network, shapes
+from meshonet.solvers.neural.quads.picard import approach
 from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
 from solvers.neural.quads._network import (
     Program,

@@ -25,9 +25,9 @@ from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
-from meshonet.solvers.front import Front
-from meshonet.solvers.reach import RISING, distance_to_march
-from meshonet.solvers.schedule import level_steps
+from meshonet.solvers.hyperbolic.front import Front
+from meshonet.solvers.hyperbolic.level_spacing import level_steps
+from meshonet.solvers.hyperbolic.march_distance import RISING, distance_to_march
 from meshonet.solvers.solution import Solution
 from solvers._hyperbolic import march, scratch_size
 from solvers._redistribute import redistribute
@@ -180,7 +180,7 @@ def _marched(
 ) -> Floats | None:
     """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
 
-    Cells grow evenly along all lines (`meshonet.solvers.schedule`), or (not `even`) steps by one ratio.
+    Cells grow evenly along all lines (`meshonet.solvers.hyperbolic.level_spacing`), or (not `even`) steps by one ratio.
 
     Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
     circle of the body's size, and is corrected by marching again.

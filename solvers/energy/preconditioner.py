@@ -13,7 +13,7 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.variational.functional import Weights
+from meshonet.solvers.energy.functional import Weights
 from solvers.variational._variational import Minimiser, Waves
 
 MODES = 512

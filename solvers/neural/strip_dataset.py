@@ -10,8 +10,8 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
 from meshonet.solvers.neural.operator import walls
-from meshonet.solvers.neural.strip import across, harmonic, modes, picard
 
 MOST_STEPS = 30
 CONVERGED = 2e-6  # change of w in a step (radians)

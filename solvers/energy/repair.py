@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded, folded_cells, per_cell
-from meshonet.solvers.unfold import Patience, smooth, unfold
-from meshonet.solvers.windows import Window, windows
+from meshonet.solvers.energy.clusters import Window, windows
+from meshonet.solvers.energy.untangle import Patience, smooth, unfold
 
 MARGIN = 6
 """Cells around a group of folded ones that move with them, at first."""

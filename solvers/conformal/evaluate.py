@@ -19,9 +19,9 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
-from meshonet.solvers.neural.panels import NODES, panels
-from meshonet.solvers.neural.strip import MODES, interpolation, wavenumbers
-from meshonet.solvers.neural.waves import SHARPNESS, columns
+from meshonet.solvers.conformal.nufft import SHARPNESS, columns
+from meshonet.solvers.conformal.panels import NODES, panels
+from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 from solvers.neural._strip_rows import fill
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.solvers.conformal.strip import across, to_columns
 from meshonet.solvers.neural.encoding import encode
-from meshonet.solvers.neural.strip import across, to_columns
-from meshonet.solvers.neural.strips import Strips
+from meshonet.solvers.neural.strip_dataset import Strips
 
 HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
 

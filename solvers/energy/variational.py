@@ -1,6 +1,6 @@
 """Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
 
-Each level starts from the minimum of the next coarser one, evaluated by splines (`meshonet.solvers.coarse`). A start
+Each level starts from the minimum of the next coarser one, evaluated by splines (`meshonet.solvers.pipeline.coarse`). A start
 with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. Smooth
 moves of the descents (`descent`) follow the Hessian of the coarsest level.
 """
@@ -17,13 +17,13 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
-from meshonet.solvers.coarse import divided, evaluate, sweep_kinks, thinned
+from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
+from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of
+from meshonet.solvers.energy.local_descent import REACH, unfold
+from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.start import winslow_start
+from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.variational.descent import descend, in_cells, stiffness_of, teller
-from meshonet.solvers.variational.functional import AROUND, WAKE, Weights, aspect_of
-from meshonet.solvers.variational.preconditioner import minimiser
-from meshonet.solvers.variational.start import winslow_start
-from meshonet.solvers.variational.windowed import REACH, unfold
 from solvers.variational._variational import energy, workspace
 
 COARSEST = 17
@@ -78,7 +78,7 @@ def solve(
     initial: Grid | None = None,
     weights: Weights | None = None,
 ) -> Solution:
-    """Minimise the functional of `meshonet.solvers.variational.functional` over the nodes inside `boundary`.
+    """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
     Parameters
     ----------

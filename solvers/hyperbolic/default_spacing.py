@@ -15,7 +15,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.hyperbolic import hyperbolic
+from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.solution import Solution
 
 PART = 0.05

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.spline import places
+from meshonet.solvers.algebraic.resample.spline import places
 
 ACUTE, WIDE = np.radians((30.0, 60.0))
 """Angles of a corner up to which all is taken out, and from which nothing is."""

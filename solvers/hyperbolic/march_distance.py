@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.solvers.front import Front
-from meshonet.solvers.schedule import Edge, level_steps
+from meshonet.solvers.hyperbolic.front import Front
+from meshonet.solvers.hyperbolic.level_spacing import Edge, level_steps
 
 if TYPE_CHECKING:
-    from meshonet.solvers.hyperbolic import MarchSettings
+    from meshonet.solvers.hyperbolic.march import MarchSettings
 
 RISING = 0.75
 """Part of the levels over which the dissipation rises."""

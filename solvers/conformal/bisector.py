@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
-from meshonet.solvers.neural.evaluate import StripGrid
+from meshonet.solvers.conformal.evaluate import StripGrid
 from solvers.neural._strip_rows import halve
 
 CELLS = 4.0  # reach of a nudge, in cells either way; with 3 some cells fold

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.coarse import solve_coarse
+from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
 FEWER = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
@@ -22,7 +22,7 @@ def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], 
     Parameters
     ----------
     boundary : only large quads are solved on fewer nodes; where those fold, on twice as many. C boundaries
-        by ``auto`` are marched (`meshonet.solvers.unasked`) or else minimised, on fewer nodes too: Winslow's lines
+        by ``auto`` are marched (`meshonet.solvers.hyperbolic.default_spacing`) or else minimised, on fewer nodes too: Winslow's lines
         lean by 70 degrees along the wake, where small cells face large ones of the far field.
     method : a solver of boundary to solution.
     name : of the method, as in `FEWER`; others solve in full.
@@ -41,10 +41,10 @@ def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], 
 
 def _around_wake(boundary: Boundary) -> Solution:
     """Return the C grid that is marched, or where that does not suit the one of least energy."""
-    from meshonet.solvers.unasked import march_unasked
-    from meshonet.solvers.variational.solve import (
-        solve as minimise,  # which evaluates by `meshonet.solvers.coarse`
+    from meshonet.solvers.energy.variational import (
+        solve as minimise,  # which evaluates by `meshonet.solvers.pipeline.coarse`
     )
+    from meshonet.solvers.hyperbolic.default_spacing import march_unasked
 
     return march_unasked(boundary) or _through_fewer(boundary, minimise, "variational")
 

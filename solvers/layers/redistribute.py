@@ -24,9 +24,15 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.spacing.laws import on_corners
 from meshonet.geometry.spacing.sampling import monotone_cubic
-from meshonet.solvers.guard import guard
+from meshonet.solvers.layers.first_cells import (
+    Heights,
+    arcs_in_layers,
+    cells_needed,
+    check_fit,
+    edge_in_layers,
+)
+from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.walls.heights import Heights, arcs_in_layers, cells_needed, check_fit, edge_in_layers
 from solvers._layers import fill_lines
 from solvers._redistribute import redistribute
 

@@ -16,7 +16,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary, polygon_area
 from meshonet.geometry.blocks.patches import wake_nodes
-from meshonet.solvers.schedule import Edge, sharpest_edge
+from meshonet.solvers.hyperbolic.level_spacing import Edge, sharpest_edge
 
 _OPENING = 5.0
 _NEAR = 0.3

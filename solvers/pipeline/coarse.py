@@ -1,8 +1,8 @@
 """A grid of any resolution from a small one: solve with few nodes, then evaluate at many.
 
 A few nodes describe a smooth grid. So the boundary is thinned to the coarse counts, a solver works there, and
-splines through its nodes are evaluated inside the full edges (`meshonet.solvers.evaluation`). Around a body lines keep
-their own course instead (`meshonet.solvers.coarse_around`). Thinned edges are taken between the given nodes at equal
+splines through its nodes are evaluated inside the full edges (`meshonet.solvers.algebraic.resample.quad`). Around a body lines keep
+their own course instead (`meshonet.solvers.algebraic.resample.o_grid`). Thinned edges are taken between the given nodes at equal
 steps of their index.
 """
 
@@ -20,10 +20,11 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import angles, count_folded
-from meshonet.solvers import acute, evaluation
-from meshonet.solvers.coarse_around import evaluate_around
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample import quad as evaluation
+from meshonet.solvers.algebraic.resample.o_grid import evaluate_around
+from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.solution import Solution
-from meshonet.solvers.spline import between
 
 LEAST = 9
 """Fewest coarse nodes along a direction that describe anything."""

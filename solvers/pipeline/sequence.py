@@ -6,7 +6,7 @@
     solve --prolong--> solve --prolong-->  solve
 
 The nodes of each boundary are among those of the next finer one. A solution is carried up as
-`meshonet.solvers.coarse` does it: what it adds to the transfinite interpolation of its edges, by cubic splines.
+`meshonet.solvers.pipeline.coarse` does it: what it adds to the transfinite interpolation of its edges, by cubic splines.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from dataclasses import replace
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.coarse import evaluate
+from meshonet.solvers.pipeline.coarse import evaluate
 from meshonet.solvers.solution import Solution
 
 

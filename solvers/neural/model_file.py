@@ -13,13 +13,13 @@ import numpy as np
 from meshonet.geometry.arrays import TOPOLOGIES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.chebyshev import interpolation, points
+from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.conformal.chebyshev import interpolation, points
 from meshonet.solvers.neural.layers import Arrays, Weights
 from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.places import at_nodes, square
 from meshonet.solvers.neural.registry import OPERATORS, operator, settings_of
+from meshonet.solvers.neural.sensors import at_nodes, square
 from meshonet.solvers.neural.weights import read_tensors, write_tensors
-from meshonet.solvers.spline import spline_matrix
 
 KIND = "meshonet operator"
 VERSION = 1

@@ -10,9 +10,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.variational.functional import Weights
-from meshonet.solvers.variational.preconditioner import minimiser
-from meshonet.solvers.windows import windows
+from meshonet.solvers.energy.clusters import windows
+from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.preconditioner import minimiser
 from solvers.variational._variational import Minimiser, energy, workspace
 
 SKEWED = 1.5
@@ -28,7 +28,7 @@ ITERATIONS = 30
 """In a window at the most."""
 
 STILL = 1e-3
-"""Moves at which it stops sooner, as `meshonet.solvers.variational.solve.STILL`."""
+"""Moves at which it stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
 
 REACH = 0.25
 """Cells that a node moves at the most in a first iteration."""
@@ -40,7 +40,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
     Parameters
     ----------
     aspect, weights : of the functional.
-    relief : as `meshonet.solvers.variational.functional.relief_of`.
+    relief : as `meshonet.solvers.energy.functional.relief_of`.
     """
     skewed = skewness(nodes)
     poor = np.argwhere(skewed > SKEWED)

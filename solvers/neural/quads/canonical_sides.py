@@ -15,7 +15,7 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quads.own_frame import complex_edge, rounding
+from meshonet.solvers.neural.quads.canonical_frame import complex_edge, rounding
 
 Element = tuple[bool, bool, bool]
 """A relabelling: xi runs the other way, then eta does, then both change places."""

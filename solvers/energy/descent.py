@@ -11,12 +11,12 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
+from meshonet.solvers.energy.local_descent import REACH, descend_windows, unfold
+from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.progress import heard, tell
-from meshonet.solvers.repair import repair
-from meshonet.solvers.spline import spline_matrix
-from meshonet.solvers.variational.functional import Weights, aspect_of, relief_of
-from meshonet.solvers.variational.preconditioner import minimiser
-from meshonet.solvers.variational.windowed import REACH, descend_windows, unfold
 from solvers.variational._variational import Minimiser, Stiffness
 from solvers.variational._variational import newton as newton_steps
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import find_corners, turning
+from meshonet.solvers.algebraic.tfi import Four
 from meshonet.solvers.elliptic.coarsening import Direction
-from meshonet.solvers.tfi import Four
 from solvers.elliptic._multigrid import Level
 
 REENTRANT = np.radians(30.0)

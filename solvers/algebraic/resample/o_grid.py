@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.solvers.spline import bending, places, spline_matrix
+from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
 from solvers._combine import add_rows
 
 STEEP, FLAT = 1.15, 0.5

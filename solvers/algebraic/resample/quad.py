@@ -4,8 +4,8 @@ With X the planes of a grid's nodes::
 
     x = S X Tᵀ + shares * (edges - S X Tᵀ there)
 
-S and T are cubic splines, less curved near acute corners (`meshonet.solvers.acute`); what they miss of the edges is
-felt near these (`meshonet.solvers.inwards`). A cubic swings between nodes, and where spacings differ much that may
+S and T are cubic splines, less curved near acute corners (`meshonet.solvers.algebraic.resample.corner_damping`); what they miss of the edges is
+felt near these (`meshonet.solvers.algebraic.resample.edge_blending`). A cubic swings between nodes, and where spacings differ much that may
 fold cells although the coarse ones are valid. Then lines are made straight around these, as far as it takes:
 cells inside a valid coarse cell are valid between straight lines.
 """
@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded, folded_cells
-from meshonet.solvers import acute
-from meshonet.solvers.inwards import REACH
-from meshonet.solvers.spline import places
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample.edge_blending import REACH
+from meshonet.solvers.algebraic.resample.spline import places
 from solvers._evaluate import evaluate_all
 
 Sides = tuple[Floats, Floats, Floats, Floats]

@@ -29,7 +29,7 @@ def guard(
     grid : what a solver made.
     boundary : what it was made for.
     allow_invalid : return `grid` as it is when nothing works.
-    margin : of `meshonet.solvers.repair.repair`, or None for its own.
+    margin : of `meshonet.solvers.energy.repair.repair`, or None for its own.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def guard(
 
 def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Yield the stages and nodes of one try after another; a valid one ends the search."""
-    from meshonet.solvers.repair import MARGIN, repair
+    from meshonet.solvers.energy.repair import MARGIN, repair
 
     margin = margin or MARGIN
     periodic = grid.topology == "o"
@@ -90,7 +90,7 @@ def _solved(boundary: Boundary, start: Floats) -> Floats:
 
 
 def _interpolated(boundary: Boundary) -> Floats:
-    from meshonet.solvers.tfi import tfi
+    from meshonet.solvers.algebraic.tfi import tfi
 
     return tfi(boundary).nodes
 
