@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.mesh.boundary_patches import Role, patches, roles
+from meshonet.formats.mesh.names import words
+from meshonet.formats.mesh.unstructured import Indices, Unstructured, layer_points, unstructured
 from meshonet.formats.output import whole_file, whole_folder
-from meshonet.formats.patches import Role, patches, roles
-from meshonet.formats.text_rows import write_rows
-from meshonet.formats.unstructured import Indices, Unstructured, layer_points, unstructured
-from meshonet.formats.words import words
+from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.blocks.grid import Grid
 
 EMPTY = "frontAndBack"

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from meshonet.formats.edges import boundary_of
 from meshonet.formats.format import Format
+from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import Source, open_source, printable
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
@@ -29,38 +29,38 @@ class Row(NamedTuple):
 
 
 TABLE: dict[str, Row] = {
-    "hdf5": Row("meshonet.formats.hdf5", (".h5", ".hdf5")),
-    "vts": Row("meshonet.formats.vts", (".vts",)),
-    "vtm": Row("meshonet.formats.vtm", (".vtm",)),
-    "vtk": Row("meshonet.formats.vtk_legacy", (".vtk",)),
-    "vtk-ascii": Row("meshonet.formats.vtk_legacy", (".vtk",)),
-    "vtu": Row("meshonet.formats.vtu", (".vtu",)),
-    "gmsh": Row("meshonet.formats.gmsh", (".msh",)),
-    "gmsh-ascii": Row("meshonet.formats.gmsh", (".msh",)),
-    "gmsh41": Row("meshonet.formats.gmsh", (".msh",)),
-    "gmsh41-ascii": Row("meshonet.formats.gmsh", (".msh",)),
-    "cgns": Row("meshonet.formats.cgns", (".cgns",)),
+    "hdf5": Row("meshonet.formats.hdf5.dataset", (".h5", ".hdf5")),
+    "vts": Row("meshonet.formats.vtk.vts", (".vts",)),
+    "vtm": Row("meshonet.formats.vtk.vtm", (".vtm",)),
+    "vtk": Row("meshonet.formats.vtk.legacy", (".vtk",)),
+    "vtk-ascii": Row("meshonet.formats.vtk.legacy", (".vtk",)),
+    "vtu": Row("meshonet.formats.vtk.vtu", (".vtu",)),
+    "gmsh": Row("meshonet.formats.gmsh.msh", (".msh",)),
+    "gmsh-ascii": Row("meshonet.formats.gmsh.msh", (".msh",)),
+    "gmsh41": Row("meshonet.formats.gmsh.msh", (".msh",)),
+    "gmsh41-ascii": Row("meshonet.formats.gmsh.msh", (".msh",)),
+    "cgns": Row("meshonet.formats.cgns.write", (".cgns",)),
     "openfoam": Row("meshonet.formats.openfoam", (".foam",)),
-    "geo": Row("meshonet.formats.gmsh_geo", (".geo",)),
-    "nmf": Row("meshonet.formats.nmf", (".nmf",)),
-    "su2": Row("meshonet.formats.su2", (".su2",)),
-    "stl": Row("meshonet.formats.through_meshio", (".stl",)),
-    "ply": Row("meshonet.formats.through_meshio", (".ply",)),
-    "obj": Row("meshonet.formats.through_meshio", (".obj",)),
-    "off": Row("meshonet.formats.through_meshio", (".off",)),
-    "abaqus": Row("meshonet.formats.through_meshio", (".inp",)),
-    "medit": Row("meshonet.formats.through_meshio", (".mesh",)),
+    "geo": Row("meshonet.formats.gmsh.geo", (".geo",)),
+    "nmf": Row("meshonet.formats.plot3d.nmf", (".nmf",)),
+    "su2": Row("meshonet.formats.su2.write", (".su2",)),
+    "stl": Row("meshonet.formats.meshio_export", (".stl",)),
+    "ply": Row("meshonet.formats.meshio_export", (".ply",)),
+    "obj": Row("meshonet.formats.meshio_export", (".obj",)),
+    "off": Row("meshonet.formats.meshio_export", (".off",)),
+    "abaqus": Row("meshonet.formats.meshio_export", (".inp",)),
+    "medit": Row("meshonet.formats.meshio_export", (".mesh",)),
     "plot3d-ascii": Row("meshonet.formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
     "plot3d-binary": Row("meshonet.formats.plot3d", (".bin", ".xyz", ".p3d")),
     "plot3d-fortran": Row("meshonet.formats.plot3d", (".ufmt", ".unf")),
-    "dxf": Row("meshonet.formats.dxf", (".dxf",)),
-    "wkt": Row("meshonet.formats.vector", (".wkt",)),
-    "geojson": Row("meshonet.formats.vector", (".geojson", ".json")),
-    "airfoil": Row("meshonet.formats.airfoil_dat", (".dat",)),
-    "points": Row("meshonet.formats.points", (".csv", ".txt", ".xy")),
-    "png": Row("meshonet.formats.figure", (".png",)),
-    "svg": Row("meshonet.formats.figure", (".svg",)),
-    "pdf": Row("meshonet.formats.figure", (".pdf",)),
+    "dxf": Row("meshonet.formats.outlines.dxf", (".dxf",)),
+    "wkt": Row("meshonet.formats.outlines.vector", (".wkt",)),
+    "geojson": Row("meshonet.formats.outlines.vector", (".geojson", ".json")),
+    "airfoil": Row("meshonet.formats.text.airfoil_dat", (".dat",)),
+    "points": Row("meshonet.formats.text.points", (".csv", ".txt", ".xy")),
+    "png": Row("meshonet.formats.figure.figure", (".png",)),
+    "svg": Row("meshonet.formats.figure.figure", (".svg",)),
+    "pdf": Row("meshonet.formats.figure.figure", (".pdf",)),
 }
 """Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
 whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""

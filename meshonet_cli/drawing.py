@@ -35,7 +35,7 @@ class Picture:
 
     def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
         """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""
-        from meshonet.formats.figure import Colouring, write
+        from meshonet.formats.figure.figure import Colouring, write
 
         grid = only_one(grids, "a picture")
         colouring = None
@@ -120,7 +120,7 @@ def zoom_box(text: str | None) -> tuple[float, float, float, float] | None:
 def _write_metrics(path: Path, grids: Iterable[Grid]) -> None:
     import numpy as np
 
-    from meshonet.formats.vts import write
+    from meshonet.formats.vtk.vts import write
 
     grid = only_one(grids, "a .vts file")
     cells = {name: per_cell(grid, name) for name in NAMES}

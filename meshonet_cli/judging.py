@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from meshonet.formats.patches import patches, roles
+from meshonet.formats.mesh.boundary_patches import patches, roles
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Part
 from meshonet.geometry.quality.growth import Extreme

@@ -16,7 +16,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from meshonet.formats.vts import write_grids
+from meshonet.formats.vtk.vts import write_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.neural.quads.differentiable import QuadGrids
 

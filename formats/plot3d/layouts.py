@@ -15,7 +15,7 @@ from math import prod
 
 import numpy as np
 
-from meshonet.formats.planes import planar
+from meshonet.formats.mesh.slices import planar
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import NoReturn
 
-from meshonet.formats.edges import recovered
+from meshonet.formats.mesh.recover_topology import recovered
 from meshonet.formats.plot3d import binary, text
 from meshonet.formats.plot3d.layouts import Candidate, best
 from meshonet.formats.plot3d.sniff import is_text

@@ -8,8 +8,8 @@ from math import prod
 
 import numpy as np
 
-from meshonet.formats.free_numbers import parsed
 from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
+from meshonet.formats.text.free_numbers import parsed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.plot3d.variant import Variant
-from meshonet.formats.text_rows import write_rows
+from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

@@ -158,7 +158,7 @@ def test_mistakes_get_a_line(meshonet: Meshonet, grid_vts: Path, words: tuple[st
 
 def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> None:
     (grid,) = read_grids("grid.vts")
-    from meshonet.formats.vts import write
+    from meshonet.formats.vtk.vts import write
     from meshonet.geometry.blocks.grid import Grid
 
     moved = grid.nodes.copy()

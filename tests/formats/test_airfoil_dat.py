@@ -3,8 +3,8 @@ import itertools
 import numpy as np
 import pytest
 
-from meshonet.formats.airfoil_dat import parse, read_shapes, sniff
 from meshonet.formats.source import Source
+from meshonet.formats.text.airfoil_dat import parse, read_shapes, sniff
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.spacing.sampling import Sampling

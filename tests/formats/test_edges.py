@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.edges import boundary_of, recovered, wake_nodes
+from meshonet.formats.mesh.recover_topology import boundary_of, recovered, wake_nodes
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.figure import Colouring, _drawn_lines, draw, write
+from meshonet.formats.figure.figure import Colouring, _drawn_lines, draw, write
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 

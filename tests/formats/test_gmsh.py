@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats import gmsh41
-from meshonet.formats.gmsh import write_grids
+from meshonet.formats.gmsh import msh41 as gmsh41
+from meshonet.formats.gmsh.msh import write_grids
 from meshonet.formats.registry import format_named
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Part

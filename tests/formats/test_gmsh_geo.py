@@ -8,7 +8,7 @@ import pytest
 from format_shapes import c_grid, channel, ring
 from test_gmsh import COUNTS, groups
 
-from meshonet.formats.gmsh_geo import write_grids
+from meshonet.formats.gmsh.geo import write_grids
 from meshonet.geometry.blocks.grid import Grid
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, memory, ring
 
-from meshonet.formats.edges import boundary_of
-from meshonet.formats.hdf5 import (
+from meshonet.formats.hdf5.check import Checked
+from meshonet.formats.hdf5.dataset import (
     Writer,
     read_grids,
     read_parameters,
@@ -18,7 +18,7 @@ from meshonet.formats.hdf5 import (
     write_boundaries,
     write_grids,
 )
-from meshonet.formats.hdf5_check import Checked
+from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.nmf import write_extruded, write_grids
+from meshonet.formats.plot3d.nmf import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
 
 Row = tuple[str, list[int]]

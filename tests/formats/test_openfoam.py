@@ -11,8 +11,8 @@ from format_shapes import c_grid, channel, file_names, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOGeometry import vtkOpenFOAMReader
 
+from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.openfoam import write_extruded, write_grids
-from meshonet.formats.unstructured import unstructured
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Part
 

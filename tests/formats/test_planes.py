@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from format_shapes import channel
 
-from meshonet.formats.planes import planar
+from meshonet.formats.mesh.slices import planar
 from meshonet.geometry.errors import InputError
 
 GRID = channel(6, 4)

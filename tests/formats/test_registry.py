@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from format_shapes import PYTHON, Pipe, c_grid, channel, ring
 
-from meshonet.formats.edges import boundary_of
+from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.registry import (
     TABLE,
     format_for_output,

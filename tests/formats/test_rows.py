@@ -1,6 +1,6 @@
 import pytest
 
-from meshonet.formats.rows import MOST_BYTES, decode, read_lines, table
+from meshonet.formats.text.rows import MOST_BYTES, decode, read_lines, table
 from meshonet.geometry.errors import InputError
 
 

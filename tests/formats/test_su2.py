@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.su2 import write_extruded, write_grids
-from meshonet.formats.unstructured import unstructured
+from meshonet.formats.mesh.unstructured import unstructured
+from meshonet.formats.su2.write import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Part
 

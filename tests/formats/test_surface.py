@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, memory, ring
 
-from meshonet.formats.edges import boundary_of
+from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.registry import format_named, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from meshonet.formats.text_rows import write_rows
+from meshonet.formats.text.number_table import write_rows
 
 
 def text(form: str, rows: NDArray[np.float64] | NDArray[np.int64]) -> list[str]:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
+from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.registry import format_named
-from meshonet.formats.unstructured import unstructured
 from meshonet.geometry.blocks.grid import Grid
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.unstructured import unstructured
+from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.geometry.blocks.grid import Grid
 
 # nodes without doubles: all; one column less; the wake's nodes once less (its last node is the trailing edge)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from format_shapes import memory
 
-from meshonet.formats.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
+from meshonet.formats.outlines.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 

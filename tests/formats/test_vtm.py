@@ -9,7 +9,7 @@ from format_shapes import channel, file_names, memory, ring
 
 from meshonet.formats.output import whole_file
 from meshonet.formats.source import open_source
-from meshonet.formats.vtm import read_grids, write_extruded, write_grids
+from meshonet.formats.vtk.vtm import read_grids, write_extruded, write_grids
 from meshonet.geometry.errors import InputError
 
 INDEX = '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>{}</vtkMultiBlockDataSet></VTKFile>'

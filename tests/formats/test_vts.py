@@ -11,8 +11,8 @@ from format_shapes import c_grid, channel, ring
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from meshonet.formats.source import open_source
-from meshonet.formats.vts import write, write_extruded
-from meshonet.formats.vts_read import read_grids
+from meshonet.formats.vtk.vts import write, write_extruded
+from meshonet.formats.vtk.vts_read import read_grids
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from format_shapes import channel, memory
 
-from meshonet.formats.vts import write
-from meshonet.formats.vts_read import read_grids
+from meshonet.formats.vtk.vts import write
+from meshonet.formats.vtk.vts_read import read_grids
 from meshonet.geometry.errors import InputError
 
 NODES = channel(5, 2).nodes[:3]

@@ -8,8 +8,8 @@ from format_shapes import c_grid, channel, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from meshonet.formats.unstructured import unstructured
-from meshonet.formats.vtu import write_extruded, write_grids
+from meshonet.formats.mesh.unstructured import unstructured
+from meshonet.formats.vtk.vtu import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
 
 

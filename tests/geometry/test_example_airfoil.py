@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshonet.formats.airfoil_dat import parse
+from meshonet.formats.text.airfoil_dat import parse
 from meshonet.geometry.shapes.airfoil.naca import naca, naca_points
 
 FILE = Path(__file__).parents[2] / "examples" / "naca2412.dat"

@@ -1,0 +1,185 @@
+"""CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, the cut joined one to one.
+
+Written so that libraries from 3.4 on read it. Topology, name, parts and provenance are Descriptor_t
+nodes of the zone, which others pass over. Reading is in `meshonet.formats.cgns.read`.
+https://cgns.org/standard/SIDS/SIDS.html
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child, root
+from meshonet.formats.format import Format, Heights
+from meshonet.formats.hdf5.file import created
+from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
+from meshonet.formats.mesh.metadata import facts_of
+from meshonet.formats.mesh.names import words
+from meshonet.formats.source import Source
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.errors import InputError
+
+Integers = NDArray[np.int32]
+
+_CONDITIONS: dict[Role, str] = {
+    "wall": "BCWall",
+    "farfield": "BCFarfield",
+    "inflow": "BCInflow",
+    "outflow": "BCOutflow",
+    "symmetry": "BCSymmetryPlane",
+    "other": "BCGeneral",
+}
+_METRE = np.array([0, 1, 0, 0, 0], np.float64)
+"""Exponents of mass, length, time, temperature and angle in a coordinate."""
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write one zone of two dimensions for each grid."""
+    _write(path, grids, ())
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write one zone of three dimensions, the plane repeated in z, for each grid."""
+    _write(path, grids, heights)
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grid of every structured zone.
+
+    Raises
+    ------
+    InputError
+        a container of the old kind, no HDF5, no structured zone, a zone that is not right.
+    """
+    from meshonet.formats.cgns.read import read_grids as read
+
+    yield from read(source)
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is of a CGNS file, of either kind of container."""
+    return is_adf(head) or (head.startswith(b"\x89HDF\r\n\x1a\n") and b"HDF5 MotherNode" in head)
+
+
+def is_adf(head: bytes) -> bool:
+    """Say whether `head` is of the container that CGNS used before HDF5."""
+    return b"ADF Database Version" in head[:32]
+
+
+def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> None:
+    given = iter(grids)
+    first = next(given, None)
+    if first is None:
+        raise InputError("there is no grid to write", "check the input")
+    dimension = 3 if heights else 2
+    with created(path, track_order=True, libver=("earliest", "v108")) as file:
+        base = child(root(file), "Base", "CGNSBase_t", np.full(2, dimension, np.int32))
+        child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
+        zones: set[str] = set()
+        families: dict[str, Role] = {}
+        for grid in chain([first], given):
+            title = grid.name or "Zone"
+            zone = words([title], NAME_LENGTH, {"DataClass", *zones, *families})[title]
+            zones.add(zone)
+            role = _write_zone(base, zone, grid, heights, zones)
+            families = {**role, **families}
+        for family, kind in families.items():
+            node = child(base, family, "Family_t")
+            child(node, "FamilyBC", "FamilyBC_t", _CONDITIONS[kind])
+
+
+def _write_zone(
+    base: Node, name: str, grid: Grid, heights: tuple[float, ...], zones: set[str]
+) -> dict[str, Role]:
+    """Add a zone and return the families of its parts, called otherwise than all `zones`."""
+    dims = [grid.ni, grid.nj, len(heights)][: 3 if heights else 2]
+    size = np.array([dims, [n - 1 for n in dims], [0] * len(dims)], np.int32)
+    zone = child(base, name, "Zone_t", size)
+    child(zone, "ZoneType", "ZoneType_t", "Structured")
+    for fact, texts in facts_of(grid).items():
+        child(zone, fact, "Descriptor_t", "\n".join(texts))
+    coordinates = child(zone, "GridCoordinates", "GridCoordinates_t")
+    for axis, values in enumerate(_coordinates(grid, heights)):
+        node = child(coordinates, f"Coordinate{'XYZ'[axis]}", "DataArray_t", values)
+        child(node, "DimensionalExponents", "DimensionalExponents_t", _METRE)
+    _write_cut(zone, name, grid, len(heights))
+    return _write_conditions(zone, grid, len(heights), zones)
+
+
+def _coordinates(grid: Grid, heights: tuple[float, ...]) -> Iterator[Floats]:
+    """Yield x, y[, z] as (nj, ni) or (nk, nj, ni)."""
+    for values in (grid.x.T, grid.y.T):
+        yield np.stack([values] * len(heights)) if heights else np.ascontiguousarray(values)
+    if heights:
+        yield np.broadcast_to(np.array(heights)[:, None, None], (len(heights), grid.nj, grid.ni)).copy()
+
+
+def _write_conditions(zone: Node, grid: Grid, planes: int, zones: set[str]) -> dict[str, Role]:
+    """Add a boundary condition for each outer stretch and, of a layer, for its two planes."""
+    stretches = patches(grid)
+    role = roles(grid, stretches)
+    ranges = [(part.name, _range(part, grid, planes)) for part in stretches]
+    for plane, k in (("back", 1), ("front", planes))[:planes]:
+        role.setdefault(plane, "symmetry")
+        ranges.append((plane, np.array([[1, 1, k], [grid.ni, grid.nj, k]], np.int32)))
+    family = words(role, NAME_LENGTH, {"DataClass", *zones})
+    node = child(zone, "ZoneBC", "ZoneBC_t")
+    taken: set[str] = set()
+    for name, span in ranges:
+        word = words([name], NAME_LENGTH, taken)[name]
+        taken.add(word)
+        condition = child(node, word, "BC_t", "FamilySpecified")
+        child(condition, "PointRange", "IndexRange_t", span)
+        child(condition, "FamilyName", "FamilyName_t", family[name])
+    return {family[name]: role[name] for name in role}
+
+
+def _write_cut(zone: Node, name: str, grid: Grid, planes: int) -> None:
+    """Join the two sides of an O or C cut, once from each."""
+    seam = cut(grid)
+    if seam is None:
+        return
+    node = child(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
+    spans = [_range(part, grid, planes) for part in seam]
+    turned = grid.topology == "c"
+    transform = np.array([-1, -2, 3] if turned else [1, 2, 3], np.int32)[: 3 if planes else 2]
+    for label, own, other in (("Cut1", spans[0], spans[1]), ("Cut2", spans[1], spans[0])):
+        donor = other.copy()
+        if turned:  # i runs against i
+            donor[:, 0] = donor[::-1, 0]
+        joint = child(node, label, "GridConnectivity1to1_t", name)
+        child(joint, "PointRange", "IndexRange_t", own)
+        child(joint, "PointRangeDonor", "IndexRange_t", donor)
+        child(joint, "Transform", '"int[IndexDimension]"', transform)
+
+
+def _range(part: Part, grid: Grid, planes: int) -> Integers:
+    """Return the first and the last node (2, 2 or 3) of a stretch, counted from 1."""
+    start, stop = part.start + 1, part.stop + 1
+    if part.side in ("south", "north"):
+        j = 1 if part.side == "south" else grid.nj
+        span = [[start, j], [stop, j]]
+    else:
+        i = 1 if part.side == "west" else grid.ni
+        span = [[i, start], [i, stop]]
+    return np.array([[*span[0], 1], [*span[1], planes]] if planes else span, np.int32)
+
+
+FORMAT = Format(
+    name="cgns",
+    suffixes=(".cgns",),
+    description="CGNS structured zones in HDF5, with boundary conditions and families",
+    read_grids=read_grids,
+    write_grids=write_grids,
+    write_extruded=write_extruded,
+    sniff=sniff,
+    names_parts=True,
+    many=True,
+)

@@ -1,0 +1,112 @@
+"""Gmsh ``.msh`` 4.1, binary or text: one entity for each part of the boundary, named as a physical group.
+
+https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterable
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+
+from meshonet.formats.format import Heights, only_one
+from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
+from meshonet.formats.text.number_table import write_rows
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+
+INTERIOR = "fluid"
+"""Name of the group of all cells."""
+_KINDS = {"line": 1, "quad": 3, "hexahedron": 5}
+
+Group = tuple[str, str, Indices]
+"""Kind of cells, name, and their nodes (m, k) counted from 0."""
+
+
+def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:
+    """Write the one grid of `grids`: quads, and lines in groups named as its parts."""
+    mesh = unstructured(only_one(grids, "a .msh file"))
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    groups: list[Group] = [("line", name, edges) for name, edges in mesh.edges.items()]
+    _write(path, points, groups, ("quad", _inside(groups), mesh.quads), 2, text=text)
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights, *, text: bool = False) -> None:
+    """Write the one grid of `grids` repeated in z: hexahedra, and faces in groups."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .msh file")), heights)
+    groups: list[Group] = [("quad", name, quads) for name, quads in faces.items()]
+    _write(path, points, groups, ("hexahedron", _inside(groups), hexahedra), 3, text=text)
+
+
+def _inside(groups: list[Group]) -> str:
+    return INTERIOR if all(name != INTERIOR for _, name, _ in groups) else f"{INTERIOR}-cells"
+
+
+def _write(path: Path, points: Floats, groups: list[Group], cells: Group, dim: int, *, text: bool) -> None:
+    """Write the groups, entities 1, 2 ... of dimension `dim` - 1, and the cells, entity 1 of `dim`."""
+    from meshonet.formats.gmsh.msh import quotable
+
+    blocks = [(dim - 1, tag, group) for tag, group in enumerate(groups, start=1)] + [(dim, 1, cells)]
+    with path.open("wb") as stream:
+        stream.write(f"$MeshFormat\n4.1 {int(not text)} 8\n".encode())
+        stream.write(b"" if text else struct.pack("<i", 1) + b"\n")
+        stream.write(f"$EndMeshFormat\n$PhysicalNames\n{len(blocks)}\n".encode())
+        for k, (dimension, _, (_, name, _)) in enumerate(blocks, start=1):
+            stream.write(f'{dimension} {k} "{quotable(name)}"\n'.encode())
+        stream.write(b"$EndPhysicalNames\n$Entities\n")
+        _write_entities(stream, points, blocks, dim, text=text)
+        stream.write(b"$EndEntities\n$Nodes\n")
+        count = len(points)
+        _numbers(stream, "q", (1, count, 1, count), text=text)
+        _numbers(stream, "i", (dim, 1, 0), text=text, end=b" ")
+        _numbers(stream, "q", (count,), text=text)
+        _rows(stream, np.arange(1, count + 1)[:, None], text=text)
+        _rows(stream, points, text=text)
+        stream.write(b"$EndNodes\n$Elements\n")
+        total = sum(len(nodes) for _, _, (_, _, nodes) in blocks)
+        _numbers(stream, "q", (len(blocks), total, 1, total), text=text)
+        first = 1
+        for dimension, tag, (kind, _, nodes) in blocks:
+            _numbers(stream, "i", (dimension, tag, _KINDS[kind]), text=text, end=b" ")
+            _numbers(stream, "q", (len(nodes),), text=text)
+            _rows(stream, np.column_stack([np.arange(first, first + len(nodes)), nodes + 1]), text=text)
+            first += len(nodes)
+        stream.write(b"$EndElements\n")
+
+
+def _write_entities(
+    stream: BinaryIO, points: Floats, blocks: list[tuple[int, int, Group]], dim: int, *, text: bool
+) -> None:
+    """Write the box and the physical group of each entity, without what bounds it."""
+    counts = [0, 0, 0, 0]
+    counts[dim - 1], counts[dim] = len(blocks) - 1, 1
+    _numbers(stream, "q", tuple(counts), text=text)
+    for group, (_, tag, (_, _, nodes)) in enumerate(blocks, start=1):
+        own = points[nodes.ravel()]
+        box = (*own.min(axis=0).tolist(), *own.max(axis=0).tolist())
+        _numbers(stream, "i", (tag,), text=text, end=b" ")
+        _numbers(stream, "d", box, text=text, end=b" ")
+        _numbers(stream, "q", (1,), text=text, end=b" ")
+        _numbers(stream, "i", (group,), text=text, end=b" ")
+        _numbers(stream, "q", (0,), text=text)
+
+
+def _numbers(
+    stream: BinaryIO, kind: str, values: tuple[float, ...], *, text: bool, end: bytes = b"\n"
+) -> None:
+    """Write a few numbers: in text blank-separated, then `end`."""
+    if text:
+        stream.write(" ".join(f"{v:.17g}" if kind == "d" else str(v) for v in values).encode() + end)
+    else:
+        stream.write(struct.pack(f"<{len(values)}{kind}", *values))
+
+
+def _rows(stream: BinaryIO, rows: Floats | Indices, *, text: bool) -> None:
+    if text:
+        field = "%e" if rows.dtype.kind == "f" else "%d"
+        write_rows(stream, " ".join([field] * rows.shape[1]), rows)
+    else:
+        stream.write(np.ascontiguousarray(rows, "<f8" if rows.dtype.kind == "f" else "<i8").data)

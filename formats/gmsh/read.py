@@ -1,0 +1,127 @@
+"""Reading the boundary of Gmsh meshes, ``.msh`` 2.2 and 4.1, text or binary.
+
+Lines make the boundary under the names of their physical groups; without lines, the rim of the cells does.
+https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from meshonet.formats.gmsh.sections import Elements, Nodes, elements, nodes
+from meshonet.formats.mesh.surface import Surface, flat, shapes_of
+from meshonet.formats.mesh.unstructured import Indices
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.shape import Shape
+
+_VERSIONS = ("2.2", "4.1")
+_NAME = re.compile(rb'\s*(\d+)\s+(\d+)\s+"([^"\n]*)"')
+_LINES = {1: 2, 8: 3}
+_CELLS = {2: 3, 3: 4, 9: 3, 10: 4, 16: 4}
+"""Corners of Gmsh's kinds of lines and plane cells; those of second order have more nodes."""
+_AGAIN = "write the file again"
+
+
+def read_shapes(source: Source) -> Iterator[Shape]:
+    """Yield the shapes that the lines of a mesh enclose.
+
+    Raises
+    ------
+    InputError
+        no such mesh, another version, one of three dimensions, lines that are no closed curves.
+    """
+    data = source.read_bytes()
+    version, binary, order = _format(data)
+    names = _names(_section(data, b"PhysicalNames", needed=False))
+    tags = {}
+    if version == "4.1":
+        from meshonet.formats.gmsh.sections import physical_tags
+
+        tags = physical_tags(_section(data, b"Entities", needed=False), binary, order)
+    try:
+        numbered = nodes(_section(data, b"Nodes"), version, binary, order)
+        found = elements(_section(data, b"Elements"), version, binary, order, tags)
+    except (ValueError, OverflowError, IndexError) as error:
+        raise InputError(f"cannot be read ({printable(str(error))[:80]})", _AGAIN) from None
+    yield from shapes_of(_surface(numbered, found, names), source.stem)
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is of a Gmsh mesh."""
+    return b"$MeshFormat" in head[:4096]
+
+
+def _format(data: bytes) -> tuple[str, bool, str]:
+    """Return version, whether it is binary, and the byte order."""
+    section = _section(data, b"MeshFormat")
+    words = section[:100].split(None, 3)
+    version = words[0].decode("latin-1") if words else ""
+    if version not in _VERSIONS or len(words) < 3:
+        told = printable(version)[:20]
+        raise InputError(f"is a Gmsh mesh of version {told!r}", "save it as version 4.1 or 2.2")
+    if words[1] == b"0":
+        return version, False, "<"
+    one = section.find(b"\n") + 1
+    order = {b"\1\0\0\0": "<", b"\0\0\0\1": ">"}.get(section[one : one + 4])
+    if words[1] != b"1" or words[2] != b"8" or order is None:
+        raise InputError("is neither text nor binary with words of 8 bytes", _AGAIN, place="$MeshFormat")
+    return version, True, order
+
+
+def _section(data: bytes, name: bytes, *, needed: bool = True) -> bytes:
+    """Return what stands between ``$name`` and ``$Endname``."""
+    start = re.search(rb"(?:^|\n)\$" + name + rb"[ \t]*\r?\n", data)
+    end = data.rfind(b"$End" + name) if start else -1
+    if start and end >= start.end():
+        return data[start.end() : end]
+    if needed or start:
+        problem = f"has no section ${name.decode()}" if not start else f"${name.decode()} has no end"
+        raise InputError(problem, "the file is cut short, or is no Gmsh mesh")
+    return b""
+
+
+def _names(section: bytes) -> dict[int, str]:
+    """Return the names of physical groups of lines by their tags."""
+    found = (_NAME.match(line) for line in section.splitlines())
+    return {
+        int(match[2]): printable(match[3].decode("utf-8", "replace")) or "part"
+        for match in found
+        if match and int(match[1]) == 1 and len(match[2]) < 18
+    }
+
+
+def _surface(numbered: Nodes, found: Elements, names: dict[int, str]) -> Surface:
+    order = np.argsort(numbered.tags, kind="stable")
+    tags = numbered.tags[order]
+    if not len(tags):
+        raise InputError("has no nodes", _AGAIN)
+    if (tags[1:] == tags[:-1]).any():
+        raise InputError("has two nodes of the same number", _AGAIN, place="$Nodes")
+
+    def places(rows: Indices) -> Indices:
+        at = np.searchsorted(tags, rows)
+        if not (tags[np.minimum(at, len(tags) - 1)] == rows).all():
+            raise InputError("names a node that there is none of", _AGAIN, place="$Elements")
+        return order[at]
+
+    edges: dict[str, list[Indices]] = {}
+    cells: dict[int, list[Indices]] = {}
+    for kind, group, rows in found:
+        at = places(rows)
+        if kind in _LINES:
+            ways = at if _LINES[kind] == 2 else np.concatenate([at[:, [0, 2]], at[:, [2, 1]]])
+            name = names.get(group, f"part-{group}") if group else ""
+            edges.setdefault(name, []).append(ways)
+        elif kind in _CELLS:
+            cells.setdefault(_CELLS[kind], []).append(at[:, : _CELLS[kind]])
+        elif kind != 15:
+            raise InputError("has cells of three dimensions", "give a mesh of two")
+    return Surface(
+        flat(numbered.points),
+        {name: np.concatenate(pieces) for name, pieces in edges.items()},
+        [np.concatenate(cells[corners]) for corners in sorted(cells)],
+    )

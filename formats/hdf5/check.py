@@ -1,0 +1,206 @@
+"""An HDF5 dataset opened and checked: layout, shapes, types and sizes, before any memory is taken."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from meshonet.formats.hdf5.heap import check_heaps, check_texts
+from meshonet.formats.mesh.recover_topology import known_topology
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.arrays import SIDES, Floats, Topology
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    import h5py
+
+TOGETHER = 1 << 17
+"""Bytes of small samples that are read in one go."""
+
+_DEFLATE_LIMIT = 1032
+"""Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
+
+
+class Checked:
+    """What `checked` hands out.
+
+    Parameters
+    ----------
+    file : an open HDF5 file.
+    source : its bytes.
+
+    Attributes
+    ----------
+    count : number of samples n.
+    topology : the one all samples share.
+    """
+
+    def __init__(self, file: h5py.File, source: Source) -> None:
+        self._file, self._source = file, source
+        self._text_cache: dict[str, Any] = {}
+        self._rows: dict[str, tuple[int, Floats]] = {}  # first row and rows that were read together
+        kind = _attribute(file, "format")
+        if kind not in ("meshonet-boundary", "meshonet-grid"):
+            raise InputError(
+                "is HDF5 but not a dataset of boundaries or grids",
+                "set its attributes format ('meshonet-boundary' or 'meshonet-grid'), version and topology",
+            )
+        if _attribute(file, "version") != "1":
+            raise InputError(
+                f"has layout version {_attribute(file, 'version')!r}",
+                "this program reads version 1: get a newer one",
+            )
+        self.topology: Topology = known_topology(_attribute(file, "topology"))
+        self.count, ni = self._shape("south", 3)[:2]
+        nj = self._shape("west", 3)[1]
+        wanted = {"south": (ni, 2), "north": (ni, 2), "west": (nj, 2), "east": (nj, 2), "nodes": (ni, nj, 2)}
+        for name in SIDES if kind == "meshonet-boundary" else (*SIDES, "nodes"):
+            shape = self._shape(name, len(wanted[name]) + 1)
+            if shape != (self.count, *wanted[name]):
+                raise InputError(
+                    f"dataset {name!r} has shape {shape}",
+                    f"it must be {(self.count, *wanted[name])} as 'south' and 'west' say",
+                )
+        if self.count == 0:
+            raise InputError("holds no samples", "write at least one")
+        if "parameters" in self and self._shape("parameters", 2)[0] != self.count:
+            raise InputError("dataset 'parameters' has another count than 'south'", "give one row a sample")
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._file
+
+    def kept(self, split: str) -> list[int]:
+        """Return the samples of a split, or all of them.
+
+        Raises
+        ------
+        InputError
+            the dataset has none of that split.
+        """
+        found = [k for k in range(self.count) if not split or self.text("split", k) == split]
+        if not found:
+            raise InputError(
+                f"no sample is marked {split!r}",
+                "split it when it is made: meshonet sample-boundary --family NAME --split interpolation",
+            )
+        return found
+
+    def sample(self, name: str, k: int) -> Floats:
+        """Return row `k` of a checked numeric dataset as float64."""
+        first, rows = self._rows.get(name, (0, np.empty(0)))
+        if not first <= k < first + len(rows):
+            first, rows = k, self._rows_from(self._file[name], k)
+            self._rows[name] = first, rows
+        return np.array(rows[k - first], dtype=np.float64)
+
+    @staticmethod
+    def _rows_from(data: h5py.Dataset, k: int) -> Any:
+        """Return row `k` and those after it that are read in the time of one, about `TOGETHER` bytes."""
+        size = data.dtype.itemsize * max(int(np.prod(data.shape[1:])), 1)
+        try:
+            return data[k : k + max(TOGETHER // size, 1)]
+        except OSError:  # the broken one may be a later row
+            return data[k : k + 1]
+
+    def text(self, name: str, k: int) -> str:
+        """Return text `k` of dataset `name`, empty when there is none."""
+        import h5py
+
+        if name not in self._text_cache:
+            data = self._dataset(name) if name in self else None
+            if data is not None and (data.ndim != 1 or h5py.check_string_dtype(data.dtype) is None):
+                raise InputError(f"dataset {name!r} is not a list of texts", "store strings, one a sample")
+            if data is not None:
+                check_texts(data, self._source)
+            self._text_cache[name] = data
+        data = self._text_cache[name]
+        if data is None or k >= len(data):
+            return ""
+        value = data[k]
+        text = value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+        return printable(text) if name in ("names", "split") else text
+
+    def parameter_names(self) -> tuple[str, ...]:
+        """Return the names that go with the columns of 'parameters'."""
+        names = np.atleast_1d(self._dataset("parameters").attrs.get("names", []))
+        return tuple(
+            printable(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n)) for n in names
+        )
+
+    @contextlib.contextmanager
+    def place(self, k: int) -> Iterator[None]:
+        """Name sample `k` in errors raised inside."""
+        try:
+            yield
+        except InputError as error:
+            error.place = error.place or f"sample {k}"
+            raise
+        except (ValueError, RecursionError) as error:
+            raise InputError(str(error), "write the dataset again", place=f"sample {k}") from error
+
+    def _dataset(self, name: str) -> h5py.Dataset:
+        import h5py
+
+        link = self._file.get(name, getlink=True)
+        data = self._file.get(name) if isinstance(link, h5py.HardLink) else None
+        if not isinstance(data, h5py.Dataset):
+            raise InputError(
+                f"has no dataset {name!r}", "store south, north, west and east (and nodes for grids)"
+            )
+        if data.is_virtual or data.external:
+            raise InputError(f"dataset {name!r} lies in another file", "store it in this one")
+        return data
+
+    def _shape(self, name: str, ndim: int) -> tuple[int, ...]:
+        """Return the shape of a numeric dataset once its type, rank and stored size are plausible."""
+        data = self._dataset(name)
+        if data.dtype.kind not in "fiu" or data.ndim != ndim:
+            raise InputError(
+                f"dataset {name!r} is {data.dtype} with {data.ndim} axes", f"store float64 with {ndim} axes"
+            )
+        if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
+            raise InputError(
+                f"dataset {name!r} claims shape {data.shape} but holds next to nothing", "write it again"
+            )
+        return tuple(int(n) for n in data.shape)
+
+
+@contextlib.contextmanager
+def checked(source: Source) -> Iterator[Checked]:
+    """Open `source` as a dataset; what HDF5's library complains of becomes an InputError."""
+    with opened(source) as file:
+        yield Checked(file, source)
+
+
+@contextlib.contextmanager
+def opened(source: Source) -> Iterator[h5py.File]:
+    """Open `source` for reading; whatever goes wrong inside becomes an InputError."""
+    import h5py
+
+    check_heaps(source)
+    with contextlib.ExitStack() as stack:
+        try:
+            given = source.path or stack.enter_context(source.open())
+            file = stack.enter_context(h5py.File(given, "r", locking="best-effort"))
+        except Exception as error:  # a damaged file makes h5py raise almost anything
+            raise InputError(
+                f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"
+            ) from error
+        try:
+            yield file
+        except InputError:
+            raise
+        except Exception as error:
+            raise InputError(f"HDF5 data is damaged ({_short(error)})", "write the file again") from error
+
+
+def _attribute(file: h5py.File, name: str) -> str:
+    value = file.attrs.get(name, "")
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+
+
+def _short(error: Exception) -> str:
+    return printable(str(error).splitlines()[0] if str(error) else type(error).__name__)[:120]

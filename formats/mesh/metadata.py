@@ -1,0 +1,65 @@
+"""What a grid is besides its nodes, as short texts, for formats that have room for text."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
+from meshonet.formats.source import printable
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.errors import InputError
+
+
+def facts_of(grid: Grid) -> dict[str, list[str]]:
+    """Return the topology, name, parts and provenance of `grid` as lists of texts by name.
+
+    `grid_with` takes them back. A part reads ``side start stop name``. What is empty is left out.
+    """
+    facts: dict[str, list[str]] = {
+        "topology": [grid.topology],
+        "name": [grid.name],
+        "parts": [f"{part.side} {part.start} {part.stop} {part.name}" for part in grid.parts],
+        "provenance": [json.dumps(dict(grid.provenance), default=plain) if grid.provenance else ""],
+    }
+    return {name: texts for name, texts in facts.items() if any(texts)}
+
+
+def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "") -> Grid:
+    """Return the grid of `nodes` (ni, nj, 2) and the facts of its file; without a topology it is recovered.
+
+    Parameters
+    ----------
+    nodes : as in the file.
+    facts : by name, as `facts_of` makes them; other names are passed over.
+    name : what to call the grid when the facts do not say.
+    """
+    name = printable(facts["name"][0]) if facts.get("name") else name
+    if not facts.get("topology"):
+        return recovered(nodes, name)
+    parts = tuple(_part(text) for text in facts.get("parts", ()))
+    try:
+        provenance = json.loads(facts["provenance"][0]) if facts.get("provenance") else {}
+    except (ValueError, RecursionError):
+        provenance = {}
+    topology = known_topology(facts["topology"][0])
+    return Grid(usable(nodes), topology, parts, name, provenance if isinstance(provenance, dict) else {})
+
+
+def plain(value: object) -> object:
+    """Turn numpy's numbers and arrays into what JSON can say, and anything else into its text."""
+    return value.tolist() if hasattr(value, "tolist") else str(value)
+
+
+def _part(text: str) -> Part:
+    words: list[Any] = text.split(" ", 3)
+    try:
+        side, start, stop, name = words[0], int(words[1]), int(words[2]), words[3]
+    except (ValueError, IndexError):
+        raise InputError(
+            f"part {text[:60]!r} is not 'side start stop name'", "remove the field 'parts'"
+        ) from None
+    return Part(printable(name), side, start, stop)

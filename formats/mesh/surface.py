@@ -1,0 +1,193 @@
+"""Boundaries out of unstructured meshes and drawings: closed curves of named edges.
+
+One curve is the outline of a domain or a body; of two, one within the other, the inner one is the body and
+the outer one its far field; several beside each other are a shape each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from meshonet.formats.mesh.loops import Chain, chains
+from meshonet.formats.mesh.quad_strips import line_across
+from meshonet.formats.mesh.recover_topology import LARGEST
+from meshonet.formats.mesh.unstructured import Indices
+from meshonet.formats.source import printable
+from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.named_edges import Labelled, runs
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
+
+MOST_EDGES = 400_000
+"""A longer boundary is a mistake."""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """What a mesh says of its boundary.
+
+    Parameters
+    ----------
+    points : (n, 2).
+    edges : (k, 2) point numbers by name; an empty name stands for none. Without any, those edges count that
+        one cell alone has.
+    cells : (m, 3 or 4) point numbers, kind by kind.
+    """
+
+    points: Floats
+    edges: dict[str, Indices]
+    cells: list[Indices] = field(default_factory=list)
+
+
+def shapes_of(surface: Surface, name: str) -> Iterator[Shape]:
+    """Yield the shapes that the closed curves of `surface` make.
+
+    A four-sided domain whose opposite sides have equal counts keeps its nodes, as do a body and a far field
+    with an O grid between them. The corners are those of the cells, or else where names change four times;
+    the first edge of the file is on the south side.
+
+    Raises
+    ------
+    InputError
+        edges that are no closed curves, curves within curves.
+    """
+    edges = surface.edges or {"": _free_edges(surface.cells)}
+    count = sum(map(len, edges.values()))
+    if not 3 <= count <= MOST_EDGES:
+        raise InputError(f"has {count} boundary edges", f"give a mesh with 3 to {MOST_EDGES} of them")
+    for rows in (*edges.values(), *surface.cells):
+        if rows.size and not 0 <= rows.min() <= rows.max() < len(surface.points):
+            raise InputError(f"names point {rows.max()} of {len(surface.points)}", "write the mesh again")
+    used = np.unique(np.concatenate(list(edges.values())))
+    if not (np.abs(surface.points[used]) < LARGEST).all():
+        raise InputError("a coordinate is not finite or far too large", "check its numbers")
+    found = chains(edges, surface.points)
+    if len(found) == 2 and (pair := _nested(found, surface.points)):
+        yield _annulus(*pair, surface, name)
+        return
+    for number, chain in enumerate(found, start=1):
+        yield _domain(chain, surface, name if len(found) == 1 else f"{name}-{number}")
+
+
+def _free_edges(cells: list[Indices]) -> Indices:
+    """Return the edges (k, 2) that one cell alone has, the cell on their left."""
+    rings = [np.stack([rows, np.roll(rows, -1, axis=1)], axis=-1).reshape(-1, 2) for rows in cells]
+    if not rings:
+        return np.empty((0, 2), np.int64)
+    edges = np.concatenate(rings)
+    _, first, count = np.unique(np.sort(edges, axis=1), axis=0, return_index=True, return_counts=True)
+    return edges[np.sort(first[count == 1])]
+
+
+def _nested(found: list[Chain], points: Floats) -> tuple[Chain, Chain] | None:
+    """Return (inner, outer), both clockwise, of two curves of which one lies in the box of the other."""
+    inner, outer = sorted(found, key=lambda chain: abs(polygon_area(points[chain.nodes])))
+    within, around = points[inner.nodes], points[outer.nodes]
+    if not (
+        (within.min(axis=0) > around.min(axis=0)).all() and (within.max(axis=0) < around.max(axis=0)).all()
+    ):
+        return None
+    turned = [
+        chain.reversed() if polygon_area(points[chain.nodes]) > 0 else chain for chain in (inner, outer)
+    ]
+    return turned[0], turned[1]
+
+
+def _annulus(inner: Chain, outer: Chain, surface: Surface, name: str) -> Shape:
+    """Return the shape of two curves; the nodes of an O grid are kept, west and east with them."""
+    points = surface.points
+    cut = _cut(inner, outer, surface) if len(inner.nodes) == len(outer.nodes) else []
+    if cut:
+        outer = outer.begun_at(int(np.flatnonzero(outer.nodes == cut[-1])[0]))
+    south, north = (points[np.append(chain.nodes, chain.nodes[0])] for chain in (inner, outer))
+    if cut:
+        return Boundary(south, north, points[cut], points[cut], "o", _o_parts(inner, outer), name)
+    shape = Annulus(_plain(south[:-1], name), Outline(north[:-1], name).curve, name)
+    return _labelled(shape, [inner, outer], points)
+
+
+def _cut(inner: Chain, outer: Chain, surface: Surface) -> list[int]:
+    """Return the nodes from the first of `inner` to the far field along the cells, where they lead there."""
+    if len(surface.cells) != 1 or surface.cells[0].shape[1] != 4:
+        return []
+    cut = line_across(surface.cells[0], int(inner.nodes[0]), len(surface.points))
+    return cut if cut and cut[-1] in outer.nodes else []
+
+
+def _o_parts(inner: Chain, outer: Chain) -> tuple[Part, ...]:
+    """Return the parts of both curves, or none when nothing is named."""
+    sides: tuple[tuple[Side, Chain], ...] = (("south", inner), ("north", outer))
+    return tuple(part for side, chain in sides for part in runs(side, chain.names))
+
+
+def _domain(chain: Chain, surface: Surface, name: str) -> Shape:
+    points = surface.points
+    corners = _corners(chain, surface)
+    if corners is None:
+        return _labelled(_plain(points[chain.nodes], name), [chain], points)
+    count, first = len(chain.nodes), 0
+    if polygon_area(points[chain.nodes]) < 0:
+        chain, first = chain.reversed(), count - 1
+        corners = sorted((count - place) % count for place in corners)
+    begin = max((place for place in corners if place <= first), default=corners[-1])
+    chain, corners = chain.begun_at(begin), sorted((place - begin) % count for place in corners)
+    counts = np.diff([*corners, len(chain.nodes)])
+    if counts[0] != counts[2] or counts[1] != counts[3]:
+        a, b, c, d = corners
+        return _labelled(Outline(points[chain.nodes], name, corners=(a, b, c, d)), [chain], points)
+    ring, names = points[np.append(chain.nodes, chain.nodes[0])], chain.names
+    stops = [*corners[1:], len(chain.nodes)]
+    edges = {side: ring[start : stop + 1] for side, start, stop in zip(SIDES, corners, stops, strict=True)}
+    named = {side: names[start:stop] for side, start, stop in zip(SIDES, corners, stops, strict=True)}
+    for side in ("north", "west"):
+        edges[side], named[side] = edges[side][::-1], named[side][::-1]
+    parts = tuple(part for side in SIDES for part in runs(side, named[side]))
+    return Boundary(edges["south"], edges["north"], edges["west"], edges["east"], "quad", parts, name)
+
+
+def _plain(points: Floats, name: str) -> Shape:
+    from meshonet.formats.text.points import one_curve
+
+    return one_curve(points, name)
+
+
+def _corners(chain: Chain, surface: Surface) -> list[int] | None:
+    """Return the four corners of a domain as places of `chain`, when there are four."""
+    quads = [rows for rows in surface.cells if rows.shape[1] == 4]
+    if len(quads) == 1 and len(surface.cells) == 1:
+        met = np.bincount(quads[0].ravel(), minlength=len(surface.points))[chain.nodes]
+        alone = np.flatnonzero(met == 1).tolist()
+        if len(alone) == 4:
+            return [int(place) for place in alone]
+    return chain.changes if len(chain.changes) == 4 else None
+
+
+def _labelled(shape: Shape, found: list[Chain], points: Floats) -> Shape:
+    """Return `shape` with the names of the edges it was made of, if they have any."""
+    if not any(any(chain.names) for chain in found):
+        return shape
+    ends = [np.stack([chain.nodes, np.roll(chain.nodes, -1)], axis=1) for chain in found]
+    names = [printable(name) for chain in found for name in chain.names]
+    return Labelled(shape, points[np.concatenate(ends)], tuple(names))
+
+
+def flat(points: Floats) -> Floats:
+    """Return x and y (n, 2) of points (n, 2 or 3) that lie in a plane z = constant.
+
+    Raises
+    ------
+    InputError
+        they do not.
+    """
+    if points.shape[1] > 2 and len(points):
+        z = points[:, 2]
+        if not np.ptp(z) <= 1e-6 * max(float(np.ptp(points[:, :2])), 1e-300):
+            raise InputError("its points do not lie in a plane z = constant", "give a mesh of two dimensions")
+    return np.ascontiguousarray(points[:, :2])

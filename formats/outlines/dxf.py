@@ -1,0 +1,135 @@
+"""Outlines from DXF drawings, ``.dxf``, through ezdxf (extra ``dxf``): names are those of the layers.
+
+Lines, polylines, arcs, circles, ellipses and splines of the model space are joined where their ends meet;
+curved ones become chords. https://ezdxf.mozman.at
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from meshonet.formats.format import Format
+from meshonet.formats.mesh.recover_topology import LARGEST
+from meshonet.formats.mesh.surface import MOST_EDGES, Surface, shapes_of
+from meshonet.formats.mesh.unstructured import Indices
+from meshonet.formats.source import Source, printable
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.shape import Shape
+
+_KINDS = {"LINE", "LWPOLYLINE", "POLYLINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE"}
+_MOST_BYTES = 64 << 20
+_MEET = 1e-6
+"""How far apart, in extents, two ends may lie and still meet."""
+_SAG = 1e-5
+"""Largest distance of a chord from its curve, in extents."""
+
+
+def read_shapes(source: Source) -> Iterator[Shape]:
+    """Yield the shapes that the curves of a drawing enclose.
+
+    Raises
+    ------
+    InputError
+        ezdxf is not installed; no such drawing; curves that do not close.
+    """
+    try:
+        from ezdxf import path
+        from ezdxf.filemanagement import read
+    except ImportError:
+        raise InputError("needs the package ezdxf", "install it: pip install 'meshonet[dxf]'") from None
+    if source.size > _MOST_BYTES:
+        raise InputError(f"{source.size >> 20} MB are too much for a drawing", "give a file below 64 MB")
+    data = source.read_bytes()
+    if data.startswith(b"AutoCAD Binary DXF"):
+        raise InputError("is a binary DXF", "save it as text (ASCII) DXF")
+    if b"\0" in data:  # no text has one, and a reader of drawings takes seconds to find out
+        raise InputError("is no DXF drawing that can be read (zero bytes)", "save it again as ASCII DXF")
+    try:
+        drawing = read(io.StringIO(data.decode("utf-8", "replace").replace("\r\n", "\n")))
+        found = [
+            (printable(str(entity.dxf.layer)), path.make_path(entity))
+            for entity in drawing.modelspace()
+            if entity.dxftype() in _KINDS
+        ]
+        lines = _lines(found)
+    except InputError:
+        raise
+    except Exception as error:  # whatever a damaged drawing makes of it
+        told = printable(str(error).split("\n")[0])[:100] or type(error).__name__
+        raise InputError(
+            f"is no DXF drawing that can be read ({told})", "save it again as ASCII DXF"
+        ) from None
+    if not lines:
+        raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
+    yield from shapes_of(_joined(lines), source.stem)
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is of a DXF drawing."""
+    return head.split()[:2] == [b"0", b"SECTION"] or head.startswith(b"AutoCAD Binary DXF")
+
+
+def _lines(found: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
+    """Return layer and points (n, 2) of each curve, chords in place of what is curved."""
+    corners = [np.array([(v.x, v.y) for v in curve.control_vertices()]) for _, curve in found if len(curve)]
+    if not corners:
+        return []
+    every = np.concatenate(corners)
+    extent = float(np.ptp(every, axis=0).max())
+    if not (np.abs(every) < LARGEST).all() or extent == 0:
+        raise InputError("its curves have no size, or one that is not finite", "check the drawing")
+    lines, count = [], 0
+    for layer, curve in found:
+        if not len(curve):
+            continue
+        points = np.array([(v.x, v.y) for v in _chords(curve, extent)])
+        keep = np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))
+        count += len(points)
+        if count > MOST_EDGES:
+            raise InputError(f"has more than {MOST_EDGES} points", "simplify the drawing")
+        if keep.sum() > 1:
+            lines.append(("" if layer == "0" else layer, points[keep]))
+    return lines
+
+
+def _chords(curve: Any, extent: float) -> Any:
+    return curve.flattening(_SAG * extent, segments=16) if curve.has_curves else curve.control_vertices()
+
+
+def _joined(lines: list[tuple[str, Floats]]) -> Surface:
+    """Return the curves as edges between points, ends that meet being one point."""
+    points = np.concatenate([line for _, line in lines])
+    reach = _MEET * float(np.ptp(points, axis=0).max())
+    stops = np.cumsum([len(line) for _, line in lines])
+    starts = stops - [len(line) for _, line in lines]
+    same = np.arange(len(points))
+    ends = np.concatenate([starts, stops - 1])
+    order = ends[np.argsort(points[ends, 0], kind="stable")].tolist()
+    for k, one in enumerate(order):
+        if same[one] != one:
+            continue
+        for other in order[k + 1 :]:
+            if points[other, 0] - points[one, 0] > reach:
+                break
+            if same[other] == other and abs(points[other, 1] - points[one, 1]) <= reach:
+                same[other] = one
+    edges: dict[str, list[Indices]] = {}
+    for (layer, _), start, stop in zip(lines, starts, stops, strict=True):
+        nodes = same[start:stop]
+        edges.setdefault(layer, []).append(np.stack([nodes[:-1], nodes[1:]], axis=1))
+    return Surface(points, {layer: np.concatenate(pieces) for layer, pieces in edges.items()})
+
+
+FORMAT = Format(
+    name="dxf",
+    suffixes=(".dxf",),
+    description="DXF drawing, layers as names (needs the extra dxf)",
+    read_shapes=read_shapes,
+    sniff=sniff,
+    many=True,
+)

@@ -1,0 +1,75 @@
+"""NASA's neutral map file, ``.nmf``: which stretch of a Plot3D block is what, and where the cut joins.
+
+It goes with a Plot3D file of the same grid: flat, or one cell thick when both are written so. Faces are
+1, 2 at k = 1, kmax; 3, 4 at i = 1, imax; 5, 6 at j = 1, jmax; their two ranges run over the next indices in
+cyclic order (i, j), (j, k), (k, i). https://crumsey.github.io/turbmodels/nmf_documentation.html
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
+from meshonet.formats.mesh.names import words
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Part
+
+_FACES: dict[Side, int] = {"west": 3, "east": 4, "south": 5, "north": 6}
+_TYPES: dict[Role, str] = {
+    "wall": "VISCOUS",
+    "farfield": "FARFIELD",
+    "inflow": "INFLOW",
+    "outflow": "OUTFLOW",
+    "symmetry": "SYMMETRY",
+}
+_RULE = "# " + "=" * 78
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the map of the one grid of `grids`, of one plane."""
+    _write(path, only_one(grids, "a .nmf file"), 1)
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the map of the one grid of `grids`, repeated in z between symmetry planes."""
+    _write(path, only_one(grids, "a .nmf file"), len(heights))
+
+
+def _write(path: Path, grid: Grid, planes: int) -> None:
+    stretches = patches(grid)
+    role = roles(grid, stretches)
+    word = words(part.name for part in stretches)
+    rows = [f"{_TYPES.get(role[part.name], word[part.name])} {_range(part, planes)}" for part in stretches]
+    if planes > 1:
+        rows += [f"SYMMETRY 1 {face} 1 {grid.ni} 1 {grid.nj}" for face in (1, 2)]
+    seam = cut(grid)
+    if seam:
+        other = _range(seam[1], planes, turned=grid.topology == "c")
+        rows.append(f"ONE_TO_ONE {_range(seam[0], planes)} {other} FALSE")
+    text = [_RULE, "# Block# IDIM JDIM KDIM", _RULE, "1", f"1 {grid.ni} {grid.nj} {planes}", _RULE]
+    text += ["# Type B1 F1 S1 E1 S2 E2 [B2 F2 S1 E1 S2 E2 Swap]", _RULE, *rows, ""]
+    path.write_text("\n".join(text), encoding="ascii")
+
+
+def _range(part: Part, planes: int, *, turned: bool = False) -> str:
+    """Return block, face and the two ranges of a stretch; `turned` has its nodes run backwards."""
+    first, last = part.start + 1, part.stop + 1
+    if turned:
+        first, last = last, first
+    spans = [f"{first} {last}", f"1 {planes}"]
+    if part.side in ("south", "north"):
+        spans.reverse()
+    return f"1 {_FACES[part.side]} {' '.join(spans)}"
+
+
+FORMAT = Format(
+    name="nmf",
+    suffixes=(".nmf",),
+    description="NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
+    write_grids=write_grids,
+    write_extruded=write_extruded,
+    names_parts=True,
+)

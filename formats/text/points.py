@@ -1,0 +1,197 @@
+"""Lists of points: one closed curve, or the four edges of a domain in four blocks divided by blank lines.
+
+Columns are divided by commas, semicolons, blanks or tabs; a header line and lines that start with ``#`` are
+allowed; a third column is z and is left out. An open curve is closed by a straight line.
+
+Four blocks are edges in any order and direction as long as they meet; the first is south. Where opposite
+edges have equal counts, the points are the nodes of the boundary as they stand; otherwise curves to sample.
+A single curve that ends in one trailing edge is taken for an airfoil.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from meshonet.formats.format import Format
+from meshonet.formats.source import Source
+from meshonet.formats.text.rows import Line, decode, read_lines, table
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import find_corners, turning
+from meshonet.geometry.polygon.self_intersection import check_outline
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
+
+MOST_POINTS = 100_000
+_JOIN = 1e-6
+"""How far apart, in extents, the ends of two edges may lie and still meet."""
+
+
+def read_shapes(source: Source) -> Iterator[Shape]:
+    """Yield the shape of a file.
+
+    Raises
+    ------
+    InputError
+        no such shape in it, with the line where there is one to name.
+    """
+    yield parse(decode(source.read_bytes()), source.name, source.stem)
+
+
+def parse(text: str, source: str, stem: str = "") -> Shape:
+    r"""Return the shape that the text of a list of points describes.
+
+    Parameters
+    ----------
+    text : of the file.
+    source : what to call it in messages.
+    stem : name of the shape; the source's without folder and ending when empty.
+
+    Examples
+    --------
+    >>> square = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
+    >>> square.name, square.topology
+    ('square', 'quad')
+    """
+    name = stem or Path(source).stem
+    try:
+        blocks = [[line for line in block if len(line.values) >= 2] for block in table(read_lines(text))]
+        count = sum(map(len, blocks))
+        if count > MOST_POINTS:
+            raise InputError(f"{count} points", f"give at most {MOST_POINTS}")
+        if len(blocks) > 4 and max(map(len, blocks)) == 1:
+            blocks = [[line for block in blocks for line in block]]  # a blank line behind each
+        if len(blocks) == 4 and min(map(len, blocks)) >= 2:
+            return _four_edges(blocks, name)
+        if len(blocks) != 1:
+            raise InputError(
+                f"{len(blocks)} blocks of points",
+                "give one closed curve, or four edges divided by blank lines",
+                place=f"line {blocks[1][0].number}" if len(blocks) > 1 else "",
+            )
+        return _one_curve(blocks[0], name)
+    except InputError as error:
+        error.source = error.source or source
+        raise
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is text of which most lines are two or three numbers."""
+    try:
+        lines = read_lines(decode(head))
+    except InputError:
+        return False
+    rows = [line for line in lines if line.kind == "row"]
+    few = sum(len(line.values) <= 3 for line in rows)
+    return few >= 3 and few >= 0.8 * len(rows)
+
+
+def _one_curve(rows: list[Line], name: str) -> Shape:
+    points = np.array([line.values[:2] for line in rows])
+    return one_curve(points, name, [f"line {line.number}" for line in rows])
+
+
+def one_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Shape:
+    """Return the airfoil or the outline through `points` (n, 2), repeated neighbours left out.
+
+    Parameters
+    ----------
+    places : (n,) where each point stands in its source, for messages.
+    """
+    keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
+    if len(points) > 1 and np.array_equal(points[0], points[-1]):
+        keep[-1] = len(points) < 3
+    points, places = points[keep], [place for place, kept in zip(places, keep, strict=False) if kept]
+    if len(points) < 3:
+        raise InputError(f"{len(points)} points", "a closed curve needs at least 3")
+    if _ends_in_one_edge(points):
+        return Airfoil(points, name, places)
+    return Outline(points, name, places=places)
+
+
+def _ends_in_one_edge(points: Floats) -> bool:
+    """Say whether a curve (n, 2) looks like an airfoil: slender, its corners all at one end of its length.
+
+    One corner that turns by more than 90 degrees, or the two of a base.
+    """
+    if len(points) < 10:
+        return False
+    turn = np.abs(turning(points, closed=True))
+    corners = find_corners(points, closed=True, few=0)
+    sharp = corners[turn[corners] > np.radians(60.0)]
+    if not 1 <= len(sharp) <= 2 or turn[sharp].sum() < np.radians(120.0):
+        return False
+    edge = points[sharp].mean(axis=0)
+    length = float(np.hypot(*(points - edge).T).max())
+    base = float(np.hypot(*np.ptp(points[sharp], axis=0)))
+    area = abs(polygon_area(points))
+    return base < 0.25 * length and area < 0.5 * length**2
+
+
+def _four_edges(blocks: list[list[Line]], name: str) -> Shape:
+    """Return the domain of four edges, chained end to end from the first."""
+    chain = _chained([_edge(block) for block in blocks])
+    ring = np.concatenate([edge[:-1] for edge in chain])
+    check_outline(ring[:, :2], [f"line {number:.0f}" for number in ring[:, 2]])
+    if polygon_area(ring[:, :2]) < 0:  # the first edge stays south, so it is walked the other way
+        chain = [chain[0][::-1], *(edge[::-1] for edge in chain[:0:-1])]
+        ring = np.concatenate([edge[:-1] for edge in chain])
+    counts = [len(edge) for edge in chain]
+    if counts[0] == counts[2] and counts[1] == counts[3]:
+        south, east, north, west = (edge[:, :2] for edge in chain)
+        return Boundary(south, north[::-1], west[::-1], east, name=name)
+    a, b, c, d = (int(k) for k in np.concatenate([[0], np.cumsum(np.array(counts[:3]) - 1)]))
+    return Outline(ring[:, :2], name, corners=(a, b, c, d))
+
+
+def _edge(block: list[Line]) -> Floats:
+    """Return the points of a block and the number of each one's line (n, 3)."""
+    edge = np.array([[*line.values[:2], line.number] for line in block])
+    same = np.flatnonzero((np.diff(edge[:, :2], axis=0) == 0).all(axis=1))
+    if len(same) == len(edge) - 1:
+        place = f"line {block[0].number}"
+        raise InputError("an edge is one point", "give two or more points of every edge", place=place)
+    if same.size:
+        x, y, _ = edge[same[0]]
+        place = f"line {block[same[0] + 1].number}"
+        raise InputError(f"repeats the point ({x:.6g}, {y:.6g}) of the line before", "remove it", place=place)
+    return edge
+
+
+def _chained(edges: list[Floats]) -> list[Floats]:
+    """Return four edges (n, 3) in an order and directions in which each begins where the last one ends."""
+    reach = _JOIN * float(np.hypot(*np.ptp(np.concatenate(edges)[:, :2], axis=0)))
+    chain, left = [edges[0]], {1, 2, 3}
+    while left:
+        end = chain[-1][-1, :2]
+        gaps = {(k, way): float(np.hypot(*(edges[k][::way][0, :2] - end))) for k in left for way in (1, -1)}
+        (k, way), gap = min(gaps.items(), key=lambda item: item[1])
+        if gap > reach:
+            x, y = end
+            raise InputError(
+                f"no other edge starts or ends at ({x:g}, {y:g}); the nearest is {gap:.3g} away",
+                "make the four edges meet",
+                place=f"line {edges[k][0 if way == 1 else -1, 2]:.0f}",
+            )
+        chain.append(edges[k][::way].copy())
+        chain[-1][0, :2] = end
+        left.remove(k)
+    gap = float(np.hypot(*(chain[3][-1, :2] - chain[0][0, :2])))
+    if gap > reach:
+        raise InputError(f"the four edges do not close: {gap:.3g} are left open", "make the four edges meet")
+    chain[3][-1, :2] = chain[0][0, :2]
+    return chain
+
+
+FORMAT = Format(
+    name="points",
+    suffixes=(".csv", ".txt", ".xy"),
+    description="points of a closed curve or of four edges",
+    read_shapes=read_shapes,
+    sniff=sniff,
+)

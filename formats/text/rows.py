@@ -1,0 +1,183 @@
+"""Lines of a text file of coordinates: which are numbers, which are prose, which are broken.
+
+One number may be written as ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` (with blanks, tabs or
+semicolons between columns) or run into the next one, ``0.5-0.01``. Columns are separated by anything of
+blanks, tabs, commas, semicolons.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Literal, NamedTuple
+
+from meshonet.formats.mesh.recover_topology import LARGEST
+from meshonet.geometry.errors import InputError
+
+Kind = Literal["blank", "text", "row", "noted", "gap", "broken"]
+
+MOST_BYTES = 16 * 2**20
+"""A larger file is not read: an outline of a million points is a mistake."""
+
+MOST_LINES = 300_000
+"""Likewise, so that a file of nothing but line ends is refused at once."""
+
+_REMEMBERED = 200_000
+"""Characters of a text whose lines are kept for the next reader."""
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdDqQ][+-]?\d+)?"
+_ONE = re.compile(_NUMBER)
+_FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
+_COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")
+_SPLIT = re.compile(r"[\s,;]+")
+_PLACEHOLDER = re.compile(r"[.*_?-]{2,}|-")
+_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE)
+_REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
+
+
+class Line(NamedTuple):
+    """One line: its number from 1, what it is, its values when it is a row, its text.
+
+    Kinds: ``row`` is numbers only, two or more; ``noted`` is two numbers and then words; ``gap`` begins with
+    a number and has dots or stars where the next should be; ``broken`` begins with a number and has nothing
+    or something else there; the rest is ``text``.
+    """
+
+    number: int
+    kind: Kind
+    values: tuple[float, ...]
+    text: str
+
+
+def decode(data: bytes) -> str:
+    r"""Return the text of bytes: UTF-8 or UTF-16 with its mark, UTF-8, or else Latin-1, which takes any byte.
+
+    Raises
+    ------
+    InputError
+        more than `MOST_BYTES`, or bytes that no text has.
+
+    Examples
+    --------
+    >>> decode(b"\xef\xbb\xbf1 2"), decode("Stéfan".encode("latin-1"))
+    ('1 2', 'Stéfan')
+    """
+    if len(data) > MOST_BYTES:
+        raise InputError(
+            f"{len(data) // 2**20} MB are too much for a file of points", "give a file below 16 MB"
+        )
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        return data.decode("utf-16", errors="replace")
+    if b"\0" in data:
+        raise InputError("holds binary data, not text", "name its format with --from, or give a text file")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
+
+
+def read_lines(text: str) -> list[Line]:
+    r"""Return the lines of a text, each with what it is.
+
+    Examples
+    --------
+    >>> [(line.kind, line.values) for line in read_lines("NACA 1\n1.0 0.0\n.5\t(0.1D-1)\n")]
+    [('text', ()), ('row', (1.0, 0.0)), ('row', (0.5, 0.01))]
+    """
+    return list(_lines(text) if len(text) <= _REMEMBERED else _lines.__wrapped__(text))
+
+
+@lru_cache(maxsize=1)  # what finds out the format reads the same text as the format itself
+def _lines(text: str) -> tuple[Line, ...]:
+    found = re.split(r"\r\n|\r|\n", text.replace("\x1a", ""))
+    if found and not found[-1]:
+        found.pop()
+    if len(found) > MOST_LINES:
+        raise InputError(
+            f"{len(found)} lines are too many for a file of points", f"give at most {MOST_LINES}"
+        )
+    return tuple(_line(number, line) for number, line in enumerate(found, start=1))
+
+
+def table(lines: list[Line]) -> list[list[Line]]:
+    """Return the rows of a text in blocks, as blank lines and prose divide them.
+
+    Two numbers with words behind them are a row where they stand beside one. A line with a missing value
+    (dots, stars) is left out.
+
+    Raises
+    ------
+    InputError
+        a broken line between two rows, with its number.
+    """
+    near = ["blank", *(line.kind for line in lines), "blank"]
+    blocks: list[list[Line]] = [[]]
+    for k, line in enumerate(lines):
+        beside = near[k], near[k + 2]
+        if line.kind == "row" or (line.kind == "noted" and "row" in beside):
+            blocks[-1].append(line)
+        elif line.kind == "broken" and beside == ("row", "row"):
+            raise InputError(
+                f"{line.text.strip()[:40]!r} is no pair of numbers",
+                "correct or remove the line",
+                place=f"line {line.number}",
+            )
+        elif line.kind != "gap" and blocks[-1]:
+            blocks.append([])
+    return blocks if blocks[-1] else blocks[:-1]
+
+
+def _line(number: int, text: str) -> Line:
+    words = text.split()
+    if len(words) == 2:  # the usual line, without any of the rest
+        try:
+            pair = float(words[0]), float(words[1])
+        except ValueError:
+            pass
+        else:
+            if abs(pair[0]) < LARGEST and abs(pair[1]) < LARGEST and "_" not in text:
+                return Line(number, "row", pair, text)
+    if not words:
+        return Line(number, "blank", (), text)
+    if len(text) > 4000:
+        return Line(number, "text", (), text)
+    bare = _REMARK.sub("", text).strip()
+    if not bare:
+        return Line(number, "text", (), text)
+    return _difficult(number, text, _words(bare))
+
+
+def _words(text: str) -> list[str]:
+    """Return the words between separators; a comma inside a number is its decimal point where no point is."""
+    blank = re.split(r"[\s;]+", text.strip(" \t,;"))
+    if len(blank) > 1 and "," in text and "." not in text and all(map(_COMMA.fullmatch, blank)):
+        return [word.replace(",", ".") for word in blank]
+    words = []
+    for word in _SPLIT.split(text.strip(" \t,;")):
+        fused = _FUSED.fullmatch(word)
+        words += list(fused.groups()) if fused else [word] if word else []
+    return words
+
+
+def _difficult(number: int, text: str, words: list[str]) -> Line:
+    bare = [
+        word.strip("()[]{}\"'") if word[0] in "([{\"'" or word[-1] in ")]}\"'" else word for word in words
+    ]
+    values: list[float] = []
+    for place, word in enumerate(bare):
+        if _ONE.fullmatch(word):
+            value = float(re.sub("[dDqQ]", "e", word))
+            if not abs(value) < LARGEST:
+                return Line(number, "broken", (), text)
+            values.append(value)
+        elif place == 0:
+            return Line(number, "broken" if _NOT_FINITE.fullmatch(word) else "text", (), text)
+        elif len(values) == 1 and _PLACEHOLDER.fullmatch(word):
+            return Line(number, "gap", (), text)
+        elif len(values) == 2 and not re.search(r"[\d>=:/]", " ".join(words[2:])):
+            return Line(number, "noted", tuple(values), text)
+        else:
+            return Line(number, "broken" if len(values) == 1 else "text", (), text)
+    if len(values) > 1:
+        return Line(number, "row", tuple(values), text)
+    return Line(number, "broken" if "." in text else "text", (), text)

@@ -1,0 +1,185 @@
+"""Reading ``.vts``: the XML around the arrays; `meshonet.formats.vtk.arrays` decodes the arrays themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshonet.formats.mesh.metadata import grid_with
+from meshonet.formats.mesh.slices import planar
+from meshonet.formats.source import Source, printable
+from meshonet.formats.vtk.arrays import Encoded, Encoding, decode
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+Extent = tuple[int, int, int, int, int, int]
+_MOST_NODES = 1 << 40
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grid of a ``.vts`` file.
+
+    Raises
+    ------
+    InputError
+        not such a file, damaged, compressed with LZ4, three-dimensional.
+    """
+    raw = source.read_bytes()
+    root, start, end = _parsed(raw)
+    dataset = _child(root, "StructuredGrid")
+    pieces = dataset.findall("Piece")
+    if not pieces:
+        raise InputError("has no element Piece", "write the file again")
+    encoding = _encoding(root, dataset, raw, start, end)
+    whole = _extent(dataset, "WholeExtent")
+    if len(pieces) == 1 and _extent(pieces[0], "Extent") == whole:
+        points = _points(pieces[0], encoding)
+    else:
+        points = _assembled(pieces, whole, encoding)
+    facts = {array.get("Name", ""): _texts(array, encoding) for array in dataset.iterfind("FieldData/Array")}
+    yield grid_with(planar([points[..., k].T for k in range(3)]), facts, source.stem)
+
+
+def _parsed(raw: bytes) -> tuple[Element, int, int]:
+    """Return the XML and where the appended bytes, which are not XML, start and end."""
+    from xml.etree.ElementTree import ParseError, fromstring
+
+    tag = raw.find(b"<AppendedData")
+    start = end = len(raw)
+    head = raw
+    if tag >= 0:
+        mark = raw.find(b"_", raw.find(b">", tag))
+        if mark < 0 or raw.find(b">", tag) < 0:
+            raise InputError(
+                "its appended data has no start mark '_'", "the file is cut short: write it again"
+            )
+        start, end = mark + 1, raw.rfind(b"</AppendedData")
+        if end < start:
+            raise InputError("its appended data has no end", "the file is cut short: write it again")
+        head = raw[:start] + raw[end:]
+    if b"<!" in head.replace(b"<!--", b"") or b"\0" in head:
+        # a document type can define entities that expand without bound; no VTK file has one
+        raise InputError("its XML has a document type or zero bytes", "write the file again")
+    try:
+        root = fromstring(head)  # noqa: S314  (no document type, so no entities)
+    except (ParseError, ValueError, LookupError) as error:
+        raise InputError(f"is not well-formed XML ({error})", "write the file again") from error
+    if root.tag != "VTKFile" or root.get("type") != "StructuredGrid":
+        raise InputError(
+            f"is a VTK file of type {printable(root.get('type', '?'))[:60]}",
+            "give one of type StructuredGrid",
+        )
+    return root, start, end
+
+
+def _encoding(root: Element, dataset: Element, raw: bytes, start: int, end: int) -> Encoding:
+    header = root.get("header_type", "UInt32")
+    if header not in ("UInt32", "UInt64"):
+        raise InputError(f"header_type {header[:40]!r} is not known", "write UInt32 or UInt64")
+    appended = root.find("AppendedData")
+    offsets = [
+        int(a.get("offset", "-1")) for a in dataset.iter("DataArray") if a.get("offset", "x").isdecimal()
+    ]
+    return Encoding(
+        order=">" if root.get("byte_order") == "BigEndian" else "<",
+        header="u4" if header == "UInt32" else "u8",
+        compressor=root.get("compressor", ""),
+        appended=memoryview(raw)[start:end],
+        base64=appended is not None and appended.get("encoding") == "base64",
+        offsets=tuple(sorted({*offsets, end - start})),
+    )
+
+
+def _points(piece: Element, encoding: Encoding) -> Floats:
+    """Return the points (nk, nj, ni, 3) of a piece, in the file's number type."""
+    dims = _dims(_extent(piece, "Extent"))
+    array = _child(_child(piece, "Points"), "DataArray")
+    if array.get("NumberOfComponents", "1") != "3":
+        raise InputError("Points do not have three components", "write x, y, z for every node")
+    offset = array.get("offset", "0")
+    if not offset.isdecimal():
+        raise InputError(f"offset {offset[:40]!r} is not a number", "write the file again")
+    encoded = Encoded(
+        kind=array.get("type", ""),
+        count=3 * dims[0] * dims[1] * dims[2],
+        form=array.get("format", "ascii"),
+        text=array.text or "",
+        offset=int(offset),
+    )
+    try:
+        values = decode(encoded, encoding)
+    except InputError as error:
+        error.place = error.place or "Points"
+        raise
+    return values.reshape(*dims, 3)
+
+
+def _assembled(pieces: list[Element], whole: Extent, encoding: Encoding) -> Floats:
+    """Return the points of a grid stored in pieces, which overlap in their shared nodes."""
+    dims = _dims(whole)
+    parts = [(_extent(piece, "Extent"), _points(piece, encoding)) for piece in pieces]
+    if dims[0] * dims[1] * dims[2] > sum(points.size for _, points in parts):
+        raise InputError("its pieces do not cover WholeExtent", "write the whole grid in one file")
+    points, missing = np.empty((*dims, 3)), np.ones(dims, bool)
+    for extent, values in parts:
+        at = [(extent[2 * k] - whole[2 * k], extent[2 * k + 1] - whole[2 * k] + 1) for k in (2, 1, 0)]
+        if any(a < 0 or b > n for (a, b), n in zip(at, dims, strict=True)):
+            raise InputError("a piece lies outside WholeExtent", "write the file again")
+        (k0, k1), (j0, j1), (i0, i1) = at
+        points[k0:k1, j0:j1, i0:i1] = values
+        missing[k0:k1, j0:j1, i0:i1] = False
+    if missing.any():
+        raise InputError("its pieces do not cover WholeExtent", "write the whole grid in one file")
+    return points
+
+
+def _extent(element: Element, name: str) -> Extent:
+    words = element.get(name, "").split()
+    try:
+        i0, i1, j0, j1, k0, k1 = (int(word) for word in words)
+    except ValueError:
+        raise InputError(
+            f"{name} {' '.join(words)[:60]!r} is not six integers", "write the file again"
+        ) from None
+    if i1 < i0 or j1 < j0 or k1 < k0 or (i1 - i0 + 1) * (j1 - j0 + 1) * (k1 - k0 + 1) > _MOST_NODES:
+        raise InputError(
+            f"{name} {' '.join(words)[:60]!r} is empty or absurdly large", "write the file again"
+        )
+    return i0, i1, j0, j1, k0, k1
+
+
+def _dims(extent: Extent) -> tuple[int, int, int]:
+    """Return (nk, nj, ni), slowest first as in memory."""
+    i0, i1, j0, j1, k0, k1 = extent
+    return k1 - k0 + 1, j1 - j0 + 1, i1 - i0 + 1
+
+
+def _child(element: Element, name: str) -> Element:
+    child = element.find(name)
+    if child is None:
+        raise InputError(f"element {printable(element.tag)} has no {name}", "write the file again")
+    return child
+
+
+def _texts(array: Element, encoding: Encoding) -> list[str]:
+    """Return the strings of a string array: bytes, each string ended by 0; none when it is not right.
+
+    Such arrays hold extras only, so a foreign one must not stop a grid from being read.
+    """
+    try:
+        if array.get("format") == "ascii":
+            codes = bytes(int(word) % 256 for word in (array.text or "").split())
+        else:
+            offset = int(array.get("offset", "0"))
+            codes = decode(
+                Encoded("Int8", None, array.get("format", ""), array.text or "", offset), encoding
+            ).tobytes()
+    except (ValueError, InputError):
+        return []
+    return [text.decode("utf-8", "replace") for text in codes.split(b"\0")[:-1]]
