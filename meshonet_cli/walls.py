@@ -184,7 +184,7 @@ class WithWalls:
 
         from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401  (loaded before the clock starts)
         from meshonet.solvers.layers.redistribute import spread
-        from meshonet.solvers.walls import slide  # noqa: F401
+        from meshonet.solvers.layers import slide_nodes  # noqa: F401
 
         begun = perf_counter()
         solution = self._solved(boundary, heights)

@@ -1,1 +1,1 @@
-"""."""
+"""CGNS files in HDF5."""

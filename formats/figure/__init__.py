@@ -1,1 +1,1 @@
-"""."""
+"""Pictures of grids, drawn by matplotlib."""

@@ -1,1 +1,1 @@
-"""."""
+"""Gmsh's mesh and geometry files."""

@@ -1,1 +1,1 @@
-"""."""
+"""Datasets of many boundaries or grids in HDF5."""

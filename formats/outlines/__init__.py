@@ -1,1 +1,1 @@
-"""."""
+"""Outlines as geometry: WKT, GeoJSON, DXF."""

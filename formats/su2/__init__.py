@@ -1,1 +1,1 @@
-"""."""
+"""SU2's own mesh format."""

@@ -1,1 +1,1 @@
-"""."""
+"""Text files of coordinates: airfoils and lists of points."""

@@ -1,1 +1,1 @@
-"""."""
+"""VTK's XML and legacy files."""

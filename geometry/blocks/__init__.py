@@ -1,1 +1,1 @@
-"""."""
+"""Blocks of nodes, their boundaries, named patches and connections."""

@@ -1,1 +1,1 @@
-"""."""
+"""Conformal maps of the outside of a body."""

@@ -1,1 +1,1 @@
-"""."""
+"""Algebraic grids: transfinite interpolation, and coarse grids evaluated on finer ones."""

@@ -1,1 +1,1 @@
-"""."""
+"""One corner energy: variational grids, repair of folded cells, untangling."""

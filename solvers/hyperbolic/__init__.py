@@ -1,1 +1,1 @@
-"""."""
+"""Grids marched from the wall, for boundary layers."""

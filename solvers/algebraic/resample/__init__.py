@@ -1,1 +1,1 @@
-"""."""
+"""Coarse grids evaluated at any resolution, boundaries met exactly."""

@@ -1,1 +1,0 @@
-"""Cells of given heights at the walls of any grid."""
