@@ -180,7 +180,7 @@ def test_a_folder_takes_the_place_of_the_old_one_only_when_whole(
         swaps.append(other)
         return _swapped(one, other)
 
-    monkeypatch.setattr("formats.output._swapped", swapped)
+    monkeypatch.setattr("meshonet.formats.output._swapped", swapped)
     for text in ("first", "second"):
         with whole_folder(target) as folder:
             (folder / text).write_text(text)
@@ -196,7 +196,7 @@ def test_a_folder_takes_the_place_of_the_old_one_only_when_whole(
 def test_a_folder_is_replaced_where_the_system_cannot_swap(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("formats.output._swapped", lambda one, other: False)
+    monkeypatch.setattr("meshonet.formats.output._swapped", lambda one, other: False)
     for text in ("first", "second"):
         with whole_folder(tmp_path / "mesh") as folder:
             (folder / text).write_text(text)
