@@ -11,7 +11,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 
@@ -28,8 +29,12 @@ class InputError(MeshonetError):
     ----------
     problem : what is wrong, with the offending value.
     remedy : what the user can do about it.
-    source : file or option the problem is in; a caller that knows it better may set it later.
+    source : file the problem is in; a caller that knows it better may set it later.
     place : where in the source, e.g. ``line 12`` or ``dataset 'south'``.
+    parameter : the parameter the problem is in, by its name in Python.
+
+    Texts refer to parameters in braces, ``{far_field}``: Python's users read ``far_field``, those of the
+    command line ``--far-field`` (`spelled`).
 
     Examples
     --------
@@ -37,13 +42,33 @@ class InputError(MeshonetError):
     a.dat: line 12: 'abc' is not a number; remove the line
     """
 
-    def __init__(self, problem: str, remedy: str = "", *, source: str = "", place: str = "") -> None:
+    def __init__(
+        self, problem: str, remedy: str = "", *, source: str = "", place: str = "", parameter: str = ""
+    ) -> None:
         super().__init__(problem)
         self.problem, self.remedy, self.source, self.place = problem, remedy, source, place
+        self.parameter = parameter
 
     def __str__(self) -> str:
-        told = ": ".join(part for part in (self.source, self.place, self.problem) if part)
-        return f"{told}; {self.remedy}" if self.remedy else told
+        return self.text(str)
+
+    def text(self, spelling: Callable[[str], str]) -> str:
+        """Return the message, the names of parameters passed through `spelling`."""
+        parameter = f"{{{self.parameter}}}" if self.parameter else ""
+        parts = (self.source, parameter, self.place, self.problem)
+        text = ": ".join(part for part in parts if part)
+        return spelled(f"{text}; {self.remedy}" if self.remedy else text, spelling)
+
+
+def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
+    """Return `text`, its names of parameters in braces passed through `spelling`.
+
+    Examples
+    --------
+    >>> spelled("give {far_field} as well", lambda name: "--" + name.replace("_", "-"))
+    'give --far-field as well'
+    """
+    return re.sub(r"\{([a-z][a-z0-9_]*)\}", lambda match: spelling(match[1]), text)
 
 
 @dataclass(frozen=True)

@@ -184,7 +184,7 @@ def explained(error: Exception, name: str = "") -> str:
 
     if isinstance(error, InputError):
         error.source = error.source or name
-        return str(error)
+        return error.text(option)
     where = f"{name}: " if name else ""
     if isinstance(error, MeshonetError):
         return f"{where}{error}"
@@ -194,6 +194,17 @@ def explained(error: Exception, name: str = "") -> str:
         file = f"{error.filename}: " if error.filename else where
         return f"{file}{error.strerror or error}; check the path, its permissions and the free space"
     return f"{where}internal error: {type(error).__name__}: {error}; this is a bug, --debug shows where"
+
+
+def option(parameter: str) -> str:
+    """Return how the command line spells a parameter.
+
+    Examples
+    --------
+    >>> option("far_field")
+    '--far-field'
+    """
+    return "--" + parameter.replace("_", "-")
 
 
 def _after(path: tuple[str, ...]) -> str:
