@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry._spline import solve_tridiagonal
 from geometry.arrays import Floats, distinct
 from geometry.corners import Indices
 from geometry.limits import limited
+from kernels._native import solve_tridiagonal
 
 
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from geometry.arrays import Floats
 from geometry.quality import count_folded, folded_cells
+from kernels._native import resample
 from solvers import acute
-from solvers._evaluate import evaluate_all
 from solvers.inwards import REACH
 from solvers.spline import places
 
@@ -90,5 +90,5 @@ def _evaluated(coarse: Floats, sides: Sides, straight: Straight | None) -> Float
     opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
     nodes = np.empty((len(coarse), 2, ni, nj))
     fine = places(m, ni), places(n, nj)
-    evaluate_all(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
+    resample(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
     return nodes

@@ -23,7 +23,7 @@ from geometry.arrays import Floats, planar_nodes
 from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
-from solvers._tfi import fill
+from kernels._native import tfi as fill
 
 Blending = Literal["linear", "arclength"]
 Four = tuple[Floats, Floats, Floats, Floats]

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Floats, planar_nodes
-from solvers.elliptic._multigrid import Level, scratch_size
+from kernels._native import MultigridLevel, multigrid_scratch
 from solvers.elliptic.coarsening import Direction, uniform
 from solvers.elliptic.control import Controls
 from solvers.elliptic.patches import Patch, patches, reentrant
@@ -58,7 +58,7 @@ class Multigrid:
         controls: Controls | None = None,
     ) -> None:
         self.settings = settings or Settings()
-        self.levels: list[Level] = []
+        self.levels: list[MultigridLevel] = []
         self._edges: list[Four] = []
         self._along: list[Four] = []
         self._directions: list[tuple[Direction, Direction]] = []
@@ -67,13 +67,13 @@ class Multigrid:
         along = parameters(edges, "arclength")
         xi = uniform(nodes.shape[0], periodic)
         eta = uniform(nodes.shape[1], False)
-        scratch = np.empty(scratch_size(xi.cells, eta.cells))
+        scratch = np.empty(multigrid_scratch(xi.cells, eta.cells))
         while True:
             if self.levels:
                 nodes = planar_nodes(xi.cells + 1, eta.cells + 1)
             planes = nodes[..., 0], nodes[..., 1]
             coarse = bool(self.levels)
-            level = Level(*planes, xi.differences, eta.differences, periodic, scratch, coarse)
+            level = MultigridLevel(*planes, xi.differences, eta.differences, periodic, scratch, coarse)
             self.levels.append(level)
             self._patches.append(patches(level, xi, eta, corners, scratch))
             self._edges.append(edges)

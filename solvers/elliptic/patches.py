@@ -12,7 +12,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.corners import find_corners, turning
-from solvers.elliptic._multigrid import Level
+from kernels._native import MultigridLevel
 from solvers.elliptic.coarsening import Direction
 from solvers.tfi import Four
 
@@ -43,11 +43,13 @@ class Patch:
     scratch : of the level.
     """
 
-    def __init__(self, level: Level, xi: Direction, eta: Direction, window: Window, scratch: Floats) -> None:
+    def __init__(
+        self, level: MultigridLevel, xi: Direction, eta: Direction, window: Window, scratch: Floats
+    ) -> None:
         self._level, self._window = level, window
         x, y = (np.array(plane[window], order="C") for plane in (level.x, level.y))
         of_xi, of_eta = _part(xi, window[0]), _part(eta, window[1])
-        self._own = Level(x, y, of_xi, of_eta, False, scratch, True)
+        self._own = MultigridLevel(x, y, of_xi, of_eta, False, scratch, True)
 
     def smooth(self, forced: bool) -> None:
         """Relax the nodes of the level in place, with its right side when `forced`."""
@@ -76,7 +78,7 @@ def reentrant(edges: Four) -> list[Corner]:
 
 
 def patches(
-    level: Level, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
+    level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[Patch]:
     """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
     if min(xi.cells, eta.cells) < LEAST:

@@ -19,7 +19,7 @@ import numpy as np
 from geometry.arrays import Complexes, Floats
 from geometry.lift import Lift
 from geometry.mirror import Axis
-from solvers.neural._strip_rows import fill
+from kernels._native import strip_rows
 from solvers.neural.panels import NODES, panels
 from solvers.neural.strip import MODES, interpolation, wavenumbers
 from solvers.neural.waves import SHARPNESS, columns
@@ -84,7 +84,7 @@ class StripGrid:
             order = np.stack([half, -half % n], axis=1).ravel()
         sums = list(self._columns(eta, len(eta) - len(far)))
         x, y = out[..., 0], out[..., 1]
-        finite = fill(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
+        finite = strip_rows(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
         out[-1, 1:-1] = out[0, 1:-1]
         return finite
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.quality import count_folded
+from kernels._native import Stiffness, VariationalDescent
+from kernels._native import newton as newton_steps
 from solvers.progress import heard, tell
 from solvers.repair import repair
 from solvers.spline import spline_matrix
-from solvers.variational._variational import Minimiser, Stiffness
-from solvers.variational._variational import newton as newton_steps
 from solvers.variational.functional import Weights, aspect_of, relief_of
 from solvers.variational.preconditioner import minimiser
 from solvers.variational.windowed import REACH, descend_windows, unfold
@@ -117,7 +117,9 @@ def in_cells(still: float, nodes: Floats) -> float:
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
-def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
+def _made_valid(
+    nodes: Floats, descent: VariationalDescent, terms: tuple[float, float, float], periodic: bool
+) -> bool:
     """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
     if repair(nodes, periodic) == 0:
         return True

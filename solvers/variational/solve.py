@@ -17,9 +17,9 @@ from geometry.boundary import Boundary
 from geometry.errors import InputError
 from geometry.grid import Grid
 from geometry.quality import angles, count_folded, widest_cell
+from kernels._native import variational_energy, variational_workspace
 from solvers.coarse import divided, evaluate, sweep_kinks, thinned
 from solvers.solution import Solution
-from solvers.variational._variational import energy, workspace
 from solvers.variational.descent import descend, in_cells, stiffness_of, teller
 from solvers.variational.functional import AROUND, WAKE, Weights, aspect_of
 from solvers.variational.preconditioner import minimiser
@@ -220,8 +220,8 @@ def _descended(
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
     more, valid = descend(repaired, weights, still, most)
-    z, room = np.moveaxis(repaired, -1, 0), np.empty(workspace(ni, nj))
-    if valid and energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
+    z, room = np.moveaxis(repaired, -1, 0), np.empty(variational_workspace(ni, nj))
+    if valid and variational_energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
         return repaired, more, True
     return nodes, iterations, low > 0
 

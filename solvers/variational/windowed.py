@@ -10,7 +10,7 @@ import numpy as np
 
 from geometry.arrays import Floats, as_planar
 from geometry.quality import count_folded
-from solvers.variational._variational import Minimiser, energy, workspace
+from kernels._native import VariationalDescent, variational_energy, variational_workspace
 from solvers.variational.functional import Weights
 from solvers.variational.preconditioner import minimiser
 from solvers.windows import windows
@@ -79,12 +79,13 @@ def skewness(nodes: Floats) -> Floats:
         return np.asarray(np.where(least > 0.0, least, 0.0) ** -4.0)
 
 
-def unfold(z: Floats, descent: Minimiser, terms: tuple[float, float, float]) -> bool:
+def unfold(z: Floats, descent: VariationalDescent, terms: tuple[float, float, float]) -> bool:
     """Unfold the planes `z` (2, ni, nj) in place by minimising with regularised Jacobians; return success."""
     nodes = np.moveaxis(z, 0, -1)
     ni, nj = nodes.shape[:2]
     cell = _area(nodes) / ((ni - 1) * (nj - 1))
-    smallest = energy(z, *terms, 0.0, False, None, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
+    work = np.empty(variational_workspace(ni, nj))
+    smallest = variational_energy(z, *terms, 0.0, False, None, np.empty_like(z), work)[1]
     epsilon = max(0.05 * cell, -0.5 * smallest)
     for _ in range(25):
         if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:

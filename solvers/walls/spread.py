@@ -4,9 +4,9 @@
 
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
-The lines that leave a wall stay the curves they are and get their nodes anew (``layers_kernel.c``), so that a
-valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their index, which
-keeps kinks of the walls on their nodes.
+The lines that leave a wall stay the curves they are and get their nodes anew (``kernels/layers/layers.c``),
+so that a valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their
+index, which keeps kinks of the walls on their nodes.
 """
 
 from __future__ import annotations
@@ -24,8 +24,7 @@ from geometry.growth import LARGEST
 from geometry.parts import default_parts
 from geometry.sampling import monotone_cubic
 from geometry.stretch import on_corners
-from solvers._layers import fill_lines
-from solvers._redistribute import redistribute
+from kernels._native import layer_lines, redistribute
 from solvers.guard import guard
 from solvers.solution import Solution
 from solvers.walls.heights import Heights, arcs_in_layers, cells_needed, check_fit, edge_in_layers
@@ -112,7 +111,7 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
     planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
-    ratio = fill_lines(*planes, *ends, heights.constant, scratch)
+    ratio = layer_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.topology == "o":
         out[-1] = out[0]

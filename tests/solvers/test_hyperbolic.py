@@ -18,8 +18,8 @@ from geometry.parts import wake_nodes
 from geometry.quality import count_folded
 from geometry.sampling import Sampling
 from geometry.topology import o_boundary
+from kernels._native import hyperbolic_march, hyperbolic_scratch
 from solvers import hyperbolic as module
-from solvers._hyperbolic import march, scratch_size
 from solvers.guard import guard
 from solvers.hyperbolic import hyperbolic
 
@@ -50,7 +50,7 @@ def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int, even: f
     levels = np.empty((2, 41, n))
     levels[:, 0] = circle(n)[:-1].T
     knobs = DISSIPATION, even, np.inf, BEND, 1 + THETA, 0.16, 10, 30
-    march(levels[0], levels[1], steps, *knobs, np.empty(scratch_size(n)))
+    hyperbolic_march(levels[0], levels[1], steps, *knobs, np.empty(hyperbolic_scratch(n)))
     expected = np.multiply.outer(radii_of_levels(n, 0.5, steps), circle(n, 1.0)[:-1])
     np.testing.assert_allclose(np.moveaxis(levels, 0, -1), expected, rtol=0, atol=1e-11)
 
@@ -257,7 +257,7 @@ def test_airfoils_are_marched_once(
 ) -> None:
     """The distance to march is known so well that no second march has to correct it."""
     marches = []
-    monkeypatch.setattr(module, "march", lambda *args: (marches.append(1), march(*args)))
+    monkeypatch.setattr(module, "march", lambda *args: (marches.append(1), hyperbolic_march(*args)))
     wall = naca("2412").boundary(Sampling(ni, nj, topology, "curvature", te="wedge"))
     hyperbolic(wall, wall_spacing=height)
     assert len(marches) == 1

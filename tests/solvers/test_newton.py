@@ -8,9 +8,9 @@ from solver_shapes import arch, bump, wrench
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
 from geometry.quality import count_folded
+from kernels._native import newton as compiled
+from kernels._native import variational_energy, variational_workspace
 from solvers.tfi import tfi
-from solvers.variational._variational import energy, workspace
-from solvers.variational._variational import newton as compiled
 from solvers.variational.descent import newton, stiffness_of
 from solvers.variational.functional import Weights, aspect_of
 from solvers.variational.solve import solve
@@ -21,7 +21,7 @@ def value_and_slope(nodes: Floats) -> tuple[float, float]:
     z, weights = np.moveaxis(nodes, -1, 0), Weights()
     gradient = np.empty_like(z)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
-    value, _ = energy(z, *terms, gradient, np.empty(workspace(*nodes.shape[:2])))
+    value, _ = variational_energy(z, *terms, gradient, np.empty(variational_workspace(*nodes.shape[:2])))
     return value, float(np.abs(gradient).max())
 
 

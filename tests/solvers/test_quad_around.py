@@ -16,7 +16,7 @@ from geometry.errors import InputError
 from geometry.families.bodies import boundary
 from geometry.quality import count_folded
 from geometry.topology import straight
-from solvers.neural.quads._network import activate, refine
+from kernels._native import activate, upsample
 from solvers.neural.quads.approach import approach
 from solvers.neural.quads.features import features
 from solvers.neural.quads.inference import infer_quads
@@ -72,8 +72,8 @@ def test_finer_copies_go_round_along_the_first_axis() -> None:
     rng = np.random.default_rng(0)
     x, add = rng.normal(size=(2, 6, 5, 8)), rng.normal(size=(2, 12, 9, 8))
     found, closed = np.empty_like(add), np.empty((2, 13, 9, 8))
-    refine(x, add, found, True)
-    refine(np.concatenate([x, x[:, :1]], 1), np.concatenate([add, add[:, :1]], 1), closed)
+    upsample(x, add, found, True)
+    upsample(np.concatenate([x, x[:, :1]], 1), np.concatenate([add, add[:, :1]], 1), closed)
     np.testing.assert_array_equal(found, closed[:, :-1])
 
 

@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Complexes, Floats
-from solvers.neural.quads._approach import LINE, approach_all
+from kernels._native import LINE, winslow_steps
 from solvers.neural.quads.encoding import LATENT
 
 STEPS = 4
@@ -96,7 +96,7 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
     last, (m, n) = np.empty_like(near), near.shape[2:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
     xi = _plain(m - 1) if around else _folded(m)
-    approach_all(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
+    winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
     return last
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from geometry.arrays import Floats
 from geometry.boundary import Boundary
-from solvers._tfi import fill_all
+from kernels._native import tfi_batch
 from solvers.spline import between
 
 Sides = tuple[Floats, Floats, Floats, Floats]
@@ -60,7 +60,7 @@ class Edges:
     def interpolated(self, laws: Sides) -> Floats:
         """Return the planes (batch, 2, ni, nj) of transfinite interpolation with `laws` along the edges."""
         nodes = np.empty((len(self), 2, *self.counts))
-        fill_all(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
+        tfi_batch(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
         return nodes
 
 
