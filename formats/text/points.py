@@ -19,8 +19,9 @@ from meshonet.formats.format import Format
 from meshonet.formats.source import Source
 from meshonet.formats.text.rows import Line, decode, read_lines, table
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from geometry import _cells
 from meshonet.geometry.arrays import Floats, as_planar
-from meshonet.geometry.blocks.connection import wake_cells
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
 from meshonet.geometry.quality.metrics import METRICS, NAMES
@@ -165,7 +164,7 @@ def _run(grid: Grid, first: int, values: Floats, run: Run) -> tuple[Floats, NDAr
 
     `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
     """
-    return _summed(grid.x, grid.y, (grid.topology == "o", wake_cells(grid)), first, values, run)
+    return _summed(grid.x, grid.y, (grid.periodic, grid.wake), first, values, run)
 
 
 def _summed(

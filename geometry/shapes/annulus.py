@@ -12,7 +12,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.laws import stretch_arcs
+from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import Sampling
 
 

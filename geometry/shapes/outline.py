@@ -16,14 +16,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
-from meshonet.geometry.shapes.airfoil.clean import check_extent
 from meshonet.geometry.shapes.far_field import o_boundary
-from meshonet.geometry.spacing.laws import stretch_arcs
+from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 _LEAST_TURN = np.radians(30.0)

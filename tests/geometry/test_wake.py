@@ -8,7 +8,7 @@ import pytest
 from sections import selig
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca

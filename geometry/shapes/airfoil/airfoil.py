@@ -17,9 +17,9 @@ from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing,
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section, clean_section
 from meshonet.geometry.shapes.airfoil.te_fillet import rounded_base
 from meshonet.geometry.shapes.airfoil.te_wedge import wedged_base
+from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
-from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, wake_axis, wake_cells
-from meshonet.geometry.spacing.airfoil import Stations, wall_arcs
+from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 __all__ = ["SHARP_GAP", "Airfoil"]
@@ -229,7 +229,7 @@ class Airfoil:
         chord, ni = given.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord
-        cells = wake_cells(ni, sampling.wake_nodes, step, length)
+        cells = cells_of_wake(ni, sampling.wake_nodes, step, length)
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
-from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners, turning
 from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
@@ -85,13 +85,6 @@ def clean_section(points: Floats) -> Section:
         order = np.arange(len(ring))[::-1] if open_gap else np.roll(np.arange(len(ring))[::-1], 1)
         ring, index = ring[order], index[order]
     return _opened_at_edge(ring, index, bool(open_gap))
-
-
-def check_extent(extent: float) -> None:
-    """Raise InputError when the size of a shape is nothing, or beyond what can be multiplied a few times."""
-    if not 1e-60 < extent < 1e60:
-        what = "no extent" if extent == 0 else f"an extent of {extent:.3g}"
-        raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")
 
 
 def _distinct(points: Floats, tolerance: float) -> Indices:
