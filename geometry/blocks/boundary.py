@@ -170,7 +170,7 @@ class Boundary(Connected):
         if (ni, nj) == (self.ni, self.nj):
             return self
         sides: dict[Side, Floats] = {side: getattr(self, side) for side in SIDES}
-        edges: dict[str, Any] = {**resample_edges(sides, ni, nj, closed=self.periodic, wake=self.wake)}
+        edges: Any = resample_edges(sides, ni, nj, closed=self.periodic, wake=self.wake)
         patches = resample_patches(self.patches, (self.ni, self.nj), (ni, nj), self.wake)
         return replace(self, **edges, patches=patches, sensors=None, sampled=not self.wake or self.sampled)
 

@@ -16,15 +16,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Range
 from meshonet.geometry.errors import InputError
 
-Face: TypeAlias = Callable[[int, Side], Floats]
+Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 """Gives the nodes of a side of a block."""
 
 
@@ -69,7 +70,7 @@ class Connection:
     orientation: tuple[int, ...]
     transform: Motion | None = None
 
-    def nodes(self, face: Face) -> tuple[Floats, Floats]:
+    def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the nodes (n, d) or (n, m, d) of both sides in the same order, the first moved by `transform`."""
         own, donor = _part(face(self.block, self.side), self.range), face(self.donor, self.donor_side)
         donor = _part(donor, self.donor_range)
@@ -107,7 +108,7 @@ class Connection:
         return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
 
 
-def _part(nodes: Floats, span: Range) -> Floats:
+def _part(nodes: NDArray[Any], span: Range) -> NDArray[Any]:
     return nodes[tuple(slice(start, stop + 1) for start, stop in span)]
 
 

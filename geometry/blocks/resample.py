@@ -66,16 +66,18 @@ def resample_edges(
     if closed and ni < 4:
         raise InputError(f"{ni} nodes around a body", "use at least 4")
     sides: dict[Side, Floats] = {}
+    around: tuple[Side, Side] = ("south", "north")
+    across: tuple[Side, Side] = ("west", "east")
     if wake:
         marks = wake_marks(len(edges["south"]), wake, ni)
-        for side in ("south", "north"):
+        for side in around:
             sides[side] = _in_pieces(edges[side], *marks)
         cells = marks[1][1]
         sides["south"][ni - 1 - cells :] = sides["south"][: cells + 1][::-1]
     else:
-        for side in ("south", "north"):
+        for side in around:
             sides[side] = resample_edge(edges[side], ni, closed=closed)
-    for side in ("west", "east"):
+    for side in across:
         sides[side] = resample_edge(edges[side], nj, closed=False)
     return sides
 

@@ -29,10 +29,21 @@ _SEAM = 1e-6
 class Edges(Protocol):
     """What is checked of a boundary (`meshonet.geometry.blocks.boundary.Boundary`)."""
 
-    south: Floats
-    north: Floats
-    west: Floats
-    east: Floats
+    @property
+    def south(self) -> Floats:
+        """(ni, 2) nodes."""
+
+    @property
+    def north(self) -> Floats:
+        """(ni, 2) nodes."""
+
+    @property
+    def west(self) -> Floats:
+        """(nj, 2) nodes."""
+
+    @property
+    def east(self) -> Floats:
+        """(nj, 2) nodes."""
 
     @property
     def around_body(self) -> bool:

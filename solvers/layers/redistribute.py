@@ -103,7 +103,7 @@ def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg
     """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
     if all(part.side in ("south", "north") for part in boundary.patches):
         return boundary.patches
-    return default_patches(boundary.topology, *nodes.shape[:2], boundary.wake)
+    return default_patches(boundary.topology, nodes.shape[0], nodes.shape[1], boundary.wake)
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
