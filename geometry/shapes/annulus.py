@@ -40,7 +40,7 @@ class Annulus:
             another topology, or a setting that the body has no use for.
         """
         if sampling.topology not in ("auto", "o"):
-            raise InputError("a body in a far field makes an O grid", "use --topology o", source=self.name)
+            raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
         found = self._body.boundary(replace(sampling, topology="o"))
         north = self._around(found.north)
         cut = straight(found.south[0], north[0], found.nj)

@@ -134,7 +134,7 @@ def _growing(first: float, length: float, cells: int) -> Floats:
         raise InputError(
             f"{cells} cells from {first:.3g} on along a wake of {length:.3g} would grow by more than "
             f"{LARGEST:g} each",
-            "use more nodes, --wake-nodes or a larger --te-spacing",
+            "use more nodes, {wake_nodes} or a larger {te_spacing}",
         ) from None
     k = np.arange(1.0, cells)
     shape = np.append(0.0, np.cumsum(-np.expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))

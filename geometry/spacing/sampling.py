@@ -71,7 +71,7 @@ class Sampling:
             raise InputError(f"spacing {self.spacing!r} is not known", "use " + "/".join(SPACINGS))
         for name, size in (("le_spacing", self.le_spacing), ("te_spacing", self.te_spacing)):
             if size is not None and not 1e-9 <= size <= 0.2:
-                raise InputError(f"{name} is {size:g} chords", "use 1e-9 to 0.2")
+                raise InputError(f"{size:g} chords", "use 1e-9 to 0.2", parameter=name)
         if not 1.0 < self.radius <= 1e6:
             raise InputError(f"the far field is at {self.radius:g} chords", "use more than 1 and at most 1e6")
         if self.wake is not None and not 0.5 <= self.wake <= 1e6:

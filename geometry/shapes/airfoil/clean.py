@@ -40,6 +40,7 @@ class Section:
     blunt : the trailing edge has a base.
     gap : distance between the two ends of the surfaces, before a sharp edge was closed.
     corners : indices of points where the tangent jumps, those of the trailing edge included.
+    swapped : given points that stood in the wrong order among their neighbours.
     """
 
     points: Floats
@@ -47,6 +48,7 @@ class Section:
     blunt: bool
     gap: float
     corners: Indices
+    swapped: tuple[int, ...] = ()
 
     def moved_apart(self) -> Section:
         """Return the section with its surfaces moved apart where they all but touch (`meshonet.geometry.shapes.airfoil.separate_surfaces`)."""
@@ -69,7 +71,9 @@ def clean_section(points: Floats) -> Section:
     given = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(given, axis=0))) if len(given) else 0.0
     check_extent(extent)
-    index = _in_order(given, _distinct(given, SAME_POINT * extent))
+    distinct_points = _distinct(given, SAME_POINT * extent)
+    index = _in_order(given, distinct_points)
+    swapped = tuple(sorted(index[index != distinct_points].tolist()))
     ring = given[index]
     open_gap = np.hypot(*(ring[0] - ring[-1])) > SAME_POINT * extent
     if not open_gap:
@@ -84,7 +88,7 @@ def clean_section(points: Floats) -> Section:
     if area > 0:
         order = np.arange(len(ring))[::-1] if open_gap else np.roll(np.arange(len(ring))[::-1], 1)
         ring, index = ring[order], index[order]
-    return _opened_at_edge(ring, index, bool(open_gap))
+    return replace(_opened_at_edge(ring, index, bool(open_gap)), swapped=swapped)
 
 
 def _distinct(points: Floats, tolerance: float) -> Indices:

@@ -78,10 +78,10 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
     Spacings: ``conformal`` has equal angles of the circle that the section is an image of
-    (`meshonet.geometry.conformal.spacing`); ``tanh`` stretches each side between a step at its two edges; ``auto`` is
-    ``conformal``, or ``tanh`` where a step is given or the section has no usable map; ``cosine`` is the half
-    circle's on each side, or ``tanh`` with its end steps where one is given or the edge is blunt; ``uniform``
-    has equal steps on a side; ``curvature`` follows `meshonet.geometry.spacing.size_field`.
+    (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between a step at its two
+    edges; ``cosine`` is the half circle's on each side, or ``tanh`` with its end steps where one is given or
+    the edge is blunt; ``uniform`` has equal steps on a side; ``curvature`` follows
+    `meshonet.geometry.spacing.size_field`.
 
     Parameters
     ----------
@@ -103,17 +103,10 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
             f"{sampling.spacing} spacing leaves no cell size to choose",
             "use tanh, cosine or curvature with it",
         )
-    if sampling.spacing == "conformal" or (sampling.spacing == "auto" and not steps_given):
-        corners = (
-            np.array([stations.lower, stations.upper])
-            if stations.half_base and not stations.rounded
-            else np.zeros(0)
-        )
-        try:
-            return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
-        except InputError:
-            if sampling.spacing == "conformal":
-                raise
+    if sampling.spacing == "conformal":
+        blunt = stations.half_base and not stations.rounded
+        corners = np.array([stations.lower, stations.upper]) if blunt else np.zeros(0)
+        return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
         sides = arcs_by_curvature(
