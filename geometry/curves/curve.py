@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from geometry._curve import locate, slopes, speeds, values
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, distinct, read_only
 from meshonet.geometry.curves.spline import spline_slopes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
@@ -65,12 +65,12 @@ class Curve:
         corners: Sequence[int] | Indices | None = None,
         straight: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None,
     ) -> None:
-        self.points, self.closed = _checked(points, closed), closed
+        self.points, self.closed = read_only(_checked(points, closed)), closed
         n = len(self.points)
         if corners is None:
-            self.corner_index = find_corners(self.points, closed=closed)
+            self.corner_index = read_only(find_corners(self.points, closed=closed))
         else:
-            self.corner_index = distinct(np.asarray(corners, dtype=np.intp))
+            self.corner_index = read_only(distinct(np.asarray(corners, dtype=np.intp)))
             if self.corner_index.size and (self.corner_index[0] < 0 or self.corner_index[-1] >= n):
                 raise InputError(
                     f"a curve of {n} points has no corner {self.corner_index[-1]}", "count points from 0"
@@ -97,8 +97,8 @@ class Curve:
         self._rate_start = np.minimum(rate / np.maximum(speed[:, :-1], 1e-300), 3.0).ravel()
         self._rate_stop = np.minimum(rate / np.maximum(speed[:, 1:], 1e-300), 3.0).ravel()
         self.length = float(self._table[-1])
-        self.knots = self._table[::_STEPS][: len(self.points)].copy()
-        self.corners = self.knots[self.corner_index]
+        self.knots = read_only(self._table[::_STEPS][: len(self.points)].copy())
+        self.corners = read_only(self.knots[self.corner_index])
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
         """Return the interval and the parameter in it (0 to 1) at arc lengths s (m,)."""

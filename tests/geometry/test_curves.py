@@ -7,6 +7,7 @@ from sections import STATIONS, selig
 from meshonet.geometry.blocks.resample import resample_edge
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.family import family
 
 
 def circle(n: int, turns: float = 1.0) -> np.ndarray:
@@ -177,3 +178,11 @@ def test_resampling_a_closed_edge_stays_closed_and_keeps_its_start():
 def test_resampling_to_the_same_count_changes_next_to_nothing():
     nodes = circle(30, 0.7)
     np.testing.assert_allclose(resample_edge(nodes, 30, closed=False), nodes, atol=1e-12)
+
+
+def test_arrays_that_are_kept_cannot_be_written() -> None:
+    curve = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), closed=True)
+    boundary = family("arch").boundary(0.2, 11, 11)
+    for kept in (curve.points, curve.knots, curve.corners, curve.corner_index, boundary.corners["south"]):
+        with pytest.raises(ValueError, match="read-only"):
+            kept[...] = 0

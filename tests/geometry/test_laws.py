@@ -50,3 +50,19 @@ def test_tanh_of_equal_steps_is_uniform():
 def test_tanh_says_what_it_cannot_do():
     with pytest.raises(InputError, match="change the spacing or the number of nodes"):
         TanhLaw.fitted(2.0, 0.9, 0.9)
+
+
+def test_a_new_law_is_one_line(monkeypatch):
+    from meshonet.geometry.families.family import family
+    from meshonet.geometry.shapes.airfoil.naca import naca
+    from meshonet.geometry.shapes.outline import Outline
+    from meshonet.geometry.spacing import laws, sampling
+
+    monkeypatch.setitem(LAWS, "square", laws.Law(lambda q: q * q))
+    monkeypatch.setattr(sampling, "SPACINGS", tuple(LAWS))
+    settings = sampling.Sampling(61, 21, spacing="square")
+    square = Outline(family("arch").boundary(0.0, 3, 3).outline()).boundary(settings)
+    np.testing.assert_allclose(square.south[:, 0], np.linspace(0, 1, 61) ** 2, atol=1e-12)
+    wall = naca("0012-sharp").boundary(settings).south
+    steps = np.hypot(*np.diff(wall, axis=0).T)
+    assert (np.diff(steps[:28]) > 0).all()
