@@ -52,7 +52,7 @@ class Metric:
     cells: Callable[[Grid], Floats] | None = None
 
 
-# first those of the compiled kernel, in its order (cells_kernel.h), then those with a function
+# first those of the compiled kernel, in its order (kernels/geometry/cells.h), then those with a function
 METRICS: tuple[Metric, ...] = (
     Metric("max_angle", "deg", "max", "greatest included angle"),
     Metric("min_angle", "deg", "min", "least included angle"),
