@@ -50,13 +50,13 @@ def c_grid(wake: int = 4, body: int = 9, nj: int = 4, name: str = "c") -> Grid:
     north = np.concatenate([low[:-1], arc, high[1:]])
     t = np.linspace(0, 1, nj)[:, None, None]
     nodes = np.moveaxis((1 - t) * south + t * north, 0, 1)
-    parts = (
+    parts = (  # otherwise called than those that a C grid has by default
         Part("wake", "south", 0, wake - 1),
-        Part("wall", "south", wake - 1, ni - wake),
+        Part("plate", "south", wake - 1, ni - wake),
         Part("wake", "south", ni - wake, ni - 1),
-        Part("farfield", "north", 0, ni - 1),
-        Part("farfield", "east", 0, nj - 1),
-        Part("farfield", "west", 0, nj - 1),
+        Part("far side", "north", 0, ni - 1),
+        Part("far side", "east", 0, nj - 1),
+        Part("far side", "west", 0, nj - 1),
     )
     return Grid(nodes, "c", parts, name)
 

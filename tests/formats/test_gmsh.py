@@ -30,7 +30,7 @@ def groups(dimension: int) -> dict[str, int]:
 COUNTS = {
     "quad": (35, 24, {"inlet": 4, "no-slip wall": 3, "south": 3, "out let": 4, "north": 6}),
     "o": (60, 48, {"airfoil": 12, "far": 12}),
-    "c": (56, 42, {"wall": 8, "farfield": 14 + 3 + 3}),
+    "c": (56, 42, {"plate": 8, "far side": 14 + 3 + 3}),
 }
 
 

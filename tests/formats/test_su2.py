@@ -15,7 +15,7 @@ from meshonet.geometry.blocks.patches import Part
 MARKERS = {
     "quad": {"no-slip_wall": 3, "south": 3, "out_let": 4, "north": 6, "inlet": 4},
     "o": {"airfoil": 12, "far": 12},
-    "c": {"wall": 8, "farfield": 14 + 3 + 3},
+    "c": {"plate": 8, "far_side": 14 + 3 + 3},
 }
 
 

@@ -74,6 +74,9 @@ class Airfoil:
     blunt: bool
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
 
+    notes: tuple[str, ...] = ()
+    """What a reader passed over in its file, for those who sample it."""
+
     def __init__(self, points: Floats, name: str = "", places: Sequence[str] = ()) -> None:
         self.name, self._round = name, False
         self._section = section = clean_section(points)
