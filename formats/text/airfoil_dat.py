@@ -15,7 +15,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
@@ -227,11 +226,11 @@ def _monotone(x: Floats) -> bool:
 def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[Floats, list[int], int]:
     """Return the points in one run around the section, the row of each, and how many the first surface has.
 
-    Either they run so already, or they are two surfaces that both start at the same edge, the first of
-    which is then to be reversed. The division is where a block starts or at the widest step; what gives
-    the shortest way round is right. It starts at the edge where both end, the trailing one in Lednicer's
-    order; where that lies ahead, at smaller x, at the other: only a sharp edge would tell it without. Of points that run around already there is no first
-    surface, and 0 is returned.
+    Either they run so already, and 0 stands for the first surface, or they are two surfaces that both start
+    at the same edge, the first of which is then to be reversed. The division is where a block starts or at
+    the widest step; what gives the shortest way round is right. It starts at the edge where both end, the
+    trailing one in Lednicer's order; where that lies ahead, at smaller x, at the other: only a sharp edge
+    would tell it without.
     """
     n = len(points)
     steps = np.hypot(*np.diff(points, axis=0).T)
@@ -281,12 +280,3 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
             f"the points go more than once around: widest step, line {numbers[k]} to {numbers[(k + 1) % n]}",
             "give one element alone, " + _ASK.removeprefix("give an airfoil "),
         )
-
-
-FORMAT = Format(
-    name="airfoil",
-    suffixes=(".dat",),
-    description="airfoil coordinates, Selig or Lednicer",
-    read_shapes=read_shapes,
-    sniff=sniff,
-)

@@ -16,7 +16,6 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.source import Source
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
@@ -195,12 +194,3 @@ def _chained(edges: list[Floats]) -> list[Floats]:
         raise InputError(f"the four edges do not close: {gap:.3g} are left open", "make the four edges meet")
     chain[3][-1, :2] = chain[0][0, :2]
     return chain
-
-
-FORMAT = Format(
-    name="points",
-    suffixes=(".csv", ".txt", ".xy"),
-    description="points of a closed curve or of four edges",
-    read_shapes=read_shapes,
-    sniff=sniff,
-)

@@ -78,4 +78,7 @@ def file_names(folder: Path) -> list[str]:
     return sorted(entry.name for entry in folder.iterdir())
 
 
+VARIANTS = ("vtk:ascii", "plot3d:binary", "plot3d:fortran", "gmsh:ascii", "gmsh:4.1", "gmsh:4.1,ascii")
+"""Formats with options whose bytes have nothing in common with those without."""
+
 PYTHON = sys.executable

@@ -10,7 +10,8 @@ from format_shapes import c_grid, channel, memory, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 
-from meshonet.formats.cgns.write import read_grids, write_extruded, write_grids
+from meshonet.formats.cgns.read import read_grids
+from meshonet.formats.cgns.write import write_extruded, write_grids
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch

@@ -8,7 +8,7 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.mesh.unstructured import unstructured
-from meshonet.formats.su2.write import write_extruded, write_grids
+from meshonet.formats.su2 import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
