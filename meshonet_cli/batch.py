@@ -36,22 +36,31 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
         with session.member(source):
             begun = time.perf_counter()
             found = read(source)
-            item = next(found, None)
-            if item is None:
+            item, more = _following(found, source, session)
+            if item is None and not more:
                 raise InputError(
                     "holds nothing", "give a file with a boundary or a grid in it", source=source
                 )
             only = True
-            while item is not None:
+            while item is not None or more:
                 spent = time.perf_counter() - begun
                 begun = time.perf_counter()
-                following = next(found, None)
-                only = only and following is None
+                following, more = _following(found, source, session) if more else (None, False)
+                only = only and following is None and not more
                 session.batch = session.batch or len(sources) > 1 or not only
-                session.begin(source, len(sources) if len(sources) > 1 else None)
-                yield Item(index, source, item, spent, only)
-                index += 1
+                if item is not None:
+                    session.begin(source, len(sources) if len(sources) > 1 else None)
+                    yield Item(index, source, item, spent, only)
+                index += item is not None or more  # a file that is bad as a whole has no number
                 item = following
+
+
+def _following(found: Iterator[T], source: str, session: Session) -> tuple[T | None, bool]:
+    """Return the next record, None when it cannot be read, which is said, and whether there may be more."""
+    with session.member(source):
+        item = next(found, None)
+        return item, item is not None
+    return None, True
 
 
 class Destination:

@@ -133,7 +133,7 @@ def convert_files(
         if not boundaries:
             return read_grids(source, from_format)
         sampling = Sampling(normalise=change.normalise)
-        return (shape.boundary(sampling) for shape in read_shapes(source, from_format))
+        return map(lambda shape: shape.boundary(sampling), read_shapes(source, from_format))
 
     def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
         what = change(item.what) if isinstance(item.what, Grid) else item.what

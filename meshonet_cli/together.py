@@ -70,7 +70,9 @@ class Together:
             ]
             self._made = {}  # what was not asked for goes with its boundary, whose id another may get
             if len(alike) > 1:
-                with suppress(MeshonetError):  # one of them fails: that is told in its turn
+                with suppress(
+                    MeshonetError, MemoryError
+                ):  # of one of them or of all at once: each is tried in its turn
                     solutions = self._many(alike)
                     self._made = {id(one): solution for one, solution in zip(alike, solutions, strict=True)}
             for item, path, one in group:
@@ -98,5 +100,5 @@ def _group(todo: Todo[Shape], sampling: Sampling) -> list[tuple[Item[Shape], str
 def _sampled(shape: Shape, sampling: Sampling) -> Boundary | Exception:
     try:
         return edges_of(shape, sampling)
-    except (MeshonetError, ArithmeticError, ValueError, OSError) as error:
+    except (MeshonetError, MemoryError, ArithmeticError, ValueError, OSError) as error:
         return error

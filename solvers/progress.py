@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from dataclasses import dataclass
 
 from meshonet.geometry.arrays import Floats
@@ -37,22 +38,22 @@ class Cycle:
 
 
 Listener = Callable[[Cycle], None]
-_listeners: list[Listener] = []
+_listeners: ContextVar[tuple[Listener, ...]] = ContextVar("listeners", default=())
 
 
 @contextlib.contextmanager
 def listening(listener: Listener) -> Iterator[None]:
-    """Have `listener` called after every cycle that runs inside the block."""
-    _listeners.append(listener)
+    """Have `listener` called after every cycle that runs inside the block, in its thread."""
+    token = _listeners.set((*_listeners.get(), listener))
     try:
         yield
     finally:
-        _listeners.remove(listener)
+        _listeners.reset(token)
 
 
 def heard() -> bool:
     """Return whether anybody listens."""
-    return bool(_listeners)
+    return bool(_listeners.get())
 
 
 def tell(
@@ -64,9 +65,10 @@ def tell(
     functional: float | None = None,
 ) -> None:
     """Tell the listeners of a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
-    if not _listeners:
+    listeners = _listeners.get()
+    if not listeners:
         return
     counts = nodes.shape[0], nodes.shape[1]
     cycle = Cycle(method, *counts, number, residual, change, count_folded(nodes), functional)
-    for listener in tuple(_listeners):
+    for listener in listeners:
         listener(cycle)
