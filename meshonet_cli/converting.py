@@ -18,9 +18,10 @@ from meshonet.geometry.blocks.normalise import normalised
 from meshonet.geometry.blocks.rotate import turned
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.sources import items
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.item import Item
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -144,7 +145,7 @@ def convert_files(
         report.finished(path)
         session.tell(report)
 
-    deliver(items(sources, read, session), make, destination, session, tell, skip_existing=skip_existing)
+    deliver(items(sources, read, session), one_by_one(make), destination, session, tell, skip_existing=skip_existing)
     return session.finish()
 
 

@@ -21,7 +21,7 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.energy.functional import Weights, aspect_of, energy
 from meshonet.solvers.progress import Cycle, listening, tell
-from meshonet_cli.watching import COLUMNS, Live
+from meshonet_cli.convergence import COLUMNS, Live
 
 
 def table(path: str = "h.csv") -> list[dict[str, str]]:
