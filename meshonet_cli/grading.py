@@ -14,6 +14,7 @@ from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.measure import Quality, measure, worst_cells
 from meshonet.geometry.quality.profiles import Figures, Judgement, judge
 from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.sources import items
 from meshonet_cli.gates import Gate
 from meshonet_cli.judging import (
@@ -24,7 +25,6 @@ from meshonet_cli.judging import (
     walls_json,
     walls_table,
 )
-from meshonet_cli.batch.item import Item
 from meshonet_cli.pairing import Pairing, Partners
 from meshonet_cli.report import Timed, figure, quality_json, quality_table
 from meshonet_cli.session import Session

@@ -9,9 +9,9 @@ from typing import Any
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.batch.destination import Destination
-from meshonet_cli.batch.sources import items
-from meshonet_cli.batch.run import deliver, one_by_one, prepare
 from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
@@ -64,7 +64,7 @@ def deliver(
 ) -> None:
     """Make something of every member of `found`, write it to `destination`, and report it.
 
-    A member that fails is reported and left out. Memory holds what `make` does, or a few members for each job.
+    A member that fails is reported and left out. Memory holds what `make` does, or some members for a job.
 
     Parameters
     ----------
@@ -83,10 +83,7 @@ def deliver(
     each = destination.each or not session.batch
     todo = _paths(found, destination, session, skip_existing) if each else ((item, "") for item in found)
     work = _Work(make, destination if each else None)
-    if jobs > 1 and session.batch:
-        done = _in_processes(work, todo, jobs, together)
-    else:
-        done = work(todo)
+    done = _in_processes(work, todo, jobs, together) if jobs > 1 and session.batch else work(todo)
     if each:
         for item, path, outcome in done:
             with session.member(item.label, item.source):
@@ -173,9 +170,7 @@ def _in_processes(work: _Work[T, S, R], todo: Todo[T], jobs: int, together: int)
             yield from _of_group(*waiting.popleft())
 
 
-def _of_group(
-    group: Sequence[tuple[Item[T], str]], future: Future[list[Done[S, R]]]
-) -> Sequence[Done[S, R]]:
+def _of_group(group: Sequence[tuple[Item[T], str]], future: Future[list[Done[S, R]]]) -> Sequence[Done[S, R]]:
     try:
         return future.result()
     except Exception as error:  # the process itself is gone
