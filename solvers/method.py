@@ -105,27 +105,32 @@ class Row(NamedTuple):
     sweeps: bool = True
 
 
-METHODS: Mapping[str, Row] = MappingProxyType({
-    "tfi": Row("meshonet.solvers.algebraic.tfi:solve", "interpolates between the edges", solves=False),
-    "winslow": Row("meshonet.solvers.elliptic.solve:solve", "is elliptic"),
-    "thomas-middlecoff": Row(
-        "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-        "too, with control functions that carry the spacing of the edges inside", sweeps=False,
-    ),
-    "steger-sorenson": Row(
-        "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
-        "has sources at walls that turn the lines there to {wall_angle}", sweeps=False,
-    ),
-    "variational": Row(
-        "meshonet.solvers.energy.variational:solve",
-        "minimises a functional of angles and edge lengths: better angles, no folds",
-    ),
-    "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
-    "conformal": Row(
-        "meshonet.solvers.neural.method:Conformal", "solves around bodies in a strip, by a conformal map"
-    ),
-    "operator": Row("meshonet.solvers.neural.method:Operator", "is a neural operator", solves=False),
-})  # fmt: skip
+METHODS: Mapping[str, Row] = MappingProxyType(
+    {
+        "tfi": Row("meshonet.solvers.algebraic.tfi:solve", "interpolates between the edges", solves=False),
+        "winslow": Row("meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"),
+        "thomas-middlecoff": Row(
+            "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
+            "with control functions that carry the spacing of the edges inside",
+            sweeps=False,
+        ),
+        "steger-sorenson": Row(
+            "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
+            "with sources at walls that turn grid lines to {wall_angle} there",
+            sweeps=False,
+        ),
+        "variational": Row(
+            "meshonet.solvers.energy.variational:solve",
+            "minimises a functional of angles and edge lengths; better angles, no folds",
+        ),
+        "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
+        "conformal": Row(
+            "meshonet.solvers.neural.method:Conformal",
+            "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
+        ),
+        "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),
+    }
+)
 """Methods by name; ``operator:NAME`` is the operator of that name."""
 
 
