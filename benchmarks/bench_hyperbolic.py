@@ -26,15 +26,13 @@ import numpy as np
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.energy.variational import solve as minimise
 from meshonet.solvers.hyperbolic.march import hyperbolic
-from meshonet.solvers.pipeline.select import solve_automatic
+from meshonet.solvers.method import method_named
+from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 
 SEED = 20_000_003
 REPEAT = 3
@@ -212,9 +210,11 @@ def defaults(case: Case, name: str, n: int) -> list[float]:
     """Return folded cells, two angles, two growths, the least and greatest first cell, and milliseconds."""
     edges = case.make().boundary(Sampling(n, n, "c", te=case.te))  # type: ignore[arg-type]
     begun = time.process_time()
-    nodes = solve_automatic(edges, solve if name == "auto" else minimise, name).grid.nodes
+    nodes = (
+        (elliptic() if name == "auto" else fewer_on_quads(method_named(name))).solve([edges])[0].grid.nodes
+    )
     spent = 1e3 * (time.process_time() - begun)
-    wake = wake_nodes(edges.south)
+    wake = edges.wake + 1
     found = figures(nodes, 1.0, wake)
     wall = nodes[wake - 1 : n - wake + 1, :2]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T) / edges.chord
@@ -239,7 +239,7 @@ def measured(case: Case, ni: int, nj: int, first: float) -> list[float]:
         edges = case.make().boundary(sampling)
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
         spent.append(1e3 * (time.process_time() - begun))
-    wake = wake_nodes(edges.south) if edges.topology == "c" else 0
+    wake = edges.wake + 1 if edges.wake else 0
     return [*figures(nodes, first * edges.chord, wake), min(spent)]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from operator import methodcaller
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +19,10 @@ from meshonet.geometry.blocks.normalise import normalised
 from meshonet.geometry.blocks.rotate import turned
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -133,7 +135,7 @@ def convert_files(
         if not boundaries:
             return read_grids(source, from_format)
         sampling = Sampling(normalise=change.normalise)
-        return (shape.boundary(sampling) for shape in read_shapes(source, from_format))
+        return map(methodcaller("boundary", sampling), read_shapes(source, from_format))
 
     def make(item: Item[Grid | Boundary]) -> tuple[Grid | Boundary, Converted]:
         what = change(item.what) if isinstance(item.what, Grid) else item.what
@@ -144,7 +146,14 @@ def convert_files(
         report.finished(path)
         session.tell(report)
 
-    deliver(items(sources, read, session), make, destination, session, tell, skip_existing=skip_existing)
+    deliver(
+        items(sources, read, session),
+        one_by_one(make),
+        destination,
+        session,
+        tell,
+        skip_existing=skip_existing,
+    )
     return session.finish()
 
 

@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import folded_cells, per_cell
 from meshonet.geometry.quality.metrics import METRICS, NAMES
-from meshonet_cli.batch import Destination
+from meshonet_cli.batch.destination import Destination
 
 PICTURES = ("png", "svg", "pdf")
 

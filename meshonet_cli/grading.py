@@ -13,7 +13,9 @@ from meshonet.geometry.errors import BadCell, InputError
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.measure import Quality, measure, worst_cells
 from meshonet.geometry.quality.profiles import Figures, Judgement, judge
-from meshonet_cli.batch import Destination, items
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.sources import items
 from meshonet_cli.gates import Gate
 from meshonet_cli.judging import (
     judgement_json,
@@ -23,7 +25,6 @@ from meshonet_cli.judging import (
     walls_json,
     walls_table,
 )
-from meshonet_cli.member import Item
 from meshonet_cli.pairing import Pairing, Partners
 from meshonet_cli.report import Timed, figure, quality_json, quality_table
 from meshonet_cli.session import Session

@@ -8,9 +8,10 @@ from typing import Any
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -61,5 +62,5 @@ def plot_grids(
         session.tell(report)
 
     found = items(sources, lambda source: read_grids(source, fmt), session)
-    deliver(found, make, destination, session, tell, skip_existing=skip_existing)
+    deliver(found, one_by_one(make), destination, session, tell, skip_existing=skip_existing)
     return session.finish()

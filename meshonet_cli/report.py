@@ -8,11 +8,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from meshonet_cli.member import Item
+from meshonet_cli.batch.item import Item
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality
-    from meshonet_cli.watching import Row
+    from meshonet.solvers.progress import Row
 
 
 STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
@@ -180,12 +180,14 @@ def figure(value: float) -> str:
 
 def explained(error: Exception, name: str = "") -> str:
     """Return the line or two that tell a user of `error`, which happened to the member `name`."""
-    from meshonet.geometry.errors import InputError, MeshonetError
+    from meshonet.geometry.errors import InputError, MeshonetError, NoValidGridError
 
     if isinstance(error, InputError):
         error.source = error.source or name
         return error.text(option)
     where = f"{name}: " if name else ""
+    if isinstance(error, NoValidGridError):
+        return f"{where}{error.text(option)}"
     if isinstance(error, MeshonetError):
         return f"{where}{error}"
     if isinstance(error, MemoryError):

@@ -95,7 +95,10 @@ def test_every_command_is_thin(command: object) -> None:
 
 
 def test_the_version_is_that_of_the_package() -> None:
-    assert f'\nversion = "{VERSION}"\n' in (ROOT / "pyproject.toml").read_text()
+    import meshonet
+
+    assert meshonet.__version__ == VERSION
+    assert 'version = { attr = "meshonet.__version__" }' in (ROOT / "pyproject.toml").read_text()
 
 
 def test_choices_of_options_are_those_of_the_library() -> None:
@@ -105,3 +108,14 @@ def test_choices_of_options_are_those_of_the_library() -> None:
 
     assert get_args(SpacingName) == SPACINGS
     assert set(get_args(TopologyName)) <= {"auto", "quad", "o", "c"}
+
+
+def test_solve_pde_offers_every_method_that_solves() -> None:
+    from meshonet.solvers.method import METHODS, method_named
+
+    told = (ROOT / "docs" / "cli.md").read_text()
+    section = told[told.index("meshonet solve-pde") :]
+    offered = section[section.index("--method auto|") :].split()[1].split("|")
+    assert offered == ["auto", *(name for name, row in METHODS.items() if row.solves)]
+    for name in METHODS:
+        assert method_named(name).name == name

@@ -12,9 +12,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -77,14 +78,21 @@ def from_family(
 
     Parameters
     ----------
-    drawn : family, count, range, seed and split, as `meshonet_cli.drawn.draws` takes them.
+    drawn : family, count, range, seed and split, as `meshonet.geometry.families.draw.draws` takes them.
     """
-    from meshonet_cli.drawn import draws
+    from meshonet.geometry.families.draw import draws
 
-    found = draws(*drawn, session)
+    members = draws(*drawn)
+    session.batch = len(members) > 1
     destination = Destination(output, to_format, "boundaries")
     prepare([drawn[0]], destination, session)
-    return found, destination
+
+    def items() -> Iterator[Item[Any]]:
+        for member in members:
+            session.begin(drawn[0], len(members) if session.batch else None)
+            yield Item(member.index, drawn[0], member, 0.0, not session.batch)
+
+    return items(), destination
 
 
 def sample(
@@ -105,12 +113,12 @@ def sample(
         sensors, and a format without room for them.
     """
     if sensors is not None and destination.format.name != "hdf5":
-        raise InputError("only HDF5 keeps sensors", "write an .h5 file", source="--sensors")
+        raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
 
     def tell(report: Sampled, path: str) -> None:
         report.finished(path)
         session.tell(report)
 
     make = Sampler(sampling, sensors).boundary
-    deliver(found, make, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+    deliver(found, one_by_one(make), destination, session, tell, skip_existing=skip_existing, jobs=jobs)
     return session.finish()
