@@ -53,7 +53,7 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
     interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
     facts = {"method": "tfi", "blending": blending}
-    return Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    return boundary.grid(nodes, facts)
 
 
 def parameters(edges: Four, blending: Blending) -> Four:

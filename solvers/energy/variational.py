@@ -118,7 +118,7 @@ def solve(
         iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
-    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, {**facts, "cycles": iterations})
+    grid = boundary.grid(nodes, {**facts, "cycles": iterations})
     spent = {"grid": time.perf_counter() - begun}
     return Solution(grid, "variational", cycles=iterations, seconds=spent, notes=notes)
 

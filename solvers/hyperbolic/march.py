@@ -258,14 +258,14 @@ def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
 def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:
     parts = tuple(
         replace(part, stop=nodes.shape[1] - 1) if part.side in ("west", "east") else part
-        for part in boundary.parts
+        for part in boundary.patches
     )
     edges = replace(
-        boundary, north=nodes[:, -1], west=nodes[0], east=nodes[-1], parts=parts, sensors=None, notes=()
+        boundary, north=nodes[:, -1], west=nodes[0], east=nodes[-1], patches=parts, sensors=None, notes=()
     )
     facts = {"method": "hyperbolic", "wall_spacing": first}
     return Solution(
-        Grid(nodes, boundary.topology, parts, boundary.name, facts),
+        Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts),
         "hyperbolic",
         seconds={"grid": time.perf_counter() - begun},
         notes=(_told(boundary, nodes, first),),

@@ -18,7 +18,7 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import default_parts
+from meshonet.geometry.blocks.patches import default_patches
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
@@ -83,7 +83,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         north=nodes[:, -1],
         west=nodes[0],
         east=nodes[-1],
-        parts=boundary.parts if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
+        patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
     )
     asked = {f"spacing_{side}": height for side in SIDES if (height := getattr(heights, side))}
@@ -93,7 +93,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     return replace(
         solution,
         path=(*solution.path, *path),
-        grid=Grid(nodes, grid.topology, edges.parts, grid.name, facts),
+        grid=Grid.from_nodes(nodes, grid.topology, edges.patches, grid.name, facts),
         boundary=edges,
         notes=(*solution.notes, note),
     )
@@ -101,9 +101,9 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
 
 def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg]
     """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
-    if all(part.side in ("south", "north") for part in boundary.parts):
-        return boundary.parts
-    return default_parts(boundary.topology, *nodes.shape[:2])
+    if all(part.side in ("south", "north") for part in boundary.patches):
+        return boundary.patches
+    return default_patches(boundary.topology, *nodes.shape[:2])
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:

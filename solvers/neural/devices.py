@@ -11,7 +11,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.operator import Polish
 from meshonet.solvers.neural.operator import infer as infer_strip
@@ -121,5 +120,5 @@ def _solution(boundary: Boundary, nodes: Floats | None, model: str, device: Devi
         found = infer_strip(boundary)
         return replace(found, notes=("not made on the device", *found.notes))
     facts = {"method": "operator", "model": model, "device": device}
-    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    grid = boundary.grid(nodes, facts)
     return Solution(grid, "operator", model=model, seconds={"grid": spent})

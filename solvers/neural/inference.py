@@ -10,7 +10,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.operator import Polish, infer_strips
 from meshonet.solvers.neural.operator import infer as infer_strip
@@ -75,7 +74,7 @@ def infer(
     nodes, away = answered(trained, boundary, paste=answer != "raw")
     spent = time.perf_counter() - begun
     facts = {"method": "operator", "model": trained.name, "boundary_error": away}
-    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    grid = boundary.grid(nodes, facts)
     told = f"the network's own boundary was off by {away:.1e} at most, and was {_DONE[answer != 'raw']}"
     notes = (told,) if away > 0.0 else ()
     return Solution(grid, "operator", model=trained.name, seconds={"grid": spent}, notes=notes)

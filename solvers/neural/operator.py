@@ -20,7 +20,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.conformal.lift import Lift, lift_body, mirrored
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.polygon.corners import turning
@@ -133,7 +132,7 @@ def _gridded(
     model = network.name if network else "base"
     facts = {"method": "operator", "model": model, "polish": len(changes)}
     return Solution(
-        Grid(nodes, "o", boundary.parts, boundary.name, facts, finite=finite),
+        boundary.grid(nodes, facts, finite=finite),
         "operator",
         model=model,
         residual=changes[-1] if changes else None,

@@ -49,7 +49,7 @@ def test_writing_a_vts_imports_no_heavy_library(tmp_path: Path) -> None:
     code = (
         "import sys, numpy as np; from pathlib import Path; from meshonet.geometry.blocks.grid import Grid;"
         "from meshonet.formats.registry import format_for_output, read_grids;"
-        "g = Grid(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
+        "g = Grid.from_nodes(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
         f"p = {str(tmp_path / 'g.vts')!r};"
         "format_for_output(p).write_grids(Path(p), [g]); list(read_grids(p));"
         f"print([m for m in {HEAVY} if m in sys.modules])"
@@ -85,13 +85,13 @@ def test_a_grid_comes_back_bit_for_bit_and_the_writer_leaves_it_alone(
     assert record.write_grids is not None
     record.write_grids(path, [grid])
     assert np.array_equal(grid.nodes, untouched.nodes)
-    assert grid.parts == untouched.parts
+    assert grid.patches == untouched.patches
     (back,) = read_grids(str(path), name)
     assert back.nodes.dtype == np.float64
     assert np.array_equal(back.nodes, grid.nodes)
     assert back.topology == grid.topology
-    if record.names_parts:
-        assert (back.parts, back.name) == (grid.parts, grid.name)
+    if record.names_patches:
+        assert (back.patches, back.name) == (grid.patches, grid.name)
         assert dict(back.provenance) == dict(grid.provenance)
     else:
         assert back.name == "grid"
@@ -152,7 +152,7 @@ def test_a_boundary_comes_back_bit_for_bit(name: str, make: type[Grid], tmp_path
     assert isinstance(back, Boundary)
     for side in ("south", "east", "north", "west"):
         assert np.array_equal(getattr(back, side), getattr(boundary, side))
-    assert (back.topology, back.parts, back.name) == (boundary.topology, boundary.parts, boundary.name)
+    assert (back.topology, back.patches, back.name) == (boundary.topology, boundary.patches, boundary.name)
 
 
 @pytest.mark.parametrize("name", BOTH_WAYS)

@@ -96,7 +96,11 @@ def judged(trained: Trained, samples: Samples) -> dict[str, float]:
     for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):
         found, off = answered(trained, edges, paste=False)
         away, folded = max(away, off), folded + count_folded(found)
-        errors.append(compare(Grid(found, samples.topology), Grid(nodes, samples.topology)).relative_l2)
+        errors.append(
+            compare(
+                Grid.from_nodes(found, samples.topology), Grid.from_nodes(nodes, samples.topology)
+            ).relative_l2
+        )
     if not errors:
         return {}
     median, worst = float(np.median(errors)), float(np.max(errors))

@@ -121,7 +121,7 @@ def _solved(
     solutions = []
     for boundary, nodes, cycles in zip(boundaries, planes.transpose(0, 2, 3, 1), taken, strict=True):
         facts = {"method": "operator", "model": name, "polish": cycles}
-        grid = Grid(nodes, model.topology, boundary.parts, boundary.name, facts, finite=finite)
+        grid = boundary.grid(nodes, facts, finite=finite)
         solutions.append(Solution(grid, "operator", model=name, cycles=cycles, seconds={"grid": spent}))
     return solutions
 
@@ -214,7 +214,7 @@ def _cycles(planes: Floats, steps: int, topology: Topology) -> int:
     nodes = np.moveaxis(planes, 0, -1)
     try:
         boundary = Boundary(nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1], topology)
-        initial = Grid(nodes.copy(order="K"), topology)
+        initial = Grid.from_nodes(nodes.copy(order="K"), topology)
         solution = solve(boundary, tol=1e-12, max_cycles=steps, initial=initial)
     except (SolverError, InputError):
         return 0  # diverged, or nodes that no boundary can have
