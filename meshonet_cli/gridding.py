@@ -14,6 +14,7 @@ from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.quality.gates import Gate, need_percentiles
 from meshonet.geometry.quality.measure import count_folded, measure, worst_cells
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
@@ -22,7 +23,6 @@ from meshonet.solvers.progress import listening
 from meshonet.solvers.solution import Solution
 from meshonet_cli.batch import Destination, items
 from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.gates import Gate, need_percentiles
 from meshonet_cli.member import Item
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report import Report

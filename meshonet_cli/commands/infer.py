@@ -74,10 +74,10 @@ def infer(
     from functools import partial
 
     from meshonet.geometry.errors import InputError
+    from meshonet.geometry.quality.gates import parse_gates
     from meshonet.solvers.neural.inference import infer as operate
     from meshonet.solvers.neural.inference import infer_many, many_of
     from meshonet_cli.batch import Destination
-    from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, make_grids
     from meshonet_cli.together import Together
 

@@ -111,10 +111,10 @@ def solve_pde(
     """Make grids by elliptic equations, a variational method, or marching from the wall."""
     from functools import partial
 
+    from meshonet.geometry.quality.gates import parse_gates
     from meshonet_cli import layers as layer
     from meshonet_cli import walls as wall
     from meshonet_cli.batch import Destination
-    from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
     from meshonet_cli.solving import at_any_resolution, given, solver_of
 

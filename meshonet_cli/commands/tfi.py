@@ -37,10 +37,10 @@ def tfi(
     """Make grids by transfinite interpolation."""
     from functools import partial
 
+    from meshonet.geometry.quality.gates import parse_gates
     from meshonet_cli import layers as layer
     from meshonet_cli import walls as wall
     from meshonet_cli.batch import Destination
-    from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, interpolated, make_grids
 
     layers = layer.read_layers(first, sampling.res)

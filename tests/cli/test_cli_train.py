@@ -229,7 +229,7 @@ def test_the_log_of_a_resumed_run_is_that_of_a_whole_one(meshonet: Meshonet, arc
 def test_a_cut_run_goes_on_from_its_checkpoint(
     meshonet: Meshonet, arches_h5: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from meshonet_cli.learning_log import Log
+    from meshonet_cli.report.training import Log
 
     words = ("train", arches_h5, *BRIEF, "--checkpoint-every", "2", "-o", "m.safetensors")
     assert meshonet(*words, "--quiet").code == 0

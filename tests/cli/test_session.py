@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from meshonet.geometry.errors import GateError, InputError, NoValidGridError, SolverError
-from meshonet_cli.report import aligned, explained, figure, span
+from meshonet_cli.report.errors import explained
+from meshonet_cli.report.text import aligned, figure, span
 from meshonet_cli.session import Session
 
 

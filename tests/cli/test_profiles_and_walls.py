@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, wave
 
+from meshonet.api.quality import walls
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.profiles import PROFILES
 from meshonet_cli.app import application
-from meshonet_cli.judging import walls
 
 
 @pytest.fixture
