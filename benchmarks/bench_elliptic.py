@@ -93,7 +93,8 @@ def row(name: str, edges: Boundary) -> str:
     level, to_level = timed(lambda: solve(edges))
     exact, to_exact = timed(lambda: solve(edges, tol=1e-8, max_cycles=60))
     begun = time.process_time()
-    grid, path = guard(level.grid, edges)
+    guarded = guard(level, edges)
+    grid, path = guarded.grid, guarded.path
     guarding = time.process_time() - begun
     folded = count_folded(level.grid.nodes)
     rate = (exact.residual or 0.0) ** (1.0 / max(1, exact.cycles or 1))
@@ -219,7 +220,7 @@ def walls(ni: int, nj: int) -> Iterator[str]:
             (made, moved), spent = timed(act)
             nodes = made.grid.nodes
             yield (
-                f"| {name} | {way} | {count_folded(nodes)} | {worst_first_cell(made.grid):.0e} "
+                f"| {name} | {way} | {count_folded(nodes)} | {worst_first_cell(made):.0e} "
                 f"| {leans(nodes, moved):.2f} | {1e3 * spent:.0f} |"
             )
 

@@ -31,10 +31,9 @@ from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.energy.variational import solve as minimise
 from meshonet.solvers.hyperbolic.march import hyperbolic
-from meshonet.solvers.pipeline.select import solve_automatic
+from meshonet.solvers.method import method_named
+from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 
 SEED = 20_000_003
 REPEAT = 3
@@ -206,7 +205,7 @@ def unasked(case: Case, name: str, n: int) -> list[float]:
     """Return folded cells, two angles, two growths, the least and greatest first cell, and milliseconds."""
     edges = case.make().boundary(Sampling(n, n, "c", te=case.te))  # type: ignore[arg-type]
     begun = time.process_time()
-    nodes = solve_automatic(edges, solve if name == "auto" else minimise, name).grid.nodes
+    nodes = (elliptic() if name == "auto" else fewer_on_quads(method_named(name))).solve([edges])[0].grid.nodes
     spent = 1e3 * (time.process_time() - begun)
     wake = wake_nodes(edges.south)
     found = figures(nodes, 1.0, wake)

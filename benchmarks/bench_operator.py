@@ -146,9 +146,9 @@ def folds(kept: Kept, count: int) -> str:
 
     def folded(shape: Shape) -> list[bool]:
         edges = shape.make(1)
-        grid = infer(edges).grid
-        first = count_folded(grid.nodes) > 0
-        after = first and count_folded(guard(grid, edges, allow_invalid=True)[0].nodes) > 0
+        solution = infer(edges)
+        first = count_folded(solution.grid.nodes) > 0
+        after = first and count_folded(guard(solution, edges, allow_invalid=True).grid.nodes) > 0
         return [first, after, count_folded(winslow(edges).grid.nodes) > 0]
 
     for spacing in ("conformal", "cosine", "curvature", None):

@@ -38,7 +38,8 @@ from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.operator import infer as operate
 from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
+from meshonet.solvers.algebraic.resample.grids import thinned
+from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
 Way = Callable[[Boundary], Solution]

@@ -9,9 +9,10 @@ from typing import Any
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report.timed import Timed
 from meshonet_cli.session import Session
 
@@ -69,7 +70,7 @@ def convert_files(
     members = items(
         sources, lambda source: conversion.read(source, from_format, boundaries=boundaries), session
     )
-    deliver(members, make, destination, session, session.written, skip_existing=skip_existing)
+    deliver(members, one_by_one(make), destination, session, session.written, skip_existing=skip_existing)
     return session.finish()
 
 

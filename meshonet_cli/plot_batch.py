@@ -10,9 +10,10 @@ from typing import Any
 from meshonet.formats.figure.picture import Picture, picture_format
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report.timed import Timed
 from meshonet_cli.session import Session
 
@@ -57,7 +58,7 @@ def plot_grids(
         return item.what, Drawn(item, item.what, picture.metric)
 
     grids = items(sources, lambda source: read_grids(source, from_format), session)
-    deliver(grids, make, destination, session, session.written, skip_existing=skip_existing)
+    deliver(grids, one_by_one(make), destination, session, session.written, skip_existing=skip_existing)
     return session.finish()
 
 

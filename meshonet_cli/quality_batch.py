@@ -13,7 +13,8 @@ from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import COMPARED
-from meshonet_cli.batch import Destination, items
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.sources import items
 from meshonet_cli.plot_batch import picture_file
 from meshonet_cli.report.quality import Measured
 from meshonet_cli.report.summary import Summary

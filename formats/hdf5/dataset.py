@@ -17,10 +17,12 @@ repeated as attributes of the file, for reading by eye. https://docs.h5py.org
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from operator import call
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
@@ -40,6 +42,7 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     import h5py
 
+T = TypeVar("T")
 VERSION = 1
 BLOCK = 1 << 22
 """Bytes of samples that are held back to be written together."""
@@ -205,44 +208,56 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def read_shapes(source: Source) -> Iterator[Boundary]:
-    """Yield the boundaries; of a grid dataset, the grids' outer edges as they were stored."""
-    with checked(source) as data:
-        for k in data.kept(source.split):
-            with data.place(k):
-                south, north, west, east = (
-                    data.sample(side, k) for side in ("south", "north", "west", "east")
-                )
-                name = data.text("names", k)
-                parts, origin = _parts(data, k), _origin(data, k)
-                yield Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
+    """Return an iterator over the boundaries; of a grid dataset, the grids' outer edges as they were stored.
+
+    It goes on behind a sample that is not right and raised InputError.
+    """
+    return map(call, _samples(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids.
+    """Return an iterator over the grids; it goes on behind a sample that is not right.
 
     Raises
     ------
     InputError
         the dataset holds boundaries only, or is not right.
     """
+    return map(call, _samples(source, _grid))
+
+
+def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
+    """Yield functions that read one sample each: what they raise does not end the generator."""
     with checked(source) as data:
-        if "nodes" not in data:
+        if read is _grid and "nodes" not in data:
             raise InputError(
                 "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
             )
         for k in data.kept(source.split):
-            with data.place(k):
-                facts = json.loads(data.text("provenance", k) or "{}")
-                if not isinstance(facts, dict):
-                    raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
-                yield Grid(
-                    usable(data.sample("nodes", k)),
-                    data.topology,
-                    _parts(data, k),
-                    data.text("names", k),
-                    facts,
-                    _origin(data, k),
-                )
+            yield partial(read, data, k)
+
+
+def _boundary(data: Checked, k: int) -> Boundary:
+    with data.place(k):
+        south, north, west, east = (data.sample(side, k) for side in ("south", "north", "west", "east"))
+        name = data.text("names", k)
+        parts, origin = _parts(data, k), _origin(data, k)
+        return Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
+
+
+def _grid(data: Checked, k: int) -> Grid:
+    with data.place(k):
+        facts = json.loads(data.text("provenance", k) or "{}")
+        if not isinstance(facts, dict):
+            raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
+        return Grid(
+            usable(data.sample("nodes", k)),
+            data.topology,
+            _parts(data, k),
+            data.text("names", k),
+            facts,
+            _origin(data, k),
+        )
 
 
 def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str, ...]]:

@@ -109,43 +109,14 @@ def solve_pde(
     jobs: o.Jobs = 1,
 ) -> int:
     """Make grids by elliptic equations, a variational method, or marching from the wall."""
-    from functools import partial
+    from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
 
-    from meshonet.geometry.quality.gates import parse_gates
-    from meshonet_cli import layers as layer
-    from meshonet_cli import walls as wall
-    from meshonet_cli.batch import Destination
-    from meshonet_cli.gridding import Recipe, initial_grid, make_grids
-    from meshonet_cli.solving import at_any_resolution, given, solver_of
-
-    layers = layer.read_layers(first, sampling.res)
-    edges = wall.read_edges(sides, first, sampling.res, layers, slide, wall_angle)
-    settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
-    solver = partial(solver_of(method), **settings)
-    recipe = Recipe(
-        sampling.settings(spacing=layer.spacing_along(layers, sampling.spacing), viscous=layers is not None),
-        wall.WithWalls(
-            method,
-            at_any_resolution(solver, o.coarse_nodes(coarse), refine, method),
-            layers,
-            edges,
-            {
-                "--tol": tol,
-                "--max-cycles": max_cycles,
-                "--initial": initial,
-                "--coarse": None if coarse == "auto" else coarse,
-                "--refine": refine or None,
-            },
-        ),
-        checks.allow_invalid,
-        parse_gates(checks.fail_on),
-        checks.repair is not False,
-        margin=repair_margin,
-        refine=refine,
-        history=history,
-    )
-    destination = Destination(output, files.to_format, "grids")
-    return make_grids(
-        boundary, recipe, destination, printing.session(),
-        fmt=files.from_format, skip_existing=files.skip_existing, jobs=jobs,
+    request = request_of(
+        method, sampling, checks, first, sides,
+        settings={"tol": tol, "max_cycles": max_cycles},
+        coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial), history=history is not None,
+        slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
     )  # fmt: skip
+    return write_grids(
+        boundary, output, request, checks, files, printing.session(), history=history, jobs=jobs
+    )

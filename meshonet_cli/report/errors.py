@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 _OPTIONS = {
-    "from_format": "--from", "to_format": "--to", "output": "-o", "wall_spacing": "--first-cell",
-    "as_json": "--json", "settings": "--set", "count": "--count",
+    "from_format": "--from", "to_format": "--to", "output": "-o", "settings": "--set",
 }  # fmt: skip
 """Parameters whose options have other names."""
 
 
 def explained(error: Exception, name: str = "") -> str:
     """Return the line or two that explain `error`, which happened to the member `name`, to a user."""
-    from meshonet.geometry.errors import InputError, MeshonetError
+    from meshonet.geometry.errors import InputError, MeshonetError, NoValidGridError
 
     if isinstance(error, InputError):
         error.source = error.source or name
         return error.text(option)
     where = f"{name}: " if name else ""
+    if isinstance(error, NoValidGridError):
+        return f"{where}{error.text(option)}"
     if isinstance(error, MeshonetError):
         return f"{where}{with_options(str(error))}"
     if isinstance(error, MemoryError):

@@ -11,7 +11,7 @@ from meshonet_cli.report.timed import Timed
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality
-    from meshonet_cli.watching import Row
+    from meshonet.solvers.progress import Row
 
 
 @dataclass

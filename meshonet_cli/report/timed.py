@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from meshonet_cli.member import Item
+from meshonet_cli.batch.item import Item
 from meshonet_cli.report.text import span
 
 STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")

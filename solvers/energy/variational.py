@@ -22,7 +22,8 @@ from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of
 from meshonet.solvers.energy.local_descent import REACH, unfold
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
-from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
+from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.elliptic.kinks import sweep_kinks
 from meshonet.solvers.solution import Solution
 from solvers.variational._variational import energy, workspace
 

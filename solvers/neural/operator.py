@@ -254,7 +254,7 @@ def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:
     from meshonet.solvers.neural.quads.encoding import LATENT
     from meshonet.solvers.neural.quads.inference import infer_quads
     from meshonet.solvers.neural.quads.unrolled import AROUND
-    from meshonet.solvers.pipeline.coarse import thinned
+    from meshonet.solvers.algebraic.resample.grids import thinned
 
     if boundary.ni < LATENT or not compact(boundary):
         return None

@@ -10,7 +10,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 
 
 def spike(degrees: float, n: int) -> Boundary:

@@ -21,7 +21,7 @@ from meshonet.solvers.neural.quads.edges import Edges
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.model import load_quads
 from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 
 SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
 

@@ -38,7 +38,8 @@ from meshonet.solvers.energy.local_descent import unfold
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
+from meshonet.solvers.algebraic.resample.grids import thinned
+from meshonet.solvers.pipeline.coarse import solve_coarse
 
 
 def angle(nodes: Floats) -> Summary:

@@ -28,7 +28,7 @@ from meshonet.solvers.neural.quads.model import QuadModel
 from meshonet.solvers.neural.quads.network import CHUNK
 from meshonet.solvers.neural.quads.picard import AFTER, approached
 from meshonet.solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
-from meshonet.solvers.pipeline import coarse
+from meshonet.solvers.algebraic.resample import grids as resample
 
 COMPACT = 0.15
 """Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""
@@ -101,7 +101,7 @@ def compact(boundary: Boundary) -> bool:
 def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
     """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
     pairs = zip(grids, boundaries, strict=True)
-    nodes = [coarse.evaluate(np.moveaxis(one, 0, -1), boundary) for one, boundary in pairs]
+    nodes = [resample.evaluate(np.moveaxis(one, 0, -1), boundary) for one, boundary in pairs]
     return np.stack([np.moveaxis(one, -1, 0) for one in nodes])
 
 

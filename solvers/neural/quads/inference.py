@@ -23,7 +23,7 @@ from meshonet.solvers.neural.quads.encoding import WINSLOW
 from meshonet.solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, head_of, load_quads
 from meshonet.solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from meshonet.solvers.neural.weights import model_path
-from meshonet.solvers.pipeline.coarse import thinned
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.solution import Solution
 
 Counts: TypeAlias = tuple[int, int]

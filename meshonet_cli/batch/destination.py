@@ -1,57 +1,20 @@
-"""Members of a batch: from inputs to named items, and from results to files."""
+"""Where the results of a batch go."""
 
 from __future__ import annotations
 
 import re
 import string
 import sys
-import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import Kind, format_for_output
 from meshonet.geometry.errors import InputError
-from meshonet_cli.member import Item, T
-from meshonet_cli.session import Session
+from meshonet_cli.batch.item import Item
 
 FIELDS = ("stem", "index", "name")
-
-
-def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
-    """Yield every member of every source; a source that cannot be read is told of and passed over.
-
-    Raises
-    ------
-    InputError
-        standard input is named twice, or is a terminal.
-    """
-    if sources.count("-") > 1:
-        raise InputError("standard input is named twice", "name - once", source="-")
-    if "-" in sources and sys.stdin.isatty():
-        raise InputError("standard input is the terminal", "pipe a boundary or a grid into it", source="-")
-    index = 0
-    for source in sources:
-        with session.member(source):
-            begun = time.perf_counter()
-            found = read(source)
-            item = next(found, None)
-            if item is None:
-                raise InputError(
-                    "holds nothing", "give a file with a boundary or a grid in it", source=source
-                )
-            only = True
-            while item is not None:
-                spent = time.perf_counter() - begun
-                begun = time.perf_counter()
-                following = next(found, None)
-                only = only and following is None
-                session.batch = session.batch or len(sources) > 1 or not only
-                session.begin(source, len(sources) if len(sources) > 1 else None)
-                yield Item(index, source, item, spent, only)
-                index += 1
-                item = following
 
 
 class Destination:

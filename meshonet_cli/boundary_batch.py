@@ -12,9 +12,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.batch import Destination, items
-from meshonet_cli.delivery import deliver, prepare
-from meshonet_cli.member import Item
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, one_by_one, prepare
+from meshonet_cli.batch.sources import items
 from meshonet_cli.report import Timed
 from meshonet_cli.session import Session
 
@@ -77,9 +78,9 @@ def from_family(
 
     Parameters
     ----------
-    drawn : family, count, range, seed and split, as `meshonet_cli.drawn.draws` takes them.
+    drawn : family, count, range, seed and split, as `meshonet_cli.sample_family.draws` takes them.
     """
-    from meshonet_cli.drawn import draws
+    from meshonet_cli.sample_family import draws
 
     found = draws(*drawn, session)
     destination = Destination(output, to_format, "boundaries")
@@ -112,5 +113,5 @@ def sample(
         session.tell(report)
 
     make = Sampler(sampling, sensors).boundary
-    deliver(found, make, destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+    deliver(found, one_by_one(make), destination, session, tell, skip_existing=skip_existing, jobs=jobs)
     return session.finish()

@@ -15,7 +15,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.family import FAMILIES, Family, family
 from meshonet.geometry.families.split import split
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.member import Item
+from meshonet_cli.batch.item import Item
 from meshonet_cli.session import Session
 
 NODES = 101
