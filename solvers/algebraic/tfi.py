@@ -24,8 +24,8 @@ from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.kernels._native import tfi as fill
 from meshonet.solvers.solution import Solution
-from solvers._tfi import fill
 
 Blending = Literal["linear", "arclength"]
 Four = tuple[Floats, Floats, Floats, Floats]
