@@ -205,7 +205,9 @@ def unasked(case: Case, name: str, n: int) -> list[float]:
     """Return folded cells, two angles, two growths, the least and greatest first cell, and milliseconds."""
     edges = case.make().boundary(Sampling(n, n, "c", te=case.te))  # type: ignore[arg-type]
     begun = time.process_time()
-    nodes = (elliptic() if name == "auto" else fewer_on_quads(method_named(name))).solve([edges])[0].grid.nodes
+    nodes = (
+        (elliptic() if name == "auto" else fewer_on_quads(method_named(name))).solve([edges])[0].grid.nodes
+    )
     spent = 1e3 * (time.process_time() - begun)
     wake = wake_nodes(edges.south)
     found = figures(nodes, 1.0, wake)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple, TypeVar
 
@@ -184,9 +185,10 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     source = open_source(text)
     found = _selectable(source, format_of(source, fmt))
     if found.read_shapes is not None:
-        return _Blamed(source, lambda: iter(found.read_shapes(source)))
+        return _Blamed(source, partial(found.read_shapes, source))
     if found.read_grids is not None:
-        return _Blamed(source, lambda: map(boundary_of, found.read_grids(source)))
+        read = found.read_grids
+        return _Blamed(source, lambda: map(boundary_of, read(source)))
     raise _unreadable(found, source)
 
 
@@ -207,7 +209,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     source = open_source(text)
     found = _selectable(source, format_of(source, fmt))
     if found.read_grids is not None:
-        return _Blamed(source, lambda: iter(found.read_grids(source)))
+        return _Blamed(source, partial(found.read_grids, source))
     if found.read_shapes is not None:
         raise InputError(
             "holds a boundary, not a grid",

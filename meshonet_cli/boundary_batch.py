@@ -78,14 +78,21 @@ def from_family(
 
     Parameters
     ----------
-    drawn : family, count, range, seed and split, as `meshonet_cli.sample_family.draws` takes them.
+    drawn : family, count, range, seed and split, as `meshonet.geometry.families.draw.draws` takes them.
     """
-    from meshonet_cli.sample_family import draws
+    from meshonet.geometry.families.draw import draws
 
-    found = draws(*drawn, session)
+    members = draws(*drawn)
+    session.batch = len(members) > 1
     destination = Destination(output, to_format, "boundaries")
     prepare([drawn[0]], destination, session)
-    return found, destination
+
+    def items() -> Iterator[Item[Any]]:
+        for member in members:
+            session.begin(drawn[0], len(members) if session.batch else None)
+            yield Item(member.index, drawn[0], member, 0.0, not session.batch)
+
+    return items(), destination
 
 
 def sample(
@@ -106,7 +113,7 @@ def sample(
         sensors, and a format without room for them.
     """
     if sensors is not None and destination.format.name != "hdf5":
-        raise InputError("only HDF5 keeps sensors", "write an .h5 file", source="--sensors")
+        raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
 
     def tell(report: Sampled, path: str) -> None:
         report.finished(path)

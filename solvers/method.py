@@ -1,9 +1,9 @@
 """What a method is, and which there are.
 
 A method is a name, frozen settings and one function: boundaries in, solutions out. A new one is a function
-``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`, which the choices,
-the help and the tests of the command line are made from. Rows name their functions by text, so that reading
-them loads nothing.
+``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`, from which the
+choices, the help and the tests of the command line are made. Rows name their functions by text, so that
+reading them loads nothing.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ from enum import Enum
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import spelled
 
 
 class Outcome(Enum):
@@ -16,6 +17,11 @@ class Outcome(Enum):
     DONE = ""
     UNCONVERGED = "the iteration stopped short of its tolerance: allow more {max_cycles} or a larger {tol}"
     FOLDED = "cells are folded: use more nodes, another topology or other corners"
+
+    @property
+    def message(self) -> str:
+        """What to try next, with parameters by their names in Python."""
+        return spelled(self.value)
 
 
 @dataclass(frozen=True, eq=False)

@@ -95,7 +95,10 @@ def test_every_command_is_thin(command: object) -> None:
 
 
 def test_the_version_is_that_of_the_package() -> None:
-    assert f'\nversion = "{VERSION}"\n' in (ROOT / "pyproject.toml").read_text()
+    import meshonet
+
+    assert meshonet.__version__ == VERSION
+    assert 'version = { attr = "meshonet.__version__" }' in (ROOT / "pyproject.toml").read_text()
 
 
 def test_choices_of_options_are_those_of_the_library() -> None:

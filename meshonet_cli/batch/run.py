@@ -64,7 +64,7 @@ def deliver(
 ) -> None:
     """Make something of every member of `found`, write it to `destination`, and report it.
 
-    A member that fails is reported and left out. Memory holds what `make` does, or a few members for each job.
+    A member that fails is reported and left out. Memory holds what `make` does, or some members for a job.
 
     Parameters
     ----------
@@ -83,10 +83,7 @@ def deliver(
     each = destination.each or not session.batch
     todo = _paths(found, destination, session, skip_existing) if each else ((item, "") for item in found)
     work = _Work(make, destination if each else None)
-    if jobs > 1 and session.batch:
-        done = _in_processes(work, todo, jobs, together)
-    else:
-        done = work(todo)
+    done = _in_processes(work, todo, jobs, together) if jobs > 1 and session.batch else work(todo)
     if each:
         for item, path, outcome in done:
             with session.member(item.label, item.source):

@@ -114,7 +114,8 @@ def solve_pde(
     request = request_of(
         method, sampling, checks, first, sides,
         settings={"tol": tol, "max_cycles": max_cycles},
-        coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial), history=history is not None,
+        coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
+        history=history is not None,
         slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
     )  # fmt: skip
     return write_grids(

@@ -84,7 +84,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
     )
-    first_cells = {side: height for side in SIDES if (height := getattr(heights, side))}
+    first_cells: dict[str, float] = {side: height for side in SIDES if (height := getattr(heights, side))}
     facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights.told()}, at every node there"
     note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""

@@ -47,7 +47,7 @@ class Operator:
 
 @dataclass(frozen=True)
 class Conformal:
-    """O grids by Picard's iteration in the strip that a conformal map takes the domain to, without network."""
+    """O grids by Picard's iteration in the strip that a conformal map makes of the domain."""
 
     polish: Polish = "auto"
     name = "conformal"

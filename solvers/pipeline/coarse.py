@@ -1,7 +1,7 @@
 """A grid of any resolution from a small one: solve with few nodes, then evaluate at many.
 
-A few nodes describe a smooth grid. So the boundary is thinned to the coarse counts, a method solves there, and
-its grid is evaluated inside the full edges (`meshonet.solvers.algebraic.resample.grids`).
+A few nodes describe a smooth grid. So the boundary is thinned to the coarse counts, a method solves there,
+and its grid is evaluated inside the full edges (`meshonet.solvers.algebraic.resample.grids`).
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
@@ -80,9 +81,7 @@ def solve_coarse(
         fewer than 9 coarse nodes.
     """
     if n < LEAST_NODES:
-        raise InputError(
-            f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}"
-        )
+        raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")
     counts = min(n, boundary.ni), min(n, boundary.nj)
     if counts == (boundary.ni, boundary.nj):
         return solve(boundary)

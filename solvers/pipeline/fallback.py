@@ -22,7 +22,7 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 
 @dataclass(frozen=True)
 class Fallback:
-    """`first`, and where its grids have folded cells repair, then the `others`, each repaired too (`guard`)."""
+    """`first`, and where its grids have folded cells repair, then the `others` (`guard`)."""
 
     first: Method
     others: tuple[Method, ...] | None = None
@@ -61,10 +61,10 @@ def guard(
     allow_invalid: bool = False,
     margin: int | None = None,
 ) -> Solution:
-    """Return a valid grid inside `boundary`: that of `solution` when it is one, else the first way that works.
+    """Return a valid grid: that of `solution` when it is one, else that of the first way that works.
 
-    Tried in turn: local repair; each of the other methods, from the repaired grid where it takes a start; what
-    they make repaired.
+    Tried in turn: local repair; each of the other methods, from the repaired grid where it takes a start; its
+    grid repaired.
 
     Parameters
     ----------

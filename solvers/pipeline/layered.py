@@ -2,10 +2,10 @@
 
 ::
 
-    body ------------------------------------------ march ------------------------> grid
-    channel, nodes sampled here -- slide the wall nodes -- solve --+-- upright? ----+
-    channel, given nodes --------- turn the lines by sources ------+                +--> move along lines --> grid
-    anything else ------------------------------ solve -----------------------------+
+    body --------------------------------- march --------------------------> grid
+    channel, nodes sampled here -- slide wall nodes, solve --+
+    channel, given nodes --------- turn lines by sources ----+-- move nodes along lines --> grid
+    anything else ---------------- solve --------------------+
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class Layered:
 
     method: Method
     cells: FirstCells
-    turning: Each
+    turning: Method
     full: Method | None = None
     marched: tuple[Topology, ...] = ()
     channels: bool = False
@@ -200,7 +200,8 @@ class Layered:
 
     def _turned(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
         sides = {side: height for side in SIDES if (height := getattr(heights, side))}
-        return self.turning.having(heights=sides).solve([boundary], start)[0]
+        turning = self.turning.having(heights=sides) if isinstance(self.turning, Each) else self.turning
+        return turning.solve([boundary], start)[0]
 
     def _refuse(self, settings: Iterable[str], what: str, chosen: Sequence[str] | None = None) -> None:
         """Raise InputError when one of `settings` was given, which are of no use to `what`."""

@@ -192,9 +192,7 @@ def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> N
 
 def _checked(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
     if request.repairs():
-        return guard(
-            solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin
-        )
+        return guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
     if not request.allow_invalid:
         refuse_folded(solution)
     return solution

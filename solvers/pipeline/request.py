@@ -93,7 +93,9 @@ class GridRequest:
             method_named(self.method)  # which says what there is
         self._check_first_cells()
         if self.method == "hyperbolic" and not self.at_walls:
-            raise InputError("{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well")
+            raise InputError(
+                "{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well"
+            )
         if self.wall_angle is not None and self.method != "steger-sorenson":
             problem = f"method {self.method} sets no angle"
             raise InputError(problem, "use {method} steger-sorenson", parameter="wall_angle")
@@ -119,7 +121,10 @@ class GridRequest:
             raise InputError(f"{{{known}}} without {{{needed}}}", f"give {{{needed}}} as well")
         if self.y_plus is None and self.chord_fraction != 0.5:
             raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} and {reynolds} as well")
-        heights = {"first_cell": self.first_cell, **{f"spacing_{side}": h for side, h in self._sides().items()}}
+        heights = {
+            "first_cell": self.first_cell,
+            **{f"spacing_{side}": h for side, h in self._sides().items()},
+        }
         for name, height in heights.items():
             if height is not None and not 0 < height < math.inf:
                 raise InputError(f"a first cell of {height:g}", "give a positive height", parameter=name)
@@ -260,11 +265,16 @@ def grid_request(
     """
     if "wall_spacing" in parameters:
         parameters["first_cell"] = parameters.pop("wall_spacing")
-    ni, nj = (res, res) if isinstance(res, int) else res or (None, None)
-    of_sampling = {name: parameters.pop(name) for name in SAMPLED if name in parameters}
+    sampling = sampling_of(res, parameters)
     of_request = {name: parameters.pop(name) for name in REQUESTED if name in parameters}
     settings = {name: value for name, value in parameters.items() if value is not None}
-    return GridRequest(Sampling(ni, nj, **of_sampling), method, settings, **of_request)
+    return GridRequest(sampling, method, settings, **of_request)
+
+
+def sampling_of(res: int | tuple[int, int] | None, parameters: dict[str, Any]) -> Sampling:
+    """Return the sampling with counts `res` and its fields among `parameters`, which are taken out."""
+    ni, nj = (res, res) if isinstance(res, int) else res or (None, None)
+    return Sampling(ni, nj, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
 
 
 SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in ("ni", "nj", "viscous"))

@@ -45,7 +45,7 @@ class Auto:
 
 @dataclass(frozen=True)
 class Fewer:
-    """`method` on fewer nodes where that measures as good and takes less time; where those fold, on twice as many."""
+    """`method` on fewer nodes where that measures as good; where those fold, on twice as many."""
 
     method: Method
     together: None = None
@@ -114,7 +114,7 @@ def fewer_on_quads(method: Method) -> Auto:
 
 
 def best(operator: Method) -> Auto:
-    """Return what measures best: variational grids in four-sided domains, `operator` around bodies, marched C grids."""
+    """Return what measures best: variational grids, `operator` around bodies, marched C grids."""
     wake = AroundWake("no shipped model makes c grids: this one is")
     return Auto(Fewer(method_named("variational")), operator, wake, "best")
 

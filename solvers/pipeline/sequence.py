@@ -6,8 +6,7 @@
     solve --prolong--> solve --prolong-->  solve
 
 The nodes of each boundary are among those of the next finer one. A solution is evaluated at the finer nodes
-as a coarse one is (`meshonet.solvers.algebraic.resample.grids`): what it adds to the transfinite interpolation
-of its edges, by cubic splines.
+as a coarse one is (`meshonet.solvers.algebraic.resample.grids`).
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class Sequenced:
-    """`method` on every 2^levels-th node first, and again on twice as many cells until on all (`solve_refined`)."""
+    """`method` on every 2^levels-th node, then on twice as many cells until on all (`solve_refined`)."""
 
     method: Method
     levels: int

@@ -1,4 +1,4 @@
-"""Records of a dataset that cannot be read fail alone; so do members when memory runs out for many at once."""
+"""Records that cannot be read fail alone, and so do members when memory runs out for many at once."""
 
 from pathlib import Path
 

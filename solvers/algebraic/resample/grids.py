@@ -1,7 +1,7 @@
 """Boundaries thinned to few nodes, and the grids inside them evaluated at many.
 
-Inside the full edges splines through the coarse nodes are evaluated (`meshonet.solvers.algebraic.resample.quad`);
-around a body lines keep their own course instead (`meshonet.solvers.algebraic.resample.o_grid`).
+Inside the full edges splines through the coarse nodes are evaluated (`quad`); around a body lines keep their
+own course instead (`o_grid`).
 """
 
 from __future__ import annotations
@@ -43,7 +43,10 @@ def divided(coarse: Floats, boundary: Boundary) -> Floats:
     bend between coarse nodes.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
-    along, across = corner_damping.linear(len(coarse), boundary.ni), corner_damping.linear(coarse.shape[1], boundary.nj)
+    along, across = (
+        corner_damping.linear(len(coarse), boundary.ni),
+        corner_damping.linear(coarse.shape[1], boundary.nj),
+    )
     for c in (0, 1):
         nodes[..., c] = along @ coarse[..., c] @ across.T
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north

@@ -1,9 +1,9 @@
-"""Boundaries drawn from a family, for `sample-boundary --family`."""
+"""Boundaries drawn at random from a family."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import import_module
 
@@ -15,8 +15,6 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.family import FAMILIES, Family, family
 from meshonet.geometry.families.split import split
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.batch.item import Item
-from meshonet_cli.session import Session
 
 NODES = 101
 """Nodes along xi and eta when nobody says, as in the paper."""
@@ -69,9 +67,9 @@ class Draw:
 
 
 def draws(
-    name: str, count: int, spread: str | None, seed: int, way: str | None, session: Session
-) -> Iterator[Item[Draw]]:
-    """Yield `count` members of the family `name`.
+    name: str, count: int = 1, spread: str | None = None, seed: int = 0, way: str | None = None
+) -> list[Draw]:
+    """Return `count` members of the family `name`, whose boundaries are not made yet.
 
     Parameters
     ----------
@@ -86,37 +84,30 @@ def draws(
     """
     if name not in (*FAMILIES, *RANDOM):
         known = "use one of " + ", ".join((*FAMILIES, *RANDOM))
-        raise InputError(f"family {name!r} is not known", known, source="--family")
+        raise InputError(f"family {name!r} is not known", known, parameter="family")
     kind = None if name in RANDOM else family(name)
     low, high = _range(spread, kind)
-    session.batch = count > 1
-    every = [Draw(name, kind, low, high, seed, index) for index in range(count)]
-    kept = _kept(every, kind, way, seed)
-
-    def members() -> Iterator[Item[Draw]]:
-        for draw, use in zip(every, kept, strict=True):
-            session.begin(name, count if count > 1 else None)
-            yield Item(draw.index, name, replace(draw, split=use), 0.0, count == 1)
-
-    return members()
+    members = [Draw(name, kind, low, high, seed, index) for index in range(count)]
+    kept = _kept(members, kind, way, seed)
+    return [replace(member, split=use) for member, use in zip(members, kept, strict=True)]
 
 
 def _kept(every: Sequence[Draw], kind: Family | None, way: str | None, seed: int) -> Sequence[str]:
     if way is None:
         return [""] * len(every)
     if kind is None:
-        raise InputError("random shapes have no parameter to split by", "leave it out", source="--split")
+        raise InputError("random shapes have no parameter to split by", "leave it out", parameter="split")
     try:
         return split([draw.parameter for draw in every], way, seed=seed, low=kind.to_low)
     except InputError as error:
-        error.source = "--split"
+        error.parameter = "split"
         raise
 
 
 def _range(text: str | None, kind: Family | None) -> tuple[float, float]:
     if kind is None:
         if text is not None:
-            raise InputError("random shapes have no parameter", "leave it out", source="--range")
+            raise InputError("random shapes have no parameter", "leave it out", parameter="range")
         return 0.0, 1.0
     if text is None:
         return kind.low, kind.high
@@ -126,8 +117,10 @@ def _range(text: str | None, kind: Family | None) -> tuple[float, float]:
     except ValueError:
         low, high = 1.0, 0.0
     if not low <= high:
-        raise InputError(f"{text!r} is not a range", "use A:B with A <= B, e.g. 0.1:0.3", source="--range")
+        raise InputError(f"{text!r} is not a range", "use A:B with A <= B, e.g. 0.1:0.3", parameter="range")
     if not kind.least <= low <= high <= kind.most:
         bounds = f"{kind.least:g}:{kind.most:g}"
-        raise InputError(f"{text} leaves what {kind.parameter} can be", f"stay in {bounds}", source="--range")
+        raise InputError(
+            f"{text} leaves what {kind.parameter} can be", f"stay in {bounds}", parameter="range"
+        )
     return low, high

@@ -5,10 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from meshonet.api.convert import convert
-from meshonet.api.models import models
-from meshonet.api.plot import plot
-from meshonet.api.quality import quality, single_grid
+from meshonet import convert, models, plot, quality
+from meshonet.api.quality import single_grid
 from meshonet.formats.registry import format_named, read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
