@@ -21,7 +21,7 @@ from meshonet_cli.batch.run import deliver, prepare
 from meshonet_cli.batch.sources import items
 from meshonet_cli.convergence import Live, check_file, write
 from meshonet_cli.provenance import provenance
-from meshonet_cli.report import Report
+from meshonet_cli.report.grid import Report
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:

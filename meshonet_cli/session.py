@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet_cli.report.errors import explained, with_options
+from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stopping import check
 
 GATE_NOT_MET = 1

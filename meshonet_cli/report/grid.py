@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from meshonet_cli.report.errors import with_options
-from meshonet_cli.report.text import span
-from meshonet_cli.report.timed import Timed
+from meshonet_cli.batch.timed import Timed
+from meshonet_cli.errors import with_options
+from meshonet_cli.text import span
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality

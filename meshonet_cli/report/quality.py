@@ -10,8 +10,8 @@ from meshonet.geometry.quality.metrics import METRICS
 from meshonet.geometry.quality.profiles import CheckResult, Figures, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
 from meshonet.geometry.quality.walls import Spread, WallRow
-from meshonet_cli.report.text import aligned, figure
-from meshonet_cli.report.timed import Timed
+from meshonet_cli.batch.timed import Timed
+from meshonet_cli.text import aligned, figure
 
 _VERDICTS = {"fail": "FAIL", "warn": "warning", "none": "no figure"}
 

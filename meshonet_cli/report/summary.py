@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from meshonet_cli.report.text import aligned, figure
+from meshonet_cli.text import aligned, figure
 
 LABELS = {
     "folded": "folded",

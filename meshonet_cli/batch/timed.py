@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from meshonet_cli.batch.item import Item
-from meshonet_cli.report.text import span
+from meshonet_cli.text import span
 
 STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
 
