@@ -33,12 +33,12 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.operator import infer as operate
 from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
