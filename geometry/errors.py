@@ -5,8 +5,7 @@
     MeshonetError                 exit 2 unless said otherwise
     ├── InputError                bad file, bad geometry, bad option value      exit 2
     ├── NoValidGridError          every way to a grid ended in folded cells     exit 3
-    ├── SolverError               an iteration diverged and its retries too     exit 3
-    └── GateError                 a quality gate the user asked for was not met exit 1
+    └── SolverError               an iteration diverged and its retries too     exit 3
 """
 
 from __future__ import annotations
@@ -106,9 +105,3 @@ class SolverError(MeshonetError):
     """An iteration diverged or stalled, and its retries too."""
 
     exit_code = 3
-
-
-class GateError(MeshonetError):
-    """A quality gate asked for with ``--fail-on`` was not met."""
-
-    exit_code = 1

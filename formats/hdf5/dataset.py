@@ -234,7 +234,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
                 facts = json.loads(data.text("provenance", k) or "{}")
                 if not isinstance(facts, dict):
                     raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
-                yield Grid(
+                yield Grid.from_nodes(
                     usable(data.sample("nodes", k)),
                     data.topology,
                     _parts(data, k),

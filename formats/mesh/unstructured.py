@@ -9,10 +9,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.mesh.boundary_patches import patches
 from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import wake_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
 
@@ -76,11 +75,9 @@ def node_numbers(grid: Grid) -> Indices:
     """Return a number (ni, nj) for every node, i fastest, the same for nodes that are one."""
     ni, nj = grid.ni, grid.nj
     number = np.arange(ni * nj, dtype=np.int64).reshape((ni, nj), order="F")
-    if grid.topology == "o":
-        number[-1] = number[0]
-    elif grid.topology == "c":
-        wake = wake_nodes(grid.nodes[:, 0])
-        number[ni - wake :, 0] = number[:wake, 0][::-1]
+    for connection in grid.connections:
+        own, donor = connection.nodes(lambda _block, side: face_of(number[..., None], side))
+        donor[...] = own
     return number
 
 
@@ -93,6 +90,6 @@ def _edges(grid: Grid, number: Indices) -> dict[str, Indices]:
         "west": np.stack([number[0, 1:], number[0, :-1]], axis=-1),
     }
     found: dict[str, list[Indices]] = {}
-    for part in patches(grid):
-        found.setdefault(part.name, []).append(sides[part.side][part.start : part.stop])
+    for patch in grid.outer_patches():
+        found.setdefault(patch.name, []).append(sides[patch.side][patch.start : patch.stop])
     return {name: np.concatenate(pieces) for name, pieces in found.items()}

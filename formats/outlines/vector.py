@@ -17,8 +17,8 @@ from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.points import one_curve
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape

@@ -19,8 +19,9 @@ import numpy as np
 from meshonet.formats.source import Source
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -95,7 +96,7 @@ def sniff(head: bytes) -> bool:
 def _with_notes(shape: Boundary | Outline | Airfoil, notes: tuple[str, ...]) -> Shape:
     if isinstance(shape, Boundary):
         return replace(shape, notes=notes)
-    shape.notes = notes
+    shape.notes = (*notes, *shape.notes)
     return shape
 
 

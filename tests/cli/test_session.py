@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from meshonet.geometry.errors import GateError, InputError, NoValidGridError, SolverError
+from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet_cli.report import aligned, explained, figure, span
 from meshonet_cli.session import Session
 
@@ -22,7 +22,6 @@ def test_the_worst_outcome_of_the_members_is_the_exit_code(capsys: pytest.Captur
     session = Session()
     for error, worst in (
         (None, 0),
-        (GateError("gate"), 1),
         (InputError("bad", "mend it"), 2),
         (NoValidGridError("folded"), 3),
         (SolverError("diverged"), 3),
