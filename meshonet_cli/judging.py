@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from meshonet.formats.mesh.boundary_patches import patches, roles
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.growth import Extreme
@@ -15,12 +14,7 @@ from meshonet_cli.report import aligned, figure
 
 def walls(grid: Grid) -> list[Patch]:
     """Return the stretches of wall of `grid`, told by their names; south and north of a quad without."""
-    stretches = patches(grid)
-    known = roles(grid, stretches)
-    found = [part for part in stretches if known[part.name] == "wall"]
-    if found or grid.topology != "quad" or "wall" in known.values():
-        return found
-    return [part for part in stretches if part.side in ("south", "north") and known[part.name] == "other"]
+    return grid.walls()
 
 
 def walls_json(rows: tuple[WallRow, ...]) -> list[dict[str, Any]]:
