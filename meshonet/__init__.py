@@ -14,6 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from meshonet.api.convert import convert as convert
     from meshonet.api.files import read as read
     from meshonet.api.files import read_all as read_all
     from meshonet.api.files import write as write
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from meshonet.api.grid import sample_family as sample_family
     from meshonet.api.grid import solve_pde as solve_pde
     from meshonet.api.grid import tfi as tfi
+    from meshonet.api.models import models as models
+    from meshonet.api.plot import plot as plot
+    from meshonet.api.quality import quality as quality
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.grid import Grid as Grid
     from meshonet.geometry.errors import InputError as InputError
@@ -40,8 +44,12 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _MODULES = {
+    "meshonet.api.convert": ("convert",),
     "meshonet.api.files": ("read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
+    "meshonet.api.models": ("models",),
+    "meshonet.api.plot": ("plot",),
+    "meshonet.api.quality": ("quality",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.grid": ("Grid",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),

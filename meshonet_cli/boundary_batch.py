@@ -16,7 +16,7 @@ from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, one_by_one, prepare
 from meshonet_cli.batch.sources import items
-from meshonet_cli.report import Timed
+from meshonet_cli.batch.timed import Timed
 from meshonet_cli.session import Session
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from meshonet.formats.output import whole_file
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
@@ -19,9 +20,8 @@ from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, prepare
 from meshonet_cli.batch.sources import items
 from meshonet_cli.convergence import Live, check_file, write
-from meshonet_cli.gates import need_percentiles, parse_gates
 from meshonet_cli.provenance import provenance
-from meshonet_cli.report import Report
+from meshonet_cli.report.grid import Report
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:

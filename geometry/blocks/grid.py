@@ -174,9 +174,8 @@ class Grid(Connected):
 
     def quality(self) -> Quality:
         """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`)."""
-        from meshonet.geometry.quality.measure import measure  # which needs grids
-
-        return measure(self, percentiles=True)
+        # by name: what is measured needs grids
+        return import_module("meshonet.geometry.quality.measure").measure(self, percentiles=True)
 
     def write(self, path: str | Path, *, to_format: str | None = None) -> None:
         """Write the grid to a file, whole or not at all; the ending says the format (`meshonet.write`)."""

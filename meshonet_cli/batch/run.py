@@ -14,7 +14,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item, Name, Named
-from meshonet_cli.report import Timed
+from meshonet_cli.batch.timed import Timed
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:

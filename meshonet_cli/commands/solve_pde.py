@@ -114,7 +114,7 @@ def solve_pde(
     repair_margin: RepairMargin = None,
     jobs: o.Jobs = 1,
 ) -> int:
-    """Make grids by elliptic equations, a variational method, or marching from the wall."""
+    """Make grids by elliptic equations, a variational method, or marching."""
     from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
 
     request = request_of(

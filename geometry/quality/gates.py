@@ -1,4 +1,4 @@
-"""Gates: conditions on the quality of a grid that end the program with exit code 1."""
+"""Gates: conditions on the quality of a grid that a user does not accept."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Gate:
     ----------
     text : as the user wrote it.
     metric : a metric of `meshonet.geometry.quality.metrics`, ``folded``, the count of folded cells, or a
-        figure that the command has beside them.
+        figure measured beside them.
     statistic : min, mean, max, p01 or p99 of the metric over all cells.
     compare : ``>``, ``>=``, ``<`` or ``<=``.
     limit : in the metric's unit.
@@ -39,16 +39,16 @@ class Gate:
     limit: float
 
     def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
-        """Return what to tell the user when `quality`, or a figure of `more`, fulfils it, else None."""
-        summed = self.metric in NAMES
-        if summed:
+        """Return a line for the user when `quality`, or a figure of `more`, fulfils it, else None."""
+        has_statistics = self.metric in NAMES
+        if has_statistics:
             value = getattr(quality[self.metric], self.statistic)
         else:
             value = quality.folded if self.metric == "folded" else more[self.metric]
         if not _COMPARE[self.compare](value, self.limit):
             return None
-        what = f"{self.metric}.{self.statistic}" if summed else self.metric
-        return f"{what} is {value:.6g}, and --fail-on '{self.text}'"
+        what = f"{self.metric}.{self.statistic}" if has_statistics else self.metric
+        return f"{what} is {value:.6g}, and {{fail_on}} '{self.text}'"
 
 
 def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
@@ -66,29 +66,29 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')
     """
-    found = _GATE.fullmatch(text)
+    match = _GATE.fullmatch(text)
     try:
-        limit = float(found[4]) if found else None
+        limit = float(match[4]) if match else None
     except ValueError:
         limit = None
-    if found is None or limit is None or limit != limit:
+    if match is None or limit is None or limit != limit:
         raise InputError(
             f"{text!r} is not a gate",
             "write METRIC>VALUE or METRIC<VALUE, e.g. 'max_angle>170'",
-            source="--fail-on",
+            parameter="fail_on",
         )
-    metric, statistic, compare = found[1], found[2], found[3]
+    metric, statistic, compare = match[1], match[2], match[3]
     if metric not in (*NAMES, "folded", *more):
         known = "use one of " + ", ".join(("folded", *NAMES, *more))
-        raise InputError(f"metric {metric!r} is not known", known, source="--fail-on")
+        raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
     if statistic and (statistic not in _STATISTICS or metric not in NAMES):
         known = "one of " + ", ".join(_STATISTICS) if metric in NAMES else f"no statistic with {metric}"
-        raise InputError(f"statistic {statistic!r} is not known", f"use {known}", source="--fail-on")
+        raise InputError(f"statistic {statistic!r} is not known", f"use {known}", parameter="fail_on")
     return Gate(text, metric, statistic or ("max" if compare in (">", ">=") else "min"), compare, limit)
 
 
 def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
-    """Return the gates of all ``--fail-on`` options, which may name figures of `more` too."""
+    """Return the gates of all `texts`, which may name figures of `more` too."""
     return tuple(parse_gate(text, more) for text in texts or ())
 
 

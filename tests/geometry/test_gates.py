@@ -5,8 +5,8 @@ import pytest
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.gates import need_percentiles, parse_gate, parse_gates
 from meshonet.geometry.quality.measure import measure
-from meshonet_cli.gates import need_percentiles, parse_gate, parse_gates
 
 
 def parallelogram() -> Grid:
@@ -47,7 +47,7 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
     quality = measure(parallelogram())
     assert gate.broken(quality, {"relative_l2": 0.009}) is None
     assert (
-        gate.broken(quality, {"relative_l2": 0.02}) == "relative_l2 is 0.02, and --fail-on 'relative_l2>1e-2'"
+        gate.broken(quality, {"relative_l2": 0.02}) == "relative_l2 is 0.02, and {fail_on} 'relative_l2>1e-2'"
     )
     with pytest.raises(InputError, match="statistic 'mean' is not known; use no statistic with relative_l2"):
         parse_gate("relative_l2.mean>1e-2", ("relative_l2",))
@@ -71,7 +71,7 @@ def test_a_gate_may_name_a_figure_beside_the_metrics() -> None:
 def test_a_gate_is_broken_when_it_holds(text: str, broken: bool) -> None:
     told = parse_gate(text).broken(measure(parallelogram()))
     assert (told is not None) == broken
-    assert told is None or f"--fail-on '{text}'" in told
+    assert told is None or f"{{fail_on}} '{text}'" in told
 
 
 def test_equality_counts_only_when_asked_for() -> None:

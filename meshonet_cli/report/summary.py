@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from meshonet_cli.report import aligned, figure
+from meshonet_cli.text import aligned, figure
 
 LABELS = {
     "folded": "folded",
@@ -24,7 +24,7 @@ LABELS = {
 
 
 @dataclass(frozen=True)
-class Total:
+class Summary:
     """Figures of many grids.
 
     Parameters
@@ -36,13 +36,13 @@ class Total:
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
-        told: dict[str, Any] = {"members": len(self.rows)}
+        facts: dict[str, Any] = {"members": len(self.rows)}
         for column in self._columns():
             labels, values = self._values(column)
-            told[column] = _statistics(values) | {"worst": labels[values.index(max(values))]}
+            facts[column] = _statistics(values) | {"worst": labels[values.index(max(values))]}
             if column.startswith("folded"):
-                told[column] |= {"sum": sum(values), "members": sum(value > 0 for value in values)}
-        return {"summary": told}
+                facts[column] |= {"sum": sum(values), "members": sum(value > 0 for value in values)}
+        return {"summary": facts}
 
     def lines(self) -> str:
         """Return the table for people."""
@@ -53,15 +53,15 @@ class Total:
         statistics = [_statistics(self._values(column)[1]) for column in columns]
         for name in ("median", "mean", "p90", "max"):
             label = f"{'worst' if name == 'max' else name} of {len(self.rows)}"
-            table.append([label, *(figure(found[name]) for found in statistics)])
+            table.append([label, *(figure(row[name]) for row in statistics)])
         return aligned(table)
 
     def _columns(self) -> list[str]:
         return [column for column in LABELS if any(column in figures for _, figures in self.rows)]
 
     def _values(self, column: str) -> tuple[list[str], list[float]]:
-        found = [(label, figures[column]) for label, figures in self.rows if column in figures]
-        return [label for label, _ in found], [float(value) for _, value in found]
+        pairs = [(label, figures[column]) for label, figures in self.rows if column in figures]
+        return [label for label, _ in pairs], [float(value) for _, value in pairs]
 
 
 def _statistics(values: Sequence[float]) -> dict[str, float]:

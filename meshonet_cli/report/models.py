@@ -21,13 +21,13 @@ def model_text(facts: Mapping[str, Any]) -> str:
     width = max(len(name) for name in others)
     lines = [str(facts.get("name", ""))]
     for name, value in others.items():
-        told = _said(value)
-        lines.append(f"  {name:<{width}}  {told[0]}")
-        lines += [" " * (width + 4) + line for line in told[1:]]
+        text = _lines(value)
+        lines.append(f"  {name:<{width}}  {text[0]}")
+        lines += [" " * (width + 4) + line for line in text[1:]]
     return "\n".join(lines)
 
 
-def _said(value: object) -> list[str]:
+def _lines(value: object) -> list[str]:
     if isinstance(value, Mapping):
         return [f"{key}: {_short(part)}" for key, part in value.items()] or ["-"]
     return [_short(value)]

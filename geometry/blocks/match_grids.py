@@ -3,23 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
+from itertools import repeat
+from typing import Literal, TypeAlias
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-Pairing = Literal["auto", "name", "order"]
+Pairing: TypeAlias = Literal["auto", "name", "order"]
 
 
-class Partners:
-    """The grids of a reference set, handed out one by one.
+class GridMatcher:
+    """Finds for each of many grids the one it belongs to in a reference set.
 
     Parameters
     ----------
-    grids : the set, read as far as is needed: a set in the same order as its partners passes through without
-        being kept.
-    pairing : by ``name``, by ``order``, or ``auto``: the only grid of a set goes with each; grids with names
-        of their own are paired by name when the first partner's is among them; all others by order.
+    grids : the set, read as far as is needed: a set in the same order as the grids is not kept in memory.
+    pairing : by ``name``, by ``order``, or ``auto``: a single grid serves all; several are matched by name
+        when they have different names and that of the first grid is among them, else by order.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -27,8 +27,8 @@ class Partners:
         self._pairing = pairing
         self._passed: list[Grid] = []
 
-    def of(self, name: str) -> Grid:
-        """Return the partner of the grid called `name`.
+    def match(self, name: str) -> Grid:
+        """Return the grid that belongs to the one called `name`, or to the next one.
 
         Raises
         ------
@@ -37,26 +37,26 @@ class Partners:
         """
         if self._pairing == "auto":
             self._pairing = self._decided(name)
-        found = self._named(name) if self._pairing == "name" else self._following()
-        if found is None:
+        grid = self._named(name) if self._pairing == "name" else self._following()
+        if grid is None:
             remedy = "compare with one grid, or with as many"
             if self._pairing == "name":
-                remedy = f"compare with one that is called {name!r}, or use --pair order"
+                remedy = f"compare with one that is called {name!r}, or use {{pair}} order"
             raise InputError("there is no grid to compare it with", remedy)
-        return found
+        return grid
 
     def _decided(self, name: str) -> Pairing:
         self._passed = [grid for _, grid in zip(range(2), self._grids, strict=False)]
         names = [grid.name for grid in self._passed]
         if len(names) == 1:
-            self._grids = _again(self._passed.pop())
+            self._grids = repeat(self._passed.pop())
             return "order"
         if not all(names) or names[0] == names[1]:
             return "order"
-        found = self._named(name)
-        if found is None:
+        match = self._named(name)
+        if match is None:
             return "order"
-        self._passed.insert(0, found)
+        self._passed.insert(0, match)
         return "name"
 
     def _following(self) -> Grid | None:
@@ -71,8 +71,3 @@ class Partners:
                 return grid
             self._passed.append(grid)
         return None
-
-
-def _again(grid: Grid) -> Iterator[Grid]:
-    while True:
-        yield grid
