@@ -27,7 +27,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
 from meshonet.solvers.solution import Solution
 
@@ -97,7 +97,7 @@ def batches(model: str) -> str:
     edges = [random_body(np.random.default_rng([SEED, k]), 65, 33) for k in range(32)]
     lines = ["\n## 32 bodies together, 65 x 33\n", "| way | CPU ms a grid |", "| --- | --- |"]
     for dtype in ("float32", "float64"):
-        spent = min(clocked(partial(infer_quads, edges, model, 0, dtype)) for _ in range(5)) / len(edges)
+        spent = min(clocked(partial(load, edges, model, 0, dtype)) for _ in range(5)) / len(edges)
         lines.append(f"| **network in {dtype}** | {1e3 * spent:.2f} |")
     return "\n".join(lines)
 
@@ -117,7 +117,7 @@ def holes(model: str, twin: str) -> str:
         goals = [winslow(one, tol=1e-8, max_cycles=60).grid for one in edges]
         cells = []
         for polish in (0, 2):
-            grids = [found.grid for found in infer_quads(edges, twin, polish)]
+            grids = [found.grid for found in load(twin).solve(edges, polish)]
             errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
             cells.append(f"{np.median(errors):.1e} ({sum(count_folded(grid.nodes) > 0 for grid in grids)})")
         judgements = [
@@ -210,14 +210,14 @@ variational grids.
 
 ## Gradients
 
-`meshonet.solvers.neural.quads.differentiable_around.BodyGrids` is the same in torch, equal to 1e-12, with gradients
+`meshonet.solvers.neural.differentiable.BodyGrids` is the same in torch, equal to 1e-12, with gradients
 from every node to the nodes of body and far field, which finite differences confirm; on a GPU with
 `device="cuda"`, as `infer --device cuda` has it. Where the hole is that a given grid was made around:
 
 ```python
 import torch
 from meshonet.geometry.families.family import family
-from meshonet.solvers.neural.quads.differentiable_around import BodyGrids
+from meshonet.solvers.neural.differentiable import BodyGrids
 
 edges, grids = family("hole").boundary(0.3, 65, 33), BodyGrids()
 hole, square = (torch.tensor(side)[None] for side in (edges.south, edges.north))

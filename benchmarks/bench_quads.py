@@ -37,9 +37,9 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quads.edges import Edges
-from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.neural.quads.operator import evaluate, near_grids
+from meshonet.solvers.neural.quad.coarse_grids import evaluate, near_grids
+from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
@@ -160,7 +160,7 @@ def batches(model: str, clock: bool) -> str:
     for dtype in ("float32", "float64"):
         for polish in (0, 2):
             name = f"**network in {dtype}, {polish} steps**"
-            ways[name] = partial(infer_quads, boundaries, model, polish, dtype)
+            ways[name] = partial(load, boundaries, model, polish, dtype)
     spent = dict.fromkeys(ways, np.inf)
     for _ in range(8):  # in turn: the machine's speed changes
         for name, way in ways.items():
@@ -171,7 +171,7 @@ def batches(model: str, clock: bool) -> str:
     ]
     if clock:
         many = 4 * boundaries
-        rates = [rate(partial(infer_quads, many, model, 0, "float32", n), len(many)) for n in (1, 2)]
+        rates = [rate(partial(load, many, model, 0, "float32", n), len(many)) for n in (1, 2)]
         told = "\nBy the clock, float32: {:.0f} grids a second in one thread, {:.0f} in two."
         lines.append(told.format(*rates))
     return "\n".join(lines)
@@ -212,7 +212,7 @@ def families(twin: str) -> str:
             goals = [winslow(b, tol=1e-8).grid for b in boundaries]
             cells = []
             for polish in (0, 1):
-                grids = [solution.grid for solution in infer_quads(boundaries, twin, polish)]
+                grids = [solution.grid for solution in load(twin).solve(boundaries, polish)]
                 errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
                 folded = sum(count_folded(grid.nodes) > 0 for grid in grids)
                 cells.append(f"{np.median(errors):.1e} ({folded})")
@@ -262,12 +262,12 @@ For a single domain the coarse variational solve has the last percent of the mea
 network together, at a fraction of the time of any solve, and `--polish 2` to 5 takes out folds and kinks.
 For Winslow's grid the network earns nothing: the steps alone, with the three on 65 x 65 nodes, come as near,
 and one cycle of multigrid is worth more than either.
-In Python the fastest call is `infer_quads(boundaries, "quad-general", "off", "float32", threads=2)`: single
+In Python the fastest call is `load("quad-general").solve(boundaries, "off", "float32", threads=2)`: single
 precision in the network, and a core for each thread; the grids do not depend on their number.
 
 ## Gradients
 
-`meshonet.solvers.neural.quads.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
+`meshonet.solvers.neural.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
 every node to the nodes of the boundary; on a GPU with `device="cuda"`.
 [`throat.py`](../examples/shape-optimisation/throat.py) finds the wall of a duct with
 a given throat that leaves the least skewed cells:

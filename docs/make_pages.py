@@ -16,7 +16,7 @@ from typing import Any
 
 from meshonet.formats.catalogue import page as formats_page
 from meshonet.geometry.families.family import FAMILIES, family
-from meshonet.solvers.neural.weights import SECOND, described, shipped
+from meshonet.solvers.neural.registry import HEADS, described, shipped
 from meshonet_cli.reference import reference
 
 DOCS = Path(__file__).parent
@@ -52,8 +52,8 @@ def models_page() -> str:
         "(`docs/curves`; quad-first is the first of two runs for `quad-general`).\n",
     ]
     for name in shipped():
-        if name in SECOND:
-            lines += [f"## {name}\n", f"The Winslow grid of the network of {SECOND[name]}.\n"]
+        if name in HEADS:
+            lines += [f"## {name}\n", f"The Winslow grid of the network of {HEADS[name][0]}.\n"]
             continue
         facts = described(name)
         held_out = strip_figures if "strips" in facts["figures"] else quad_figures

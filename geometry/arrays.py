@@ -29,6 +29,26 @@ def distinct(values: AnyArray) -> AnyArray:
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
 
+def read_only(array: AnyArray) -> AnyArray:
+    """Return the array itself, which can no longer be written to: a cache hands it out many times."""
+    array.flags.writeable = False
+    return array
+
+
+def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
+    """Return `values` as an array of the module `xp`, numpy or torch, where `like` is and as precise.
+
+    Complex values stay complex, real ones real, whichever `like` is.
+    """
+    dtype = like.real.dtype
+    if xp is np:
+        return values.astype(
+            np.result_type(dtype, np.complex64) if np.iscomplexobj(values) else dtype, copy=False
+        )
+    dtype = dtype.to_complex() if np.iscomplexobj(values) else dtype
+    return xp.tensor(values, dtype=dtype, device=like.device)  # a copy: torch warns of read-only memory
+
+
 def planar_nodes(ni: int, nj: int) -> Floats:
     """Return an uninitialised (ni, nj, 2) array whose x and y planes are each contiguous.
 

@@ -7,7 +7,7 @@ EXAMPLES = ("meshonet models", "meshonet models --json")
 
 def models(as_json: o.AsJson = False, debug: o.Debug = False) -> int:
     """List the operators that are shipped."""
-    from meshonet.solvers.neural.weights import described, shipped
+    from meshonet.solvers.neural.registry import described, shipped
     from meshonet_cli.listing import model_text
     from meshonet_cli.session import Session
 

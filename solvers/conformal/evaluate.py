@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
@@ -110,7 +110,7 @@ class StripGrid:
 @lru_cache(maxsize=8)
 def _interpolation(eta: bytes) -> Floats:
     """Return `interpolation`, kept for bodies that follow on the same levels."""
-    return interpolation(np.frombuffer(eta))
+    return read_only(interpolation(np.frombuffer(eta)))
 
 
 def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:

@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, read_only
 from solvers.neural._columns import sample
 
 TAPS = 14  # as in strip_rows_kernel.h
@@ -61,4 +61,5 @@ def _transform(count: int) -> tuple[Floats, Complexes]:
     window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))
     angle = np.pi * TAPS / count * np.outer(np.arange(count // 4 + 1), x)
     unit = np.exp(2j * np.pi * np.arange(count // 2) / count)
-    return np.asarray(steps / (0.5 * TAPS) / (np.cos(angle) @ window)), unit
+    gain: Floats = steps / (0.5 * TAPS) / (np.cos(angle) @ window)
+    return read_only(gain), read_only(unit)

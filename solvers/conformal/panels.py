@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.solvers.conformal.chebyshev import barycentric
 
 NODES = 16
 NEAREST = 0.25  # psi from the wall's outermost point to the first panel
@@ -67,11 +68,4 @@ def _panel(eta: Floats, start: int, stop: int) -> Panel:
     angle = np.pi * (np.arange(NODES) + 0.5) / NODES
     points = 0.5 * (a + b) - 0.5 * (b - a) * np.cos(angle)
     weights = np.sin(angle) * (-1.0) ** np.arange(NODES)
-    gap = eta[None, start:stop] - points[:, None]
-    hit = gap == 0.0
-    gap[hit] = 1.0
-    matrix = weights[:, None] / gap
-    matrix[:, hit.any(axis=0)] = 0.0
-    matrix[hit] = 1.0
-    matrix /= matrix.sum(axis=0)
-    return Panel(start, stop, points, matrix)
+    return Panel(start, stop, points, barycentric(points, weights, eta[start:stop]))

@@ -7,7 +7,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
 from meshonet.solvers.algebraic.resample.spline import bending, places
-from meshonet.solvers.neural.quads.edges import Edges, rims
+from meshonet.solvers.neural.quad.edges import Edges, rims
 from solvers._evaluate import begin_all, evaluate_all
 
 RNG = np.random.default_rng(5)

@@ -8,7 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.quad import evaluate, mended
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.neural.quads.edges import Edges, rims
+from meshonet.solvers.neural.quad.edges import Edges, rims
 from meshonet.solvers.pipeline.coarse import thinned
 
 

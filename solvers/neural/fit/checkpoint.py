@@ -31,8 +31,8 @@ def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():
             raise SolverError(
-                f"{name} is not finite after epoch {state['epoch']}; go on from the last checkpoint with "
-                "--resume and a smaller --rate"
+                f"{name} is not finite after epoch {state['epoch']}; resume from the last "
+                "checkpoint with a smaller learning rate"
             )
     part = path.with_name(path.name + ".part")
     with part.open("wb") as file:

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 from torch.nn.functional import mse_loss
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.conformal.harmonic import extend
-from meshonet.solvers.neural.fit.task import Task
-from meshonet.solvers.neural.layers import Arrays, initial
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.fit.model_task import ModelTask, tensor, tensors
+from meshonet.solvers.neural.models.architecture import Architecture
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.sensors import rim, square
 
 
-class OperatorTask(Task):
+class OperatorTask(ModelTask):
     """An operator model on solved grids.
 
     ::
@@ -41,32 +38,21 @@ class OperatorTask(Task):
     parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
 
     def __init__(
-        self, model: Operator, training: Samples, held_out: Samples | None,
+        self, model: Architecture, training: Samples, held_out: Samples | None,
         points: tuple[int, int] | None, seed: int, device: torch.device,
     ) -> None:  # fmt: skip
-        super().__init__()
-        self.model, self.points, self.seed, self.count = model, points, seed, len(training)
-        frame = Frame(training.topology, training.ni, training.nj)
         targets = differences(model, training)
-        rng = np.random.default_rng([seed, 0])
-        for name, value in initial(model.shapes(frame), rng).items():
-            self.register_parameter(name, nn.Parameter(_tensor(value)))
-        self.fixed = _tensors(model.fixed(training, targets), device)
-        self.inputs = _tensors(model.encode(training.boundaries()), device)
+        super().__init__(model, training, targets, points, seed, device)
+        self.inputs = tensors(model.encode(training.boundaries()), device)
         # places first: those of a step are then whole rows of a matrix, which torch gathers fastest
-        by_place = targets.reshape(len(training), -1, 2).swapaxes(0, 1)
-        self.targets = _tensor(by_place.reshape(len(by_place), -1)).to(device)
+        self.targets = tensor(_by_place(targets).reshape(training.ni * training.nj, -1)).to(device)
         size = float((targets**2).mean()) if model.base != "none" else 1.0
         self.weights = model.interior / size, model.boundary / size
-        self.places = model.seen(torch, _tensor(square(training.ni, training.nj)).to(device))
-        on = rim(training.ni, training.nj, training.topology)
-        self.inside, self.outside = np.flatnonzero(~on), np.flatnonzero(on)
+        self.places = model.seen(torch, self.places)
         self.held_out: tuple[dict[str, Tensor], Tensor] | None = None
         if held_out is not None and len(held_out):
-            goal = _tensor(differences(model, held_out).reshape(len(held_out), -1, 2).swapaxes(0, 1)).to(
-                device
-            )
-            self.held_out = _tensors(model.encode(held_out.boundaries()), device), goal
+            goal = tensor(_by_place(differences(model, held_out))).to(device)
+            self.held_out = tensors(model.encode(held_out.boundaries()), device), goal
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
@@ -93,11 +79,6 @@ class OperatorTask(Task):
             loss = self._weighted(found, wanted, len(self.inside)).sum()
             return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(found, wanted))}
 
-    def arrays(self) -> Arrays:
-        """Return what is trained and what is fixed, by name."""
-        trained = {name: value.detach().cpu().numpy() for name, value in self.named_parameters()}
-        return {**trained, **{name: value.cpu().numpy() for name, value in self.fixed.items()}}
-
     def _answer(self, inputs: Mapping[str, Tensor], points: Tensor, place: Tensor) -> Tensor:
         weights: dict[str, Any] = {**dict(self.named_parameters()), **self.fixed}
         return self.model.answer(torch, weights, inputs, points, place)
@@ -118,23 +99,13 @@ class OperatorTask(Task):
         return torch.stack([inside * first, outside * second])
 
 
-def differences(model: Operator, samples: Samples) -> Floats:
+def differences(model: Architecture, samples: Samples) -> Floats:
     """Return the grids less the model's base (n, ni, nj, 2)."""
     if model.base == "none":
         return samples.nodes
-    return samples.nodes - np.array([base_of(model, one) for one in samples.boundaries()])
+    return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
 
 
-def base_of(model: Operator, boundary: Boundary) -> Floats:
-    """Return what the model's answer is added to (ni, nj, 2)."""
-    if model.base == "none":
-        return np.zeros((boundary.ni, boundary.nj, 2))
-    return extend(boundary)
-
-
-def _tensor(array: Floats | Sequence[float]) -> Tensor:
-    return torch.tensor(np.asarray(array), dtype=torch.float32)
-
-
-def _tensors(arrays: Arrays, device: torch.device) -> dict[str, Tensor]:
-    return {name: _tensor(value).to(device) for name, value in arrays.items()}
+def _by_place(nodes: Floats) -> Floats:
+    """Return nodes (n, ni, nj, 2) as (ni nj, n, 2)."""
+    return nodes.reshape(len(nodes), -1, 2).swapaxes(0, 1)

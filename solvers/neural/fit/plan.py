@@ -52,7 +52,7 @@ class Plan:
 
     def __post_init__(self) -> None:
         if not 0 < self.rate < 1:
-            raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", source="--rate")
+            raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", parameter="rate")
 
     def kept(self, given: int, held_out: int, what: str) -> int:
         """Return how many of the `given` shapes, called `what`, are trained on beside those held out.

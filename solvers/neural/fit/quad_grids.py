@@ -5,6 +5,7 @@ Domains around bodies are unrolled.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +14,14 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quads.edges import Edges, rims
-from meshonet.solvers.neural.quads.encoding import LATENT
-from meshonet.solvers.neural.quads.frame import frame
-from meshonet.solvers.neural.quads.picard import approached
-from meshonet.solvers.neural.quads.unrolled import AROUND, even, factors, middles, unrolled
-from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.quad.edges import Edges, rims
+from meshonet.solvers.neural.quad.encoding import HEADS, LATENT
+from meshonet.solvers.neural.quad.frame import frame
+from meshonet.solvers.neural.quad.picard import approached
+from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
+from meshonet.solvers.neural.samples import Samples, gathered
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,32 @@ class Quads:
         )
 
 
+def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
+    """Return the domains that datasets of Winslow's and of variational grids have in common, normalised.
+
+    A dataset's first grid says by which method all of it was solved; several may be of one method.
+
+    Raises
+    ------
+    InputError
+        no grids; grids of one of the methods only, or of others; as `quads`.
+    """
+    groups: dict[str, list[Grid]] = {}
+    for dataset in datasets:
+        grids = list(dataset)
+        if grids:
+            method = str(grids[0].provenance.get("method", "an unknown method"))
+            groups.setdefault(method, []).extend(grids)
+    if not groups:
+        return quads(gathered([]), gathered([]))
+    if sorted(groups) != sorted(HEADS):
+        raise InputError(
+            f"grids by {' and '.join(sorted(groups))} for the quad operator",
+            "give grids of the same boundaries by winslow and by variational",
+        )
+    return quads(gathered(groups["variational"]), gathered(groups["winslow"]))
+
+
 def quads(variational: Samples, winslow: Samples) -> Quads:
     """Return the domains whose grids are in both datasets, normalised.
 
@@ -60,8 +88,7 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
         if (samples.topology, samples.ni, samples.nj) != ("o" if around else "quad", ni, LATENT):
             raise InputError(
                 f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
-                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT} (--res, or convert "
-                "--coarsen)",
+                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}",
             )
     sides = slice(2 if around else 4)  # the cut of an O grid is no boundary
     where = {_rim(nodes, sides): k for k, nodes in enumerate(winslow.nodes)}
@@ -75,7 +102,6 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
         return _unrolled(goal, other)
     base = transfinite(goal)
     middle, factor = frame(base, np)
-
     base, other, goal = ((z - middle[:, None, None]) * factor[:, None, None] for z in (base, other, goal))
     return _approached(base, other, goal)
 
@@ -94,7 +120,7 @@ def _unrolled(goal: Complexes, other: Complexes) -> Quads:
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
     """Return domains by their grids, the base transfinite."""
     near, step = (p[:, 0] + 1j * p[:, 1] for p in approached(base, around))
-    return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
+    return Quads(*map(_single, (near, step, winslow, variational)), around)
 
 
 def _single(z: Complexes) -> Tensor:

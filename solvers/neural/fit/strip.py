@@ -12,22 +12,24 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes
-from meshonet.solvers.neural.encoding import CHANNELS, SCALARS, decode, encode
-from meshonet.solvers.neural.export import distance, held_out_figures, write_model
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.conformal.strip import across, harmonic, picard
+from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.models.strip_fno import StripFNO
-from meshonet.solvers.neural.pod import Targets, make_targets
-from meshonet.solvers.neural.strip_dataset import Strips
+from meshonet.solvers.neural.model_file import STRIP, write_model
+from meshonet.solvers.neural.strip.dataset import Strips
+from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
+from meshonet.solvers.neural.strip.pod import Targets, make_targets
 
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
 )
 """The shipped model's."""
+
 HELD_OUT = 300
+
+QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}
 
 
 @dataclass(frozen=True)
@@ -82,53 +84,70 @@ class StripTask(Task):
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(_tensor(channels).to(self.device), _tensor(scalars).to(self.device)).cpu()
-        found = out.numpy().astype(np.float64)
-        basis, scale = targets.basis, targets.scale
-        return list(decode(found, basis, scale, size))
+        return list(decode(out.numpy().astype(np.float64), targets.basis, targets.scale, size))
+
+    def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
+        """Return quantiles of the distance to R over the held-out strips, with the network and without."""
+        return held_out_figures(self.answers().__getitem__, self.held_out)
+
+    def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
+        """Write the model file: float16 weights, the basis in float32."""
+        arrays = {key: value.cpu().numpy().astype(np.float16) for key, value in self.net.state_dict().items()}
+        arrays["basis"] = self.targets.basis.astype(np.float32)
+        facts = {"name": path.stem, "topology": "o", "scale": self.targets.scale}
+        write_model(path, STRIP, arrays, recipe=recipe, figures=figures, **facts)
 
 
-def train_strip(
-    strips: Strips,
-    output: Path,
+def run(
+    model: str,  # noqa: ARG001 - there is one
+    data: Strips,
     plan: Plan,
     team: Team,
-    *,
-    held_out: int = HELD_OUT,
+    held_out: int,
     sizes: Sizes | None = None,
-    recipe: Mapping[str, Any],
-    resume: bool = False,
-    report: Callable[[Progress], None] | None = None,
-) -> dict[str, Any]:
-    """Fit a strip operator, write it to `output` with its recipe and held-out figures, return the figures.
-
-    Parameters
-    ----------
-    held_out : strips, the last ones, that are never trained on.
+) -> Run:
+    """Return what `train` needs; the last `held_out` strips are never trained on.
 
     Raises
     ------
     InputError
-        fewer strips than one batch beside those held out; a checkpoint of other settings.
-    SolverError
-        as `meshonet.solvers.neural.fit.loop.fit`.
+        fewer strips than one batch beside those held out.
     """
-    sizes, kept = sizes or Sizes(), plan.kept(len(strips), held_out, "shapes")
+    sizes, kept = sizes or Sizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)
-    task = StripTask(strips[:kept], strips[kept:], sizes, team.device)
-    told = ("epochs", "batch", "rate", "warm_up", "seed")
-    facts = {key: getattr(plan, key) for key in told} | asdict(sizes)
-    facts |= {"held_out": held_out, "strips": len(strips)}
-    checkpoint = beside(output)
-    same = {"model": "strip", **facts}
-    fit(task, plan, team, checkpoint=checkpoint, facts=same, resume=resume, report=report)
-    figures = held_out_figures(task.answers().__getitem__, task.held_out)
-    if team.leads:
-        state = {key: value.cpu().numpy() for key, value in task.net.state_dict().items()}
-        basis, scale = task.targets.basis, task.targets.scale
-        write_model(
-            output, state, basis, scale, name=output.stem, recipe={**recipe, **facts}, figures=figures
-        )
-        checkpoint.unlink(missing_ok=True)
+    facts = {key: getattr(plan, key) for key in ("epochs", "batch", "rate", "warm_up", "seed")}
+    facts |= asdict(sizes) | {"held_out": held_out, "strips": len(data)}
+    return Run(StripTask(data[:kept], data[kept:], sizes, team.device), facts)
+
+
+def distance(found: Complexes, goal: Complexes) -> float:
+    """Return the root mean square of |found - goal| (radians) over the strip, from modes (.., LEVELS)."""
+    return float(np.sqrt((np.abs(found - goal) ** 2).sum(axis=0).mean()))
+
+
+def held_out_figures(answer: Callable[[int], Complexes], test: Strips) -> dict[str, Any]:
+    """Return quantiles of the distance to R over held-out strips: the network's beside those without it.
+
+    `answer(m)` is the network's R for strip m, (2 MODES + 1, LEVELS).
+    """
+    misses: dict[str, list[float]] = {}
+    for m in range(len(test)):
+        goal, start = test.residual[m], harmonic(test.wall[m], test.far[m], across().eta)
+        found = answer(m)
+        for way, residual in (
+            ("base", np.zeros_like(goal)),
+            ("base + 1 Picard", picard(start, 1)[0] - start),
+            ("base + 2 Picard", picard(start, 2)[0] - start),
+            ("network", found),
+            ("network + 1 Picard", picard(start + found, 1)[0] - start),
+        ):
+            misses.setdefault(way, []).append(distance(residual, goal))
+    figures: dict[str, Any] = {
+        "strips": len(test),
+        "error": "root mean square distance to the Winslow solution in the strip, radians",
+    }
+    for way, values in misses.items():
+        figures[way] = {key: float(f"{np.quantile(values, q):.3e}") for key, q in QUANTILES.items()}
     return figures
 
 

@@ -15,12 +15,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Shapes, Weights, dense, dense_shapes
 
 
 @dataclass(frozen=True)
-class DeepONet(Operator):
+class DeepONet(Architecture):
     """One branch, one trunk, features in halves.
 
     Parameters

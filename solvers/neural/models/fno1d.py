@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 
 SIDE = 5
 """Nodes of west and of east that are seen."""
@@ -29,7 +29,7 @@ SEEN = 4 + 4 * SIDE + 1
 
 
 @dataclass(frozen=True)
-class FNO1D(Operator):
+class FNO1D(Architecture):
     """Fourier layers along xi.
 
     Parameters

@@ -24,14 +24,14 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 
 SEEN = 10
 
 
 @dataclass(frozen=True)
-class FNO2D(Operator):
+class FNO2D(Architecture):
     """Fourier layers on the square.
 
     Parameters
@@ -63,7 +63,7 @@ class FNO2D(Operator):
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
             told = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
-            raise InputError(told, f"use 1 to {most}", source="--set")
+            raise InputError(told, f"use 1 to {most}", parameter="set")
         shapes = {**dense_shapes("lift", (SEEN, self.width))}
         for k in range(self.layers):
             shapes |= dense_shapes(f"local{k}", (self.width, self.width))

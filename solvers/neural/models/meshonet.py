@@ -15,13 +15,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
-from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.sensors import lift
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Shapes, Weights, dense, dense_shapes, products
+from meshonet.solvers.neural.models.sensors import lift
 
 
 @dataclass(frozen=True)
-class MeshONet(Operator):
+class MeshONet(Architecture):
     """Dual branch, shared trunk.
 
     Parameters

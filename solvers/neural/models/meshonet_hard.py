@@ -28,14 +28,14 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
+from meshonet.solvers.neural.models.sensors import sensors
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.sensors import sensors
 
 
 @dataclass(frozen=True)
-class MeshONetHard(Operator):
+class MeshONetHard(Architecture):
     """One branch that sees everything, a trunk that vanishes on the boundary.
 
     Parameters

@@ -14,12 +14,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from meshonet.solvers.neural.layers import Shapes, Weights, dense, dense_shapes, products
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Shapes, Weights, dense, dense_shapes, products
 
 
 @dataclass(frozen=True)
-class MIONet(Operator):
+class MIONet(Architecture):
     """Two branches, multiplied, and a trunk.
 
     Parameters

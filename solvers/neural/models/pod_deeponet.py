@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes
 from meshonet.solvers.neural.samples import Samples
 
 
 @dataclass(frozen=True)
-class PODDeepONet(Operator):
+class PODDeepONet(Architecture):
     """A branch that answers coefficients of fixed modes.
 
     Parameters

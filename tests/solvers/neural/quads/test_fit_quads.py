@@ -13,18 +13,19 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.four_sided import boundary
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
+from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.quad import PARTS, Sizes
 from meshonet.solvers.neural.fit.quad_grids import Quads, quads
-from meshonet.solvers.neural.fit.quads import PARTS, Sizes, train_quads
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.models.quad_unet import QuadUNet
-from meshonet.solvers.neural.quads.encoding import LATENT
-from meshonet.solvers.neural.quads.features import FEATURES, features
-from meshonet.solvers.neural.quads.picard import approach
-from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
+from meshonet.solvers.neural.fit.train import train
+from meshonet.solvers.neural.model_file import read_tensors
+from meshonet.solvers.neural.quad.encoding import LATENT
+from meshonet.solvers.neural.quad.features import FEATURES, features
+from meshonet.solvers.neural.quad.picard import approach
+from meshonet.solvers.neural.quad.symmetry import ORDER, relabelled
 from meshonet.solvers.neural.samples import Samples, gathered
-from meshonet.solvers.neural.weights import read_tensors
 
 SMALL = Plan(
     epochs=3, batch=6, rate=3e-3, schedule="cosine", warm_up=2, weight_decay=1e-3, clip=1.0, device="cpu"
@@ -48,8 +49,17 @@ def given(solved: tuple[Samples, Samples]) -> Quads:
 
 def fit(given: Quads, output: Path, plan: Plan = SMALL, *, resume: bool = False) -> list[Progress]:
     reports: list[Progress] = []
-    train_quads(
-        given, output, plan, ALONE, held_out=4, sizes=SIZES, recipe={}, resume=resume, report=reports.append
+    train(
+        "quad",
+        given,
+        output,
+        plan,
+        ALONE,
+        held_out=4,
+        sizes=SIZES,
+        recipe={},
+        resume=resume,
+        report=reports.append,
     )
     return reports
 
@@ -105,7 +115,7 @@ def test_parts_of_the_loss_are_weighed(given: Quads, tmp_path: Path) -> None:
     for weights in ({}, {"folds": 0.0, "winslow": 2 * PARTS["winslow"]}):
         output, plan = tmp_path / "m.safetensors", replace(SMALL, epochs=1, batch=12)
         known = {"held_out": 4, "sizes": SIZES, "recipe": {}}
-        train_quads(given, output, plan, ALONE, weights=weights, report=reports.append, **known)  # type: ignore[arg-type]
+        train("quad", given, output, plan, ALONE, weights=weights, report=reports.append, **known)  # type: ignore[arg-type]
     assert reports[1].parts["winslow"] == pytest.approx(2 * reports[0].parts["winslow"], rel=1e-6)
     assert reports[1].parts["variational"] == reports[0].parts["variational"]
     recipe = read_tensors(tmp_path / "m.safetensors")[0]["recipe"]
@@ -120,7 +130,7 @@ def test_weights_of_no_part_are_refused(
     given: Quads, tmp_path: Path, weights: dict[str, float], told: str
 ) -> None:
     with pytest.raises(InputError, match=told):
-        train_quads(given, tmp_path / "m", SMALL, ALONE, held_out=4, weights=weights, recipe={})
+        train("quad", given, tmp_path / "m", SMALL, ALONE, held_out=4, weights=weights, recipe={})
 
 
 def test_the_same_seed_gives_the_same_weights_cut_or_not(given: Quads, tmp_path: Path) -> None:
@@ -133,7 +143,7 @@ def test_the_same_seed_gives_the_same_weights_cut_or_not(given: Quads, tmp_path:
 
     settings = {"held_out": 4, "sizes": SIZES, "recipe": {}}
     with pytest.raises(KeyboardInterrupt):
-        train_quads(given, cut, SMALL, ALONE, report=stop, **settings)  # type: ignore[arg-type]
+        train("quad", given, cut, SMALL, ALONE, report=stop, **settings)  # type: ignore[arg-type]
     assert not cut.exists()
     resumed = fit(given, cut, resume=True)
     assert [r.loss for r in resumed] == [r.loss for r in expected[-len(resumed) :]]
@@ -146,11 +156,11 @@ def test_the_same_seed_gives_the_same_weights_cut_or_not(given: Quads, tmp_path:
 @pytest.mark.parametrize("held_out", [0, 12])
 def test_too_few_domains_are_refused(given: Quads, tmp_path: Path, held_out: int) -> None:
     with pytest.raises(InputError, match="16 domains to train on"):
-        train_quads(given, tmp_path / "m.safetensors", SMALL, ALONE, held_out=held_out, recipe={})
+        train("quad", given, tmp_path / "m.safetensors", SMALL, ALONE, held_out=held_out, recipe={})
 
 
 def test_figures_count_folds_and_gains(given: Quads) -> None:
-    from meshonet.solvers.neural.quads.export import held_out_figures
+    from meshonet.solvers.neural.fit.quad_figures import held_out_figures
 
     base, goal, best = (z.numpy() for z in (given.base, given.winslow, given.variational))
     figures = held_out_figures(np.stack([goal, best], axis=1), base, goal, best)

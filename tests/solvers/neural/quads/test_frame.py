@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.neural.quads.frame import frame
+from meshonet.solvers.neural.quad.frame import frame
 from solvers.neural.quads._frame import add, put_back, take_out
 
 

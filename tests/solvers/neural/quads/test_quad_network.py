@@ -9,11 +9,11 @@ import pytest
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
-from meshonet.solvers.neural.quads.features import FEATURES, features
-from meshonet.solvers.neural.quads.kernels import at_points
-from meshonet.solvers.neural.quads.network import CHUNK, Network, shapes
-from meshonet.solvers.neural.quads.picard import approach
-from meshonet.solvers.neural.quads.symmetry import ORDER, relabelled
+from meshonet.solvers.neural.quad.features import FEATURES, features
+from meshonet.solvers.neural.quad.kernels import at_points
+from meshonet.solvers.neural.quad.network import CHUNK, Network, shapes
+from meshonet.solvers.neural.quad.picard import approach
+from meshonet.solvers.neural.quad.symmetry import ORDER, relabelled
 from solvers.neural.quads._network import (
     Program,
     activate,
@@ -248,7 +248,7 @@ def test_single_precision_is_close_to_double() -> None:
 
 def test_numpy_equals_torch() -> None:
     torch = pytest.importorskip("torch")
-    from meshonet.solvers.neural.models.quad_unet import QuadUNet
+    from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
 
     model = QuadUNet(WIDTHS, BLOCKS).double()
     held = weights()

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Complexes
-from meshonet.solvers.neural.quads import kernels
-from meshonet.solvers.neural.quads.features import FEATURES, features
-from meshonet.solvers.neural.quads.frame import frame
-from meshonet.solvers.neural.quads.symmetry import ELEMENTS, INVERSE, ORDER, PRODUCT, SEEN, relabelled
+from meshonet.solvers.neural.quad import kernels
+from meshonet.solvers.neural.quad.features import FEATURES, features
+from meshonet.solvers.neural.quad.frame import frame
+from meshonet.solvers.neural.quad.symmetry import ELEMENTS, INVERSE, ORDER, PRODUCT, SEEN, relabelled
 
 ALL = range(ORDER)
 
