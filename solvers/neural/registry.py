@@ -28,7 +28,7 @@ DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}
 HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
 """Models that are another answer of a network: the name of its file, and the number of the answer."""
 
-NEVER = {"airfoil-c": "leave {model} out: C grids are marched from wall and wake, better than by a model"}
+NEVER = {"airfoil-c": "leave {model} out: {topology} c is marched from wall and wake, better than by a model"}
 """Models that one may look for and that are not made, and what serves instead."""
 
 OPERATORS: dict[Kind, tuple[str, str]] = {

@@ -96,7 +96,7 @@ def test_what_it_does_not_take_is_told(tmp_path: Path) -> None:
         BodyGrids()(south, north, 1)
     with pytest.raises(InputError, match="opposite sides need equal counts"):
         BodyGrids()(south, north[:, ::2], 9)
-    with pytest.raises(InputError, match="do not go once round a middle of a body"):
+    with pytest.raises(InputError, match="do not go once round a middle of the body"):
         BodyGrids()(south + 1e3, north, 9)
     quads = str(random_model(tmp_path / "quads.safetensors"))
     with pytest.raises(InputError, match="makes quad grids; use one for bodies"):

@@ -36,5 +36,5 @@ def test_grids_that_would_fold_are_valid_in_torch_too(seed: int, monkeypatch: py
     sides = (boundary.south, boundary.north, boundary.west, boundary.east)
     (nodes,) = QuadGrids()(*(torch.from_numpy(np.ascontiguousarray(side))[None] for side in sides)).numpy()
     assert np.abs(nodes - found.grid.nodes).max() < 1e-12 * np.ptp(found.grid.nodes)
-    monkeypatch.setattr("meshonet.solvers.neural.quad.operator.share", lambda *_: 1.0)
+    monkeypatch.setattr("meshonet.solvers.neural.quad.coarse_grids.share", lambda *_: 1.0)
     assert count_folded(load("quad-general").solve([boundary], "off")[0].grid.nodes) > 0

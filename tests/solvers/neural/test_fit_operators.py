@@ -175,7 +175,7 @@ def test_a_loss_that_is_not_finite_leaves_the_last_checkpoint(
 
     monkeypatch.setattr(Task, "__call__", broken)
     with pytest.raises(
-        SolverError, match=r"not finite in epoch 5; the last checkpoint is kept.*smaller --rate"
+        SolverError, match=r"not finite in epoch 5; resume from the last checkpoint with a smaller"
     ):
         fit(output)
     monkeypatch.undo()
@@ -202,7 +202,7 @@ def test_too_little_memory_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(Task, "__call__", short)
     with pytest.raises(
-        SolverError, match=r"not enough memory for 2 shapes a step; use a smaller --batch or --p"
+        SolverError, match=r"not enough memory for 2 shapes a step; use a smaller batch or fewer p"
     ):
         fit(tmp_path / "m.safetensors")
 
