@@ -75,7 +75,7 @@ AIRFOILS: dict[str, Way] = {
 }
 DOMAINS: dict[str, Way] = {
     **COMMON,
-    "harmonic base": lambda b: Solution(Grid(extend(b), b.topology), "harmonic"),
+    "harmonic base": lambda b: Solution(Grid.from_nodes(extend(b), b.topology), "harmonic"),
     "Winslow, coarse 33": coarse(winslow, 33),
     "variational, coarse 33": coarse(variational, 33),
     "**quad-winslow**": partial(operate, "quad-winslow", 0),

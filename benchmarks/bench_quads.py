@@ -114,7 +114,9 @@ def near(boundary: Boundary) -> Solution:
     """Return the grid that the network goes out from, evaluated as its own are."""
     edges = Edges.of([boundary])
     (planes,) = evaluate(near_grids(edges), edges)
-    return Solution(Grid(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.parts), "picard")
+    return Solution(
+        Grid.from_nodes(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.patches), "picard"
+    )
 
 
 def _coarser(ways: dict[str, Way], n: int) -> dict[str, Way]:

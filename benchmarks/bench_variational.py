@@ -102,7 +102,7 @@ def shapes(n: int, makers: tuple[Callable[[int, int], Boundary], ...] = SHAPES) 
 
 def row(name: str, nodes: Floats, full: Floats, seconds: float) -> str:
     """Return one line of a table."""
-    angles = measure(Grid(nodes), percentiles=True)["max_angle"]
+    angles = measure(Grid.from_nodes(nodes), percentiles=True)["max_angle"]
     spread = np.linalg.norm(full - full.mean(axis=(0, 1)))
     apart = "" if nodes is full else f"{np.linalg.norm(nodes - full) / spread:.1e}"
     figures = f"{angles.max:.1f} / {angles.p99:.1f} / {angles.mean:.1f} | {wall(nodes):.1f}"
@@ -159,7 +159,7 @@ def bodies(res: str) -> str:
             around["**variational**"] = variational
             for way, solver in around.items():
                 seconds, nodes = best(solver, boundary, 3)
-                angles = measure(Grid(nodes, boundary.topology), percentiles=True)["max_angle"]
+                angles = measure(boundary.grid(nodes), percentiles=True)["max_angle"]
                 figures = f"{angles.max:.1f} / {angles.p99:.1f} / {angles.mean:.2f}"
                 start = f"| NACA {name}, {topology.upper()} | {way} | {count_folded(nodes)}"
                 lines.append(f"{start} | {figures} | {1e3 * seconds:.0f} |")

@@ -70,7 +70,7 @@ def _row(found: Format) -> tuple[str, ...]:
         " ".join(found.suffixes),
         _what(found.read_grids is not None, found.read_shapes is not None),
         _what(found.write_grids is not None, found.write_boundaries is not None),
-        "yes" if found.names_parts else "",
+        "yes" if found.names_patches else "",
         "yes" if found.write_extruded is not None else "",
         "yes" if found.many else "",
         found.description,

@@ -31,7 +31,7 @@ class Format:
     read_grids, write_grids, write_boundaries : None when the format cannot.
     write_extruded : writes grids as layers of cells between planes at the given heights, two or more.
     sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
-    names_parts : whether names of parts and the topology survive in it.
+    names_patches : whether names of parts and the topology survive in it.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that a stream holds none.
@@ -48,7 +48,7 @@ class Format:
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
     write_extruded: Callable[[Path, Iterable[Grid], Heights], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
-    names_parts: bool = False
+    names_patches: bool = False
     many: bool = False
     one_size: bool = False
     beside: bool = False
@@ -70,6 +70,6 @@ def only_one(grids: Iterable[Grid], what: str) -> Grid:
     if next(given, None) is not None:
         raise InputError(
             f"{what} holds one grid and there are several",
-            "use -o 'name-{index}' with that ending, or one .h5",
+            "write one file each ({output} 'name-{{index}}'), or one .h5",
         )
     return first

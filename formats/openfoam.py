@@ -196,6 +196,6 @@ FORMAT = Format(
     description="OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
     write_grids=write_grids,
     write_extruded=write_extruded,
-    names_parts=True,
+    names_patches=True,
     fills_folder=True,
 )

@@ -28,7 +28,7 @@ class Sampled(Timed):
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         edges = self.boundary
-        parts = [part.name for part in edges.parts]
+        parts = [part.name for part in edges.patches]
         facts = {"ni": edges.ni, "nj": edges.nj, "topology": edges.topology, "parts": parts}
         told = {"notes": list(edges.notes)} if edges.notes else {}
         return {**self.member_json(), **facts, **told, "seconds": self.times_json()}

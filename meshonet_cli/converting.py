@@ -38,7 +38,7 @@ class Converted(Timed):
             "ni": what.ni,
             "nj": what.nj,
             "topology": what.topology,
-            "parts": [p.name for p in what.parts],
+            "parts": [p.name for p in what.patches],
         }
         return {**self.member_json(), **facts, "seconds": self.times_json()}
 

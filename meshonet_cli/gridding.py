@@ -186,7 +186,7 @@ def finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampl
 
     Edges that were given share their nodes out as they are.
     """
-    wakes = [part.stop - part.start for part in boundary.parts if part.name == "wake"]
+    wakes = [part.stop - part.start for part in boundary.patches if part.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
     nodes = k * wakes[0] + 1 if made else sampling.wake_nodes
     return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)

@@ -6,14 +6,14 @@ from typing import Any
 
 from meshonet.formats.mesh.boundary_patches import patches, roles
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.profiles import Checked, Figures, Judgement, Limit
 from meshonet.geometry.quality.walls import Spread, WallRow
 from meshonet_cli.report import aligned, figure
 
 
-def walls(grid: Grid) -> list[Part]:
+def walls(grid: Grid) -> list[Patch]:
     """Return the stretches of wall of `grid`, told by their names; south and north of a quad without."""
     stretches = patches(grid)
     known = roles(grid, stretches)

@@ -76,7 +76,7 @@ def main() -> None:
         f"mean of cos² at the corners: {found[0]:.5f} at first, {found[-1]:.5f} after {options.steps} steps"
     )
     if options.output:
-        write_grids(options.output, [Grid(nodes.double().numpy())])
+        write_grids(options.output, [Grid.from_nodes(nodes.double().numpy())])
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from meshonet.formats.mesh.slices import planar
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 _FACTS = ("topology", "name", "parts", "provenance")
@@ -57,7 +57,7 @@ def _grid(zone: Node, name: str) -> Grid:
     grid = grid_with(nodes, facts, name)
     if facts.get("topology") or not np.array_equal(grid.nodes, nodes):
         return grid
-    return replace(grid, parts=tuple(_conditions(zone, grid)) or grid.parts)
+    return replace(grid, patches=tuple(_conditions(zone, grid)) or grid.patches)
 
 
 def _coordinates(zone: Node) -> list[Floats]:
@@ -83,7 +83,7 @@ def _coordinates(zone: Node) -> list[Floats]:
     return found
 
 
-def _conditions(zone: Node, grid: Grid) -> Iterator[Part]:
+def _conditions(zone: Node, grid: Grid) -> Iterator[Patch]:
     """Yield the boundary conditions that cover a stretch of one side, called by their family."""
     for _, group in children(zone, "ZoneBC_t"):
         for name, condition in children(group, "BC_t"):
@@ -100,9 +100,9 @@ def _conditions(zone: Node, grid: Grid) -> Iterator[Part]:
                 continue
             (i0, j0), (i1, j1) = (np.sort(span, axis=0)[:, :2].astype(np.int64) - 1).tolist()
             if j0 == j1 and j0 in (0, grid.nj - 1) and 0 <= i0 < i1 < grid.ni:
-                yield Part(printable(family) or "part", "south" if j0 == 0 else "north", i0, i1)
+                yield Patch(printable(family) or "part", "south" if j0 == 0 else "north", i0, i1)
             elif i0 == i1 and i0 in (0, grid.ni - 1) and 0 <= j0 < j1 < grid.nj:
-                yield Part(printable(family) or "part", "west" if i0 == 0 else "east", j0, j1)
+                yield Patch(printable(family) or "part", "west" if i0 == 0 else "east", j0, j1)
 
 
 def _kind(zone: Node) -> str:

@@ -23,7 +23,7 @@ from meshonet.formats.mesh.names import words
 from meshonet.formats.source import Source
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 Integers = NDArray[np.int32]
@@ -160,7 +160,7 @@ def _write_cut(zone: Node, name: str, grid: Grid, planes: int) -> None:
         child(joint, "Transform", '"int[IndexDimension]"', transform)
 
 
-def _range(part: Part, grid: Grid, planes: int) -> Integers:
+def _range(part: Patch, grid: Grid, planes: int) -> Integers:
     """Return the first and the last node (2, 2 or 3) of a stretch, counted from 1."""
     start, stop = part.start + 1, part.stop + 1
     if part.side in ("south", "north"):
@@ -180,6 +180,6 @@ FORMAT = Format(
     write_grids=write_grids,
     write_extruded=write_extruded,
     sniff=sniff,
-    names_parts=True,
+    names_patches=True,
     many=True,
 )

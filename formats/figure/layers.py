@@ -110,7 +110,7 @@ def outline(ax: Axes, grid: Grid) -> None:
 
 def body(grid: Grid) -> Floats:
     """Return the nodes (n, 2) of the part named ``wall`` on the south side, or of that whole side."""
-    for part in grid.parts:
+    for part in grid.patches:
         if part.side == "south" and part.name == "wall":
             return grid.nodes[part.start : part.stop + 1, 0]
     return grid.nodes[:, 0]

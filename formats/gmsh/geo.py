@@ -81,5 +81,5 @@ FORMAT = Format(
     suffixes=(".geo",),
     description="Gmsh geometry: the outer edges as transfinite curves, parts as physical groups",
     write_grids=write_grids,
-    names_parts=True,
+    names_patches=True,
 )

@@ -82,7 +82,7 @@ def _formats(number: str, one: ModuleType | None, version: str) -> Iterator[Form
             write_grids=partial(grids, text=text),
             write_extruded=partial(layers, text=text),
             sniff=sniff,
-            names_parts=True,
+            names_patches=True,
         )
 
 

@@ -34,7 +34,7 @@ from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.metadata import Origin
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Writer:
         if shape != self._first:
             raise InputError(
                 "sample {} is {}x{} {} and the first is {}x{} {}".format(self._count, *shape, *self._first),
-                "one dataset has one size and topology: set --res and --topology, or write one file each",
+                "one dataset has one size and topology: set {res} and {topology}, or write one file each",
             )
         arrays: dict[str, Floats]
         if isinstance(sample, Grid):  # of any quality: its edges may be no valid boundary
@@ -123,7 +123,7 @@ class Writer:
             arrays["sensors"] = sample.sensors
         self._check(arrays)
         texts = {"names": sample.name, "split": split or sample.origin.split}
-        texts["parts"] = json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.parts])
+        texts["parts"] = json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.patches])
         if isinstance(sample, Grid) and sample.provenance:
             texts["provenance"] = json.dumps(sample.provenance, default=plain)
         for name, values in arrays.items():
@@ -279,10 +279,10 @@ def _origin(data: Checked, k: int) -> Origin:
     return Origin(pairs, data.text("split", k))
 
 
-def _parts(data: Checked, k: int) -> tuple[Part, ...]:
+def _parts(data: Checked, k: int) -> tuple[Patch, ...]:
     try:
         rows = json.loads(data.text("parts", k) or "[]")
-        return tuple(Part(str(name), side, int(start), int(stop)) for name, side, start, stop in rows)
+        return tuple(Patch(str(name), side, int(start), int(stop)) for name, side, start, stop in rows)
     except (ValueError, TypeError, RecursionError):
         raise InputError(
             "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
@@ -298,7 +298,7 @@ FORMAT = Format(
     write_grids=write_grids,
     write_boundaries=write_boundaries,
     sniff=sniff,
-    names_parts=True,
+    names_patches=True,
     many=True,
     one_size=True,
 )

@@ -10,7 +10,7 @@ from meshonet.formats.mesh.recover_topology import known_topology, recovered, us
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 
@@ -22,7 +22,7 @@ def facts_of(grid: Grid) -> dict[str, list[str]]:
     facts: dict[str, list[str]] = {
         "topology": [grid.topology],
         "name": [grid.name],
-        "parts": [f"{part.side} {part.start} {part.stop} {part.name}" for part in grid.parts],
+        "parts": [f"{part.side} {part.start} {part.stop} {part.name}" for part in grid.patches],
         "provenance": [json.dumps(dict(grid.provenance), default=plain) if grid.provenance else ""],
     }
     return {name: texts for name, texts in facts.items() if any(texts)}
@@ -46,7 +46,9 @@ def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "")
     except (ValueError, RecursionError):
         provenance = {}
     topology = known_topology(facts["topology"][0])
-    return Grid(usable(nodes), topology, parts, name, provenance if isinstance(provenance, dict) else {})
+    return Grid.from_nodes(
+        usable(nodes), topology, parts, name, provenance if isinstance(provenance, dict) else {}
+    )
 
 
 def plain(value: object) -> object:
@@ -54,7 +56,7 @@ def plain(value: object) -> object:
     return value.tolist() if hasattr(value, "tolist") else str(value)
 
 
-def _part(text: str) -> Part:
+def _part(text: str) -> Patch:
     words: list[Any] = text.split(" ", 3)
     try:
         side, start, stop, name = words[0], int(words[1]), int(words[2]), words[3]
@@ -62,4 +64,4 @@ def _part(text: str) -> Part:
         raise InputError(
             f"part {text[:60]!r} is not 'side start stop name'", "remove the field 'parts'"
         ) from None
-    return Part(printable(name), side, start, stop)
+    return Patch(printable(name), side, start, stop)

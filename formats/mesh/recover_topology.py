@@ -7,7 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary, polygon_area
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import c_parts, wake_nodes
+from meshonet.geometry.blocks.patches import c_patches, wake_nodes
 from meshonet.geometry.errors import InputError
 
 LARGEST = 1e150
@@ -30,7 +30,7 @@ def boundary_of(grid: Grid) -> Boundary:
         west=nodes[0],
         east=nodes[-1],
         topology=grid.topology,
-        parts=grid.parts,
+        patches=grid.patches,
         name=grid.name,
         origin=grid.origin,
     )
@@ -61,15 +61,15 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
             nodes = nodes[::-1, ::-1]
         if not np.array_equal(nodes[0], nodes[-1]):
             nodes = np.concatenate([nodes[:-1], nodes[:1]])
-        return Grid(nodes, "o", name=name)
+        return Grid.from_nodes(nodes, "o", name=name)
     turned = nodes
     for _ in range(4):
         wake = wake_nodes(turned[:, 0])
         if wake > 1:
             ni, nj = turned.shape[:2]
-            return Grid(turned, "c", c_parts(ni, nj, wake), name)
+            return Grid.from_nodes(turned, "c", c_patches(ni, nj, wake), name)
         turned = _quarter_turn(turned)
-    return Grid(nodes, "quad", name=name)
+    return Grid.from_nodes(nodes, "quad", name=name)
 
 
 def usable(nodes: Floats) -> Floats:

@@ -18,7 +18,7 @@ from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.boundary import Boundary, polygon_area
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.named_edges import Labelled, runs
@@ -121,7 +121,7 @@ def _cut(inner: Chain, outer: Chain, surface: Surface) -> list[int]:
     return cut if cut and cut[-1] in outer.nodes else []
 
 
-def _o_parts(inner: Chain, outer: Chain) -> tuple[Part, ...]:
+def _o_parts(inner: Chain, outer: Chain) -> tuple[Patch, ...]:
     """Return the parts of both curves, or none when nothing is named."""
     sides: tuple[tuple[Side, Chain], ...] = (("south", inner), ("north", outer))
     return tuple(part for side, chain in sides for part in runs(side, chain.names))

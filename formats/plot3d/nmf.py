@@ -15,7 +15,7 @@ from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
 from meshonet.formats.mesh.names import words
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 _FACES: dict[Side, int] = {"west": 3, "east": 4, "south": 5, "north": 6}
 _TYPES: dict[Role, str] = {
@@ -54,7 +54,7 @@ def _write(path: Path, grid: Grid, planes: int) -> None:
     path.write_text("\n".join(text), encoding="ascii")
 
 
-def _range(part: Part, planes: int, *, turned: bool = False) -> str:
+def _range(part: Patch, planes: int, *, turned: bool = False) -> str:
     """Return block, face and the two ranges of a stretch; `turned` has its nodes run backwards."""
     first, last = part.start + 1, part.stop + 1
     if turned:
@@ -71,5 +71,5 @@ FORMAT = Format(
     description="NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
     write_grids=write_grids,
     write_extruded=write_extruded,
-    names_parts=True,
+    names_patches=True,
 )

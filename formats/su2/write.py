@@ -61,5 +61,5 @@ FORMAT = Format(
     write_extruded=write_extruded,
     read_shapes=read_shapes,
     sniff=sniff,
-    names_parts=True,
+    names_patches=True,
 )

@@ -82,7 +82,7 @@ FORMATS = (
         write_grids=write_grids,
         write_extruded=write_extruded,
         sniff=sniff,
-        names_parts=True,
+        names_patches=True,
     ),
     Format(
         name="vtk-ascii",
@@ -92,6 +92,6 @@ FORMATS = (
         write_grids=partial(write_grids, text=True),
         write_extruded=partial(write_extruded, text=True),
         sniff=sniff,
-        names_parts=True,
+        names_patches=True,
     ),
 )

@@ -119,7 +119,7 @@ FORMAT = Format(
     write_grids=write_grids,
     write_extruded=write_extruded,
     sniff=sniff,
-    names_parts=True,
+    names_patches=True,
     many=True,
     beside=True,
 )

@@ -22,8 +22,9 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
-from meshonet.geometry.blocks.patches import Part, check_parts, known_parts, wake_nodes
+from meshonet.geometry.blocks.patches import Patch, check_patches, known_patches, wake_nodes
 from meshonet.geometry.curves.curve import Curve, resample_like
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
@@ -39,7 +40,7 @@ class Boundary:
     south, north : (ni, 2) nodes along xi.
     west, east : (nj, 2) nodes along eta.
     topology : ``quad``, ``o`` or ``c``.
-    parts : named parts; empty means the defaults.
+    patches : named stretches of the sides; empty means the defaults.
     name : what the input called this shape.
     wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
         body between the nodes.
@@ -63,7 +64,7 @@ class Boundary:
     west: Floats
     east: Floats
     topology: Topology = "quad"
-    parts: tuple[Part, ...] = ()
+    patches: tuple[Patch, ...] = ()
     name: str = ""
     wall: Curve | None = None
     chord: float = 0.0
@@ -90,9 +91,9 @@ class Boundary:
             object.__setattr__(self, "chord", float(farthest))
         self._check_corners()
         object.__setattr__(
-            self, "parts", tuple(self.parts) or known_parts(self.topology, self.south, self.nj)
+            self, "patches", tuple(self.patches) or known_patches(self.topology, self.south, self.nj)
         )
-        check_parts(self.parts, self.ni, self.nj)
+        check_patches(self.patches, self.ni, self.nj)
         self._check_orientation()
 
     @property
@@ -109,6 +110,12 @@ class Boundary:
     def corners(self) -> Mapping[str, Indices]:
         """Indices of the corners of each edge, its ends left out (`meshonet.geometry.polygon.corners`)."""
         return {side: find_corners(getattr(self, side)) for side in SIDES}
+
+    def grid(
+        self, nodes: Floats, provenance: Mapping[str, Any] | None = None, *, finite: bool = False
+    ) -> Grid:
+        """Return the grid of `nodes` (ni, nj, 2) inside this boundary."""
+        return Grid.from_nodes(nodes, self.topology, self.patches, self.name, provenance or {}, finite=finite)
 
     def outline(self) -> Floats:
         """Return the closed outline (n, 2) south, east, north, west, first node not repeated."""
@@ -160,8 +167,8 @@ class Boundary:
             side: resample_like(getattr(self, side), n, closed=periodic and side in ("south", "north"))
             for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
         }
-        parts = tuple(_rescaled(part, self, ni, nj) for part in self.parts)
-        return replace(self, **edges, parts=parts, sensors=None, sampled=True)
+        parts = tuple(_rescaled(part, self, ni, nj) for part in self.patches)
+        return replace(self, **edges, patches=parts, sensors=None, sampled=True)
 
     def _check_asked(self, sampling: Sampling) -> None:
         """Raise InputError when `sampling` asks for what given edges do not leave open."""
@@ -270,7 +277,7 @@ def _edge(side: str, points: Floats) -> Floats:
     return edge
 
 
-def _rescaled(part: Part, old: Boundary, ni: int, nj: int) -> Part:
+def _rescaled(part: Patch, old: Boundary, ni: int, nj: int) -> Patch:
     had, has = (old.ni, ni) if part.side in ("south", "north") else (old.nj, nj)
     scale = (has - 1) / (had - 1)
     start = min(round(part.start * scale), has - 2)

@@ -15,7 +15,7 @@ from dataclasses import replace
 from meshonet.geometry.arrays import SIDES
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 
@@ -31,19 +31,19 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
     --------
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.arange(5.0), np.arange(3.0), indexing="ij")
-    >>> coarser_grid(Grid(np.stack([x, y], axis=-1)), 2).x[:, 0]
+    >>> coarser_grid(Grid.from_nodes(np.stack([x, y], axis=-1)), 2).x[:, 0]
     array([0., 2., 4.])
     """
     _check(grid.ni, grid.nj, k)
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
-    return replace(grid, nodes=grid.nodes[::k, ::k], parts=_parts(grid.parts, k), provenance=facts)
+    return replace(grid, nodes=grid.nodes[::k, ::k], patches=_parts(grid.patches, k), provenance=facts)
 
 
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
     """Return the boundary of every `k`-th node, as `coarser_grid` does of a grid."""
     _check(boundary.ni, boundary.nj, k)
     edges = {side: getattr(boundary, side)[::k] for side in SIDES}
-    return replace(boundary, **edges, parts=_parts(boundary.parts, k), sensors=None)
+    return replace(boundary, **edges, patches=_parts(boundary.patches, k), sensors=None)
 
 
 def _check(ni: int, nj: int, k: int) -> None:
@@ -59,7 +59,7 @@ def _check(ni: int, nj: int, k: int) -> None:
     raise InputError(cells, remedy)
 
 
-def _parts(parts: tuple[Part, ...], k: int) -> tuple[Part, ...]:
+def _parts(parts: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
     for part in parts:
         for node in (part.start, part.stop):
             if node % k:
@@ -67,4 +67,4 @@ def _parts(parts: tuple[Part, ...], k: int) -> tuple[Part, ...]:
                     f"part {part.name!r} ends at node {node} of {part.side}, which every {k}-th leaves out",
                     f"make the grid with ends at multiples of {k} (--wake-nodes for a wake), or coarsen less",
                 )
-    return tuple(Part(part.name, part.side, part.start // k, part.stop // k) for part in parts)
+    return tuple(Patch(part.name, part.side, part.start // k, part.stop // k) for part in parts)

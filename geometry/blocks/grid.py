@@ -26,7 +26,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology, as_planar
 from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
-from meshonet.geometry.blocks.patches import Part, check_parts, known_parts
+from meshonet.geometry.blocks.patches import Patch, check_patches, known_patches
 from meshonet.geometry.errors import InputError
 
 
@@ -38,7 +38,7 @@ class Grid:
     ----------
     nodes : (ni, nj, 2) float64, any unit of length, kept in planar layout (see `meshonet.geometry.arrays`).
     topology : ``quad``, ``o`` or ``c``.
-    parts : named parts; empty means those of `meshonet.geometry.blocks.patches.known_parts`.
+    patches : named stretches of the sides; empty means those of `meshonet.geometry.blocks.patches.known_patches`.
     name : what the input called this shape.
     provenance : how the grid was made: method, settings, version.
     origin : that of its boundary.
@@ -52,7 +52,7 @@ class Grid:
 
     nodes: Floats
     topology: Topology = "quad"
-    parts: tuple[Part, ...] = ()
+    patches: tuple[Patch, ...] = ()
     name: str = ""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     origin: Origin = UNKNOWN
@@ -76,9 +76,14 @@ class Grid:
             )
         object.__setattr__(self, "nodes", nodes)
         object.__setattr__(
-            self, "parts", tuple(self.parts) or known_parts(self.topology, nodes[:, 0], self.nj)
+            self, "patches", tuple(self.patches) or known_patches(self.topology, nodes[:, 0], self.nj)
         )
-        check_parts(self.parts, self.ni, self.nj)
+        check_patches(self.patches, self.ni, self.nj)
+
+    @classmethod
+    def from_nodes(cls, *args: Any, **settings: Any) -> Grid:
+        """Return the grid of one block of nodes."""
+        return cls(*args, **settings)
 
     @property
     def ni(self) -> int:

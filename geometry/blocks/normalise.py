@@ -26,7 +26,7 @@ def normalised(grid: Grid) -> Grid:
     Examples
     --------
     >>> x, y = np.meshgrid([2.0, 4.0], [1.0, 2.0], indexing="ij")
-    >>> normalised(Grid(np.stack([x, y], axis=-1))).nodes[1, 1].tolist()
+    >>> normalised(Grid.from_nodes(np.stack([x, y], axis=-1))).nodes[1, 1].tolist()
     [1.0, 0.5]
     """
     if grid.topology == "quad":

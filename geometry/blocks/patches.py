@@ -12,7 +12,7 @@ from meshonet.geometry.errors import InputError
 
 
 @dataclass(frozen=True)
-class Part:
+class Patch:
     """Nodes ``start`` to ``stop`` (both included) of one side, under a name.
 
     South and north count nodes along i, west and east along j.
@@ -24,24 +24,24 @@ class Part:
     stop: int
 
 
-def default_parts(topology: Topology, ni: int, nj: int) -> tuple[Part, ...]:
+def default_patches(topology: Topology, ni: int, nj: int) -> tuple[Patch, ...]:
     """Return the parts that a grid of `topology` has when nobody named them.
 
     ``quad`` has its four sides, ``o`` a wall and a far field (its west and east are the seam). Where the wake
-    of a ``c`` ends its nodes tell (`known_parts`): here it is all wall.
+    of a ``c`` ends its nodes tell (`known_patches`): here it is all wall.
 
     Examples
     --------
-    >>> [part.name for part in default_parts("o", 5, 4)]
+    >>> [part.name for part in default_patches("o", 5, 4)]
     ['wall', 'farfield']
     """
     last = {"south": ni - 1, "north": ni - 1, "west": nj - 1, "east": nj - 1}
     if topology == "quad":
-        return tuple(Part(side, side, 0, last[side]) for side in SIDES)
-    parts = (Part("wall", "south", 0, ni - 1), Part("farfield", "north", 0, ni - 1))
+        return tuple(Patch(side, side, 0, last[side]) for side in SIDES)
+    parts = (Patch("wall", "south", 0, ni - 1), Patch("farfield", "north", 0, ni - 1))
     if topology == "o":
         return parts
-    return (*parts, Part("farfield", "east", 0, nj - 1), Part("farfield", "west", 0, nj - 1))
+    return (*parts, Patch("farfield", "east", 0, nj - 1), Patch("farfield", "west", 0, nj - 1))
 
 
 def wake_nodes(south: Floats) -> int:
@@ -51,25 +51,25 @@ def wake_nodes(south: Floats) -> int:
     return int(np.argmax(differs)) if differs.any() else 0
 
 
-def c_parts(ni: int, nj: int, wake: int) -> tuple[Part, ...]:
+def c_patches(ni: int, nj: int, wake: int) -> tuple[Patch, ...]:
     """Return the named parts of a C grid whose wake has `wake` nodes."""
     return (
-        Part("wake", "south", 0, wake - 1),
-        Part("wall", "south", wake - 1, ni - wake),
-        Part("wake", "south", ni - wake, ni - 1),
-        Part("farfield", "north", 0, ni - 1),
-        Part("farfield", "east", 0, nj - 1),
-        Part("farfield", "west", 0, nj - 1),
+        Patch("wake", "south", 0, wake - 1),
+        Patch("wall", "south", wake - 1, ni - wake),
+        Patch("wake", "south", ni - wake, ni - 1),
+        Patch("farfield", "north", 0, ni - 1),
+        Patch("farfield", "east", 0, nj - 1),
+        Patch("farfield", "west", 0, nj - 1),
     )
 
 
-def known_parts(topology: Topology, south: Floats, nj: int) -> tuple[Part, ...]:
+def known_patches(topology: Topology, south: Floats, nj: int) -> tuple[Patch, ...]:
     """Return the parts of a grid whose south side is `south` (ni, 2) when nobody named them."""
     wake = wake_nodes(south) if topology == "c" else 0
-    return c_parts(len(south), nj, wake) if wake > 1 else default_parts(topology, len(south), nj)
+    return c_patches(len(south), nj, wake) if wake > 1 else default_patches(topology, len(south), nj)
 
 
-def check_parts(parts: Iterable[Part], ni: int, nj: int) -> None:
+def check_patches(parts: Iterable[Patch], ni: int, nj: int) -> None:
     """Raise InputError when a part has no name, an unknown side or leaves its side."""
     for part in parts:
         count = ni if part.side in ("south", "north") else nj

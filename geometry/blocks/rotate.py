@@ -15,7 +15,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
@@ -31,12 +31,12 @@ def turned(grid: Grid) -> Grid:
     """
     if grid.topology != "quad":
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
-    parts = tuple(_turned(part, grid.ni - 1) for part in grid.parts)
-    return replace(grid, nodes=np.swapaxes(grid.nodes, 0, 1)[:, ::-1], parts=parts)
+    parts = tuple(_turned(part, grid.ni - 1) for part in grid.patches)
+    return replace(grid, nodes=np.swapaxes(grid.nodes, 0, 1)[:, ::-1], patches=parts)
 
 
-def _turned(part: Part, last: int) -> Part:
+def _turned(part: Patch, last: int) -> Patch:
     side = _SIDES[part.side]
     if part.side in ("south", "north"):
-        return Part(part.name, side, last - part.stop, last - part.start)
-    return Part(part.name, side, part.start, part.stop)
+        return Patch(part.name, side, last - part.stop, last - part.start)
+    return Patch(part.name, side, part.start, part.stop)

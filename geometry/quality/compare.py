@@ -48,7 +48,7 @@ def compare(grid: Grid, other: Grid) -> Difference:
     Examples
     --------
     >>> square = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
-    >>> compare(Grid(square + [3.0, 4.0]), Grid(square)).max
+    >>> compare(Grid.from_nodes(square + [3.0, 4.0]), Grid.from_nodes(square)).max
     5.0
     """
     if grid.nodes.shape != other.nodes.shape:

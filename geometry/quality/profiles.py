@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.checkmesh import Faces, faces
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
 from meshonet.geometry.quality.measure import Quality
@@ -124,7 +124,7 @@ class Figures:
 
     grid: Grid
     quality: Quality
-    walls: Sequence[Part]
+    walls: Sequence[Patch]
 
     @cached_property
     def faces(self) -> Faces:

@@ -8,7 +8,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 DEPTH = 33
 """Nodes along a line that are looked at."""
@@ -46,13 +46,13 @@ class WallRow:
     equal_cells: int
 
 
-def wall_row(grid: Grid, part: Part) -> WallRow:
+def wall_row(grid: Grid, part: Patch) -> WallRow:
     """Return the figures of the cells at `part` of the boundary of `grid`.
 
     Examples
     --------
     >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 0.1, 0.2, 0.4], indexing="ij")
-    >>> row = wall_row(Grid(np.stack([x, y], axis=-1)), Part("wall", "south", 0, 2))
+    >>> row = wall_row(Grid.from_nodes(np.stack([x, y], axis=-1)), Patch("wall", "south", 0, 2))
     >>> row.height.max, row.off_square.max, row.equal_cells
     (0.1, 0.0, 2)
     """
@@ -66,7 +66,7 @@ def wall_row(grid: Grid, part: Part) -> WallRow:
     return WallRow(part.name, part.side, _spread(heights[:, 0]), _spread(np.stack(off)), int(alike.min()))
 
 
-def leaving(grid: Grid, part: Part) -> Floats:
+def leaving(grid: Grid, part: Patch) -> Floats:
     """Return the lines (n, depth, 2) that leave the nodes of `part`, the wall first."""
     nodes = grid.nodes if part.side in ("south", "north") else grid.nodes.swapaxes(0, 1)
     nodes = nodes[part.start : part.stop + 1]

@@ -10,7 +10,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -47,7 +47,7 @@ class Labelled:
             reach = float(np.hypot(*np.ptp(self._edges.reshape(-1, 2), axis=0)))
             names = [self._names[k] if gap < 0.01 * reach else "" for k, gap in near]
             parts += runs(side, names)
-        return replace(boundary, parts=tuple(parts))
+        return replace(boundary, patches=tuple(parts))
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
         """Return the nearest edge to each of `points` (m, 2), and its distance."""
@@ -64,17 +64,17 @@ class Labelled:
         return found
 
 
-def runs(side: Side, names: Sequence[str]) -> list[Part]:
+def runs(side: Side, names: Sequence[str]) -> list[Patch]:
     """Return the parts of a side whose cells are called `names`; those without a name are called by the side.
 
     Examples
     --------
     >>> runs("south", ["wall", "wall", "slot"])
-    [Part(name='wall', side='south', start=0, stop=2), Part(name='slot', side='south', start=2, stop=3)]
+    [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]
     """
     parts, start = [], 0
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        parts.append(Part(name or side, side, start, stop))
+        parts.append(Patch(name or side, side, start, stop))
         start = stop
     return parts

@@ -21,7 +21,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import Part, c_parts, wake_nodes
+from meshonet.geometry.blocks.patches import Patch, c_patches, wake_nodes
 from meshonet.geometry.curves.curve import Curve, resample_like
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
@@ -193,7 +193,7 @@ def c_boundary(
         west,
         east,
         topology="c",
-        parts=c_parts(ni, nj, len(wake)),
+        patches=c_patches(ni, nj, len(wake)),
         name=name,
         wall=curve,
         chord=chord,
@@ -221,7 +221,7 @@ def resampled(boundary: Boundary, ni: int, nj: int) -> Boundary:
         made = [resample_like(p, n + 1, closed=False) for p, n in zip(pieces, cells, strict=True) if n]
         return np.concatenate([*(part[:-1] for part in made[:-1]), made[-1]])
 
-    def moved(part: Part) -> Part:
+    def moved(part: Patch) -> Patch:
         law = (ends, places) if part.side in ("south", "north") else ((0, boundary.nj - 1), (0, nj - 1))
         start, stop = (round(float(np.interp(k, *law))) for k in (part.start, part.stop))
         start = min(start, law[1][-1] - 1)
@@ -230,8 +230,8 @@ def resampled(boundary: Boundary, ni: int, nj: int) -> Boundary:
     south, north = along(boundary.south), along(boundary.north)
     south[ni - 1 - wake :] = south[: wake + 1][::-1]
     west, east = (resample_like(side, nj, closed=False) for side in (boundary.west, boundary.east))
-    parts = tuple(moved(part) for part in boundary.parts)
-    return replace(boundary, south=south, north=north, west=west, east=east, parts=parts, sensors=None)
+    parts = tuple(moved(part) for part in boundary.patches)
+    return replace(boundary, south=south, north=north, west=west, east=east, patches=parts, sensors=None)
 
 
 def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:

@@ -23,7 +23,7 @@ from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from solvers._tfi import fill
+from meshonet.kernels._native import tfi as fill
 
 Blending = Literal["linear", "arclength"]
 Four = tuple[Floats, Floats, Floats, Floats]
@@ -53,7 +53,7 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
     interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
     facts = {"method": "tfi", "blending": blending}
-    return Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    return boundary.grid(nodes, facts)
 
 
 def parameters(edges: Four, blending: Blending) -> Four:

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal.bisector import halve_corners
@@ -92,7 +91,7 @@ def _solved(
             if not count_folded(solution.grid.nodes):
                 return solution
     facts = {"method": "operator", "model": model, "polish": len(changes)}
-    grid = Grid(nodes, "o", boundary.parts, boundary.name, facts, finite=finite)
+    grid = boundary.grid(nodes, facts, finite=finite)
     residual = changes[-1] if changes else None
     return Solution(grid, "operator", model=model, residual=residual, cycles=len(changes))
 

@@ -83,14 +83,14 @@ def solve(
             for part in steps:
                 weaker = None if controls is None else controls.scaled(part)
                 nodes, residual, cycles = _attempt(boundary, tol, max_cycles, start, settings, weaker, method)
-                start = Grid(nodes, boundary.topology) if part != 1.0 else None
+                start = boundary.grid(nodes) if part != 1.0 else None
         except _DivergedError as error:
             notes += (f"attempt {k + 1} diverged ({error})",)
             continue
         if tol is not None and residual > tol:
             notes += (f"stopped after {cycles} cycles at residual {residual:.1e}, short of {tol:g}",)
         facts = {"method": method, "residual": residual, "cycles": cycles}
-        grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+        grid = boundary.grid(nodes, facts)
         spent = {"grid": time.perf_counter() - begun}
         return Solution(grid, method, residual=residual, cycles=cycles, seconds=spent, notes=notes)
     name = "Winslow's equations" if controls is None else f"the equations of {method}"

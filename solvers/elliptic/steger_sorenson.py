@@ -220,7 +220,7 @@ def _settled(
                 boundary,
                 tol=tol,
                 max_cycles=max_cycles,
-                initial=Grid(nodes if part == 1.0 else start, boundary.topology),
+                initial=Grid.from_nodes(nodes if part == 1.0 else start, boundary.topology),
                 controls=controls.scaled(part),
                 method="steger-sorenson",
             )
@@ -229,7 +229,7 @@ def _settled(
         found = solution.grid.nodes
         if count_folded(found) <= folded and _error(found, edges) <= most:
             return solution, part
-    begun = Grid(start, boundary.topology)
+    begun = boundary.grid(start)
     return solve(boundary, tol=tol, max_cycles=max_cycles, initial=begun, method="steger-sorenson"), 0.0
 
 

@@ -11,14 +11,14 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.kernels._native import Stiffness, VariationalDescent
+from meshonet.kernels._native import newton as newton_steps
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
 from meshonet.solvers.energy.local_descent import REACH, descend_windows, unfold
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.progress import heard, tell
-from solvers.variational._variational import Minimiser, Stiffness
-from solvers.variational._variational import newton as newton_steps
 
 HARD = 1.1
 """Value of the functional around a body above which descents go on."""
@@ -117,7 +117,9 @@ def in_cells(still: float, nodes: Floats) -> float:
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
-def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
+def _made_valid(
+    nodes: Floats, descent: VariationalDescent, terms: tuple[float, float, float], periodic: bool
+) -> bool:
     """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
     if repair(nodes, periodic) == 0:
         return True

@@ -1,4 +1,4 @@
-"""What the variational grid minimises, in plain numpy: the reference of the compiled `_variational`.
+"""What the variational grid minimises, in plain numpy: the reference of the compiled `variational_energy`.
 
 With u and v the edges along xi and eta that meet at a corner of a cell, g = |u|², h = |v|², J = u × v,
 l the lengths of the edges of one family, and at a cell's centre u and v the means of opposite edges::

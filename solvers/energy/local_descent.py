@@ -10,10 +10,10 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.kernels._native import VariationalDescent, variational_energy, variational_workspace
 from meshonet.solvers.energy.clusters import windows
 from meshonet.solvers.energy.functional import Weights
 from meshonet.solvers.energy.preconditioner import minimiser
-from solvers.variational._variational import Minimiser, energy, workspace
 
 SKEWED = 1.5
 """1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it."""
@@ -79,12 +79,13 @@ def skewness(nodes: Floats) -> Floats:
         return np.asarray(np.where(least > 0.0, least, 0.0) ** -4.0)
 
 
-def unfold(z: Floats, descent: Minimiser, terms: tuple[float, float, float]) -> bool:
+def unfold(z: Floats, descent: VariationalDescent, terms: tuple[float, float, float]) -> bool:
     """Unfold the planes `z` (2, ni, nj) in place by minimising with regularised Jacobians; return success."""
     nodes = np.moveaxis(z, 0, -1)
     ni, nj = nodes.shape[:2]
     cell = _area(nodes) / ((ni - 1) * (nj - 1))
-    smallest = energy(z, *terms, 0.0, False, None, np.empty_like(z), np.empty(workspace(ni, nj)))[1]
+    work = np.empty(variational_workspace(ni, nj))
+    smallest = variational_energy(z, *terms, 0.0, False, None, np.empty_like(z), work)[1]
     epsilon = max(0.05 * cell, -0.5 * smallest)
     for _ in range(25):
         if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:

@@ -58,7 +58,9 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
         return 0
     patience = Patience()
     left = unfold_nested(nodes, periodic, patience) and unfold_patches(nodes, periodic, patience)
-    poor = np.argwhere(per_cell(Grid(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR)
+    poor = np.argwhere(
+        per_cell(Grid.from_nodes(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR
+    )
     if left == 0 and _few(len(poor), nodes):
         smooth_windows(nodes, periodic, poor, margin)
     return left

@@ -1,6 +1,6 @@
 """One patch of a grid, unfolded and smoothed by moving all its inner nodes at once.
 
-The energy and its minimiser are compiled: see ``repair_kernel.c``.
+The energy and its minimiser are compiled: see ``kernels/energy/repair.c``.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
-from solvers._repair import minimise
+from meshonet.kernels._native import repair_minimise
 
 VALID = 1e-3
 """Smallest corner Jacobian, in areas of the reference cell, at which unfolding may stop."""
@@ -61,7 +61,7 @@ def unfold(patch: Floats, periodic: bool, patience: Patience) -> int:
     spent = 0.0
     for _ in range(REGULARISATIONS):
         spent += x.size
-        _, _, smallest = minimise(x, y, width, height, periodic, 0.0, epsilon, STEPS, STILL, VALID)
+        _, _, smallest = repair_minimise(x, y, width, height, periodic, 0.0, epsilon, STEPS, STILL, VALID)
         if smallest > 0:
             smooth(patch, periodic)
             break
@@ -79,7 +79,7 @@ def unfold(patch: Floats, periodic: bool, patience: Patience) -> int:
 def smooth(patch: Floats, periodic: bool = False) -> None:
     """Open the corners of a valid `patch`, as `unfold`."""
     lengths = reference_lengths(patch, periodic)
-    minimise(patch[..., 0], patch[..., 1], *lengths, periodic, 0.5, 0.0, 4 * STEPS, STILL)
+    repair_minimise(patch[..., 0], patch[..., 1], *lengths, periodic, 0.5, 0.0, 4 * STEPS, STILL)
 
 
 def reference_lengths(patch: Floats, periodic: bool) -> tuple[Floats, Floats]:

@@ -17,6 +17,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
+from meshonet.kernels._native import variational_energy, variational_workspace
 from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
 from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of
 from meshonet.solvers.energy.local_descent import REACH, unfold
@@ -24,7 +25,6 @@ from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
-from solvers.variational._variational import energy, workspace
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
@@ -118,7 +118,7 @@ def solve(
         iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
-    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, {**facts, "cycles": iterations})
+    grid = boundary.grid(nodes, {**facts, "cycles": iterations})
     spent = {"grid": time.perf_counter() - begun}
     return Solution(grid, "variational", cycles=iterations, seconds=spent, notes=notes)
 
@@ -220,8 +220,8 @@ def _descended(
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
     more, valid = descend(repaired, weights, still, most)
-    z, room = np.moveaxis(repaired, -1, 0), np.empty(workspace(ni, nj))
-    if valid and energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
+    z, room = np.moveaxis(repaired, -1, 0), np.empty(variational_workspace(ni, nj))
+    if valid and variational_energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
         return repaired, more, True
     return nodes, iterations, low > 0
 

@@ -6,8 +6,8 @@
               ^                    |                                                     |
               +-- other distance --+<--------------- more dissipation ------------------+
 
-The equations stand in ``hyperbolic_kernel.c``. The far field is where the march ends, a circle or a C but for
-the shape of the body; its area is that of the far field asked for.
+The equations stand in ``kernels/hyperbolic/march.c``. The far field is where the march ends, a circle or a C
+but for the shape of the body; its area is that of the far field asked for.
 """
 
 from __future__ import annotations
@@ -25,12 +25,11 @@ from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch, redistribute
 from meshonet.solvers.hyperbolic.front import Front
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
 from meshonet.solvers.hyperbolic.march_distance import RISING, distance_to_march
 from meshonet.solvers.solution import Solution
-from solvers._hyperbolic import march, scratch_size
-from solvers._redistribute import redistribute
 
 _FADE = 12.0
 """Rows over which the correction of the first cell fades out."""
@@ -189,7 +188,7 @@ def _marched(
     n = len(start)
     levels = np.empty((2, cells + 1, n))
     levels[:, 0] = start.T
-    scratch = np.empty(scratch_size(n))
+    scratch = np.empty(hyperbolic_scratch(n))
     knobs = (
         settings.dissipation,
         settings.even,
@@ -204,7 +203,7 @@ def _marched(
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
+        hyperbolic_march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
@@ -258,14 +257,14 @@ def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
 def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:
     parts = tuple(
         replace(part, stop=nodes.shape[1] - 1) if part.side in ("west", "east") else part
-        for part in boundary.parts
+        for part in boundary.patches
     )
     edges = replace(
-        boundary, north=nodes[:, -1], west=nodes[0], east=nodes[-1], parts=parts, sensors=None, notes=()
+        boundary, north=nodes[:, -1], west=nodes[0], east=nodes[-1], patches=parts, sensors=None, notes=()
     )
     facts = {"method": "hyperbolic", "wall_spacing": first}
     return Solution(
-        Grid(nodes, boundary.topology, parts, boundary.name, facts),
+        Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts),
         "hyperbolic",
         seconds={"grid": time.perf_counter() - begun},
         notes=(_told(boundary, nodes, first),),

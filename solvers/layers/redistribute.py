@@ -4,9 +4,9 @@
 
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
-The lines that leave a wall stay the curves they are and get their nodes anew (``layers_kernel.c``), so that a
-valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their index, which
-keeps kinks of the walls on their nodes.
+The lines that leave a wall stay the curves they are and get their nodes anew (``kernels/layers/layers.c``),
+so that a valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their
+index, which keeps kinks of the walls on their nodes.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import default_parts
+from meshonet.geometry.blocks.patches import default_patches
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.spacing.laws import on_corners
 from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.kernels._native import layer_lines, redistribute
 from meshonet.solvers.layers.first_cells import (
     Heights,
     arcs_in_layers,
@@ -33,8 +34,6 @@ from meshonet.solvers.layers.first_cells import (
 )
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
-from solvers._layers import fill_lines
-from solvers._redistribute import redistribute
 
 FADE = 12.0
 """Nodes over which the last correction of a first cell fades out."""
@@ -83,7 +82,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         north=nodes[:, -1],
         west=nodes[0],
         east=nodes[-1],
-        parts=boundary.parts if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
+        patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
     )
     asked = {f"spacing_{side}": height for side in SIDES if (height := getattr(heights, side))}
@@ -93,7 +92,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     return replace(
         solution,
         path=(*solution.path, *path),
-        grid=Grid(nodes, grid.topology, edges.parts, grid.name, facts),
+        grid=Grid.from_nodes(nodes, grid.topology, edges.patches, grid.name, facts),
         boundary=edges,
         notes=(*solution.notes, note),
     )
@@ -101,9 +100,9 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
 
 def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg]
     """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
-    if all(part.side in ("south", "north") for part in boundary.parts):
-        return boundary.parts
-    return default_parts(boundary.topology, *nodes.shape[:2])
+    if all(part.side in ("south", "north") for part in boundary.patches):
+        return boundary.patches
+    return default_patches(boundary.topology, *nodes.shape[:2])
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
@@ -118,7 +117,7 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
     planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
-    ratio = fill_lines(*planes, *ends, heights.constant, scratch)
+    ratio = layer_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.topology == "o":
         out[-1] = out[0]

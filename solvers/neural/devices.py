@@ -11,7 +11,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.neural.operator import Operator, in_batches
@@ -64,7 +63,7 @@ def solve_on(
                 solutions[k] = replace(solution, notes=notes)
                 continue
             facts = {"method": "operator", "model": operator.name, "device": device}
-            grid = Grid(own, boundary.topology, boundary.parts, boundary.name, facts)
+            grid = boundary.grid(own, facts)
             solutions[k] = Solution(grid, "operator", model=operator.name, seconds={"grid": spent})
     return [solutions[k] for k in range(len(boundaries))]
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import angles, count_folded
@@ -78,7 +77,7 @@ def solve_coarse(
         winslow = solution.method == "winslow" or count_folded(nodes) > 0
         sweep_kinks(nodes, boundary, counts, only_better=not winslow)
     facts = {**solution.grid.provenance, "coarse": counts}
-    grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+    grid = boundary.grid(nodes, facts)
     return replace(solution, grid=grid, seconds={**solution.seconds, "grid": time.perf_counter() - begun})
 
 

@@ -50,7 +50,7 @@ def guard(
         for path, nodes in _ways(grid, boundary, margin):
             if count_folded(nodes) == 0:
                 facts = {**grid.provenance, "path": path}
-                return Grid(nodes, grid.topology, grid.parts, grid.name, facts), path
+                return Grid.from_nodes(nodes, grid.topology, grid.patches, grid.name, facts), path
             least = min(least, nodes, key=count_folded)
         left, cells = count_folded(least), (grid.ni - 1) * (grid.nj - 1)
         told = f"{left} of {cells} cells stay folded after repair, winslow and tfi; {REMEDY}"
@@ -86,7 +86,7 @@ def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[
 def _solved(boundary: Boundary, start: Floats) -> Floats:
     from meshonet.solvers.elliptic.solve import solve
 
-    return solve(boundary, initial=Grid(start, boundary.topology)).grid.nodes
+    return solve(boundary, initial=boundary.grid(start)).grid.nodes
 
 
 def _interpolated(boundary: Boundary) -> Floats:

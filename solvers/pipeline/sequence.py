@@ -44,7 +44,7 @@ def solve_refined(boundary: Boundary, method: Callable[..., Solution], levels: i
     seconds, counts = dict(solution.seconds), [_told(solution)]
     for k in range(levels - 1, -1, -1):
         finer = coarser_boundary(boundary, 2**k) if k else boundary
-        start = Grid(evaluate(solution.grid.nodes, finer), boundary.topology, finer.parts)
+        start = Grid.from_nodes(evaluate(solution.grid.nodes, finer), boundary.topology, finer.patches)
         solution = method(finer, initial=start)
         seconds = {stage: seconds.get(stage, 0.0) + spent for stage, spent in solution.seconds.items()}
         counts.append(_told(solution))

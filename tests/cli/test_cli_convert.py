@@ -41,7 +41,7 @@ def test_coarsen_keeps_every_kth_node(meshonet: Meshonet, duct_h5: Path) -> None
     assert (told["ni"], told["nj"]) == (11, 6)
     (fine,), (coarse,) = read_grids("fine.vts"), read_grids("coarse.vts")
     np.testing.assert_array_equal(coarse.nodes, fine.nodes[::2, ::2])
-    assert [part.name for part in coarse.parts] == [part.name for part in fine.parts]
+    assert [part.name for part in coarse.patches] == [part.name for part in fine.patches]
 
 
 @pytest.mark.parametrize(

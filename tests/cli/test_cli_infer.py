@@ -90,7 +90,7 @@ def test_thin_cells_at_a_sharp_edge_are_marched_from_wall_and_wake(
     told = meshonet("infer", *given, *words).only
     assert (told["topology"], told["method"], told["folded"]) == (topology, "hyperbolic", 0)
     (grid,) = read_grids("g.vts")
-    names = {part.name for part in grid.parts}
+    names = {part.name for part in grid.patches}
     assert names == ({"wall", "wake", "farfield"} if topology == "c" else {"wall", "farfield"})
 
 

@@ -163,7 +163,7 @@ def test_compare_measures_the_distance(meshonet: Meshonet, grid_vts: Path) -> No
 
     moved = grid.nodes.copy()
     moved[3, 4] += [0.03, 0.04]
-    write(Path("moved.vts"), Grid(moved))
+    write(Path("moved.vts"), Grid.from_nodes(moved))
     told = meshonet("quality", "moved.vts", "--compare", grid_vts, "--json").only["compare"]
     assert told["max"] == pytest.approx(0.05)
     assert told["at"] == [3, 4]

@@ -11,7 +11,7 @@ from meshonet_cli.gates import need_percentiles, parse_gate, parse_gates
 
 def parallelogram() -> Grid:
     x, y = np.meshgrid(np.arange(4.0), np.arange(3.0), indexing="ij")
-    return Grid(np.stack([x + 0.5 * y, np.sqrt(0.75) * y], axis=-1))
+    return Grid.from_nodes(np.stack([x + 0.5 * y, np.sqrt(0.75) * y], axis=-1))
 
 
 @pytest.mark.parametrize(

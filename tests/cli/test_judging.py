@@ -74,5 +74,5 @@ def test_quads_have_walls_where_they_are_named(meshonet: Meshonet, duct_h5: Path
     (grid,) = read_grids("d.vts")
     assert [part.name for part in walls(grid)] == ["south", "north"]
     named = [type(part)("lower wall" if part.name == "south" else part.name, part.side, part.start, part.stop)
-             for part in grid.parts]  # fmt: skip
-    assert [part.name for part in walls(type(grid)(grid.nodes, parts=tuple(named)))] == ["lower wall"]
+             for part in grid.patches]  # fmt: skip
+    assert [part.name for part in walls(grid.from_nodes(grid.nodes, patches=tuple(named)))] == ["lower wall"]

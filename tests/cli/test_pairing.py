@@ -13,7 +13,7 @@ SQUARE = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
 
 
 def grids(*names: str) -> Iterator[Grid]:
-    return (Grid(SQUARE + k, name=name) for k, name in enumerate(names))
+    return (Grid.from_nodes(SQUARE + k, name=name) for k, name in enumerate(names))
 
 
 def places(partners: Partners, *names: str) -> list[int]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 
 def channel(ni: int = 7, nj: int = 5, name: str = "channel Ω") -> Grid:
@@ -18,11 +18,11 @@ def channel(ni: int = 7, nj: int = 5, name: str = "channel Ω") -> Grid:
     s, t = np.meshgrid(np.linspace(0, 1, ni), np.linspace(0, 1, nj), indexing="ij")
     nodes = np.stack([2 * s + 0.1 * t, t * (1 + 0.3 * np.sin(3 * s)) + 1e-7 * np.cos(s)], axis=-1)
     parts = (
-        Part("inlet", "west", 0, nj - 1),
-        Part("no-slip wall", "south", 0, 3),
-        Part("out let", "east", 0, nj - 1),
+        Patch("inlet", "west", 0, nj - 1),
+        Patch("no-slip wall", "south", 0, 3),
+        Patch("out let", "east", 0, nj - 1),
     )
-    return Grid(nodes, "quad", parts, name, {"method": "formula", "seed": 3, "seconds": 0.25})
+    return Grid.from_nodes(nodes, "quad", parts, name, {"method": "formula", "seed": 3, "seconds": 0.25})
 
 
 def ring(ni: int = 13, nj: int = 5, name: str = "ring") -> Grid:
@@ -31,8 +31,8 @@ def ring(ni: int = 13, nj: int = 5, name: str = "ring") -> Grid:
     radius = np.geomspace(1, 4, nj)
     nodes = np.stack([np.cos(angle)[:, None] * radius, np.sin(angle)[:, None] * radius], axis=-1)
     nodes[-1] = nodes[0]
-    parts = (Part("airfoil", "south", 0, ni - 1), Part("far", "north", 0, ni - 1))
-    return Grid(nodes, "o", parts, name)
+    parts = (Patch("airfoil", "south", 0, ni - 1), Patch("far", "north", 0, ni - 1))
+    return Grid.from_nodes(nodes, "o", parts, name)
 
 
 def c_grid(wake: int = 4, body: int = 9, nj: int = 4, name: str = "c") -> Grid:
@@ -51,14 +51,14 @@ def c_grid(wake: int = 4, body: int = 9, nj: int = 4, name: str = "c") -> Grid:
     t = np.linspace(0, 1, nj)[:, None, None]
     nodes = np.moveaxis((1 - t) * south + t * north, 0, 1)
     parts = (
-        Part("wake", "south", 0, wake - 1),
-        Part("wall", "south", wake - 1, ni - wake),
-        Part("wake", "south", ni - wake, ni - 1),
-        Part("farfield", "north", 0, ni - 1),
-        Part("farfield", "east", 0, nj - 1),
-        Part("farfield", "west", 0, nj - 1),
+        Patch("wake", "south", 0, wake - 1),
+        Patch("wall", "south", wake - 1, ni - wake),
+        Patch("wake", "south", ni - wake, ni - 1),
+        Patch("farfield", "north", 0, ni - 1),
+        Patch("farfield", "east", 0, nj - 1),
+        Patch("farfield", "west", 0, nj - 1),
     )
-    return Grid(nodes, "c", parts, name)
+    return Grid.from_nodes(nodes, "c", parts, name)
 
 
 def memory(data: bytes, name: str = "made") -> Source:

@@ -13,7 +13,7 @@ from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 from meshonet.formats.cgns.write import read_grids, write_extruded, write_grids
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 MAKES = [channel, ring, c_grid]
@@ -123,7 +123,9 @@ def test_conditions_cover_the_boundary_and_families_say_what_they_are(tmp_path: 
 
 
 def test_a_zone_and_a_family_of_one_name_do_not_meet(tmp_path: Path) -> None:
-    grids = [Grid(ring().nodes, "o", name=name) for name in ("wall", "wall", "DataClass", "x" * 50)]
+    grids = [
+        Grid.from_nodes(ring().nodes, "o", name=name) for name in ("wall", "wall", "DataClass", "x" * 50)
+    ]
     write_grids(tmp_path / "g.cgns", grids)
     assert [grid.name for grid in read_grids(open_source(str(tmp_path / "g.cgns")))] == [
         g.name for g in grids
@@ -141,9 +143,9 @@ def test_conditions_of_others_become_parts(tmp_path: Path) -> None:
         for fact in ("topology", "parts", "name", "provenance"):
             del file[f"Base/channel/{fact}"]
     (back,) = read_grids(open_source(str(path)))
-    assert set(back.parts) == {
-        Part("no-slip_wall", "south", 0, 3), Part("south", "south", 3, 6), Part("out_let", "east", 0, 4),
-        Part("north", "north", 0, 6), Part("inlet", "west", 0, 4),
+    assert set(back.patches) == {
+        Patch("no-slip_wall", "south", 0, 3), Patch("south", "south", 3, 6), Patch("out_let", "east", 0, 4),
+        Patch("north", "north", 0, 6), Patch("inlet", "west", 0, 4),
     }  # fmt: skip
 
 

@@ -27,7 +27,7 @@ def test_edges_are_the_outer_nodes_and_keep_topology_parts_and_name(make: type[G
     assert np.array_equal(edges.north, grid.nodes[:, -1])
     assert np.array_equal(edges.west, grid.nodes[0])
     assert np.array_equal(edges.east, grid.nodes[-1])
-    assert (edges.topology, edges.parts, edges.name) == (grid.topology, grid.parts, grid.name)
+    assert (edges.topology, edges.patches, edges.name) == (grid.topology, grid.patches, grid.name)
 
 
 @pytest.mark.parametrize("turns", range(4))
@@ -46,7 +46,7 @@ def test_any_index_order_is_recovered(make: type[Grid], turns: int, mirrored: bo
     # a mirrored C or O grid may start at the other end of the body, but its body is the south side
     assert np.array_equal(np.unique(back.nodes[:, 0], axis=0), np.unique(grid.nodes[:, 0], axis=0))
     if grid.topology == "c":
-        assert [part.name for part in back.parts].count("wake") == 2
+        assert [part.name for part in back.patches].count("wake") == 2
         assert wake_nodes(back.nodes[:, 0]) == 4
 
 

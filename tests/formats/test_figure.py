@@ -25,7 +25,7 @@ def wide_ring(ni: int = 161, nj: int = 81) -> Grid:
     radius = np.geomspace(1, 30, nj)
     nodes = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
     nodes[-1] = nodes[0]
-    return Grid(nodes, "o")
+    return Grid.from_nodes(nodes, "o")
 
 
 def values(grid: Grid) -> np.ndarray:
@@ -68,7 +68,7 @@ def test_a_zoom_shows_just_that() -> None:
 
 def test_one_bad_cell_among_a_million_is_seen(tmp_path: Path) -> None:
     s, t = np.meshgrid(np.linspace(0, 1, 1200), np.linspace(0, 1, 900), indexing="ij")
-    grid = Grid(np.stack([s, t], axis=-1))
+    grid = Grid.from_nodes(np.stack([s, t], axis=-1))
     flat = np.zeros((1199, 899))
     write(tmp_path / "good.png", grid, "png", Colouring(flat, "v", (0.0, 1.0)), every=2000)
     flat[617, 411] = 1.0
@@ -106,7 +106,7 @@ def test_lines_are_as_many_as_asked_for() -> None:
 
 def test_so_many_lines_are_left_out_that_the_rest_can_be_told_apart() -> None:
     s, t = np.meshgrid(np.linspace(0, 1, 3000), np.linspace(0, 1, 3000), indexing="ij")
-    (axes,) = draw(Grid(np.stack([s, t], axis=-1))).axes
+    (axes,) = draw(Grid.from_nodes(np.stack([s, t], axis=-1))).axes
     drawn = len(axes.collections[0].get_paths())
     assert drawn / 2 * 5 < axes.get_window_extent().width
     assert drawn > 100

@@ -14,7 +14,7 @@ from meshonet.formats.gmsh import msh41 as gmsh41
 from meshonet.formats.gmsh.msh import write_grids
 from meshonet.formats.registry import format_named
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 
 def groups(dimension: int) -> dict[str, int]:
@@ -93,8 +93,8 @@ def test_meshio_reads_the_names_back(write: Callable[[Path, list[Grid]], None], 
 
 @pytest.mark.usefixtures("silent_gmsh")
 def test_a_part_may_be_called_as_the_cells_or_hold_quotes(tmp_path: Path) -> None:
-    parts = (Part("fluid", "south", 0, 12), Part('a "b"', "north", 0, 12))
-    write_grids(tmp_path / "g.msh", [Grid(ring().nodes, "o", parts)])
+    parts = (Patch("fluid", "south", 0, 12), Patch('a "b"', "north", 0, 12))
+    write_grids(tmp_path / "g.msh", [Grid.from_nodes(ring().nodes, "o", parts)])
     gmsh.open(str(tmp_path / "g.msh"))
     assert groups(1) == {"fluid": 12, "a 'b'": 12}
     assert groups(2) == {"fluid-cells": 48}

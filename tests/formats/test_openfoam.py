@@ -14,7 +14,7 @@ from vtkmodules.vtkIOGeometry import vtkOpenFOAMReader
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.openfoam import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 MAKES = [channel, ring, c_grid]
 PATCHES = {
@@ -111,8 +111,8 @@ def test_vtk_opens_the_case(make: type[Grid], tmp_path: Path) -> None:
 
 
 def test_the_planes_of_several_layers_are_symmetry_planes(tmp_path: Path) -> None:
-    parts = (Part("front", "south", 0, 12), Part("far", "north", 0, 12))
-    write_extruded(tmp_path / "case.foam", [Grid(ring().nodes, "o", parts)], (0.0, 1.0, 2.0))
+    parts = (Patch("front", "south", 0, 12), Patch("far", "north", 0, 12))
+    write_extruded(tmp_path / "case.foam", [Grid.from_nodes(ring().nodes, "o", parts)], (0.0, 1.0, 2.0))
     found = patches(tmp_path / "constant" / "polyMesh")
     assert {name: told[:2] for name, told in found.items()} == {
         "front-2": ("wall", 24), "far": ("patch", 24),
@@ -157,16 +157,16 @@ def test_the_rest_of_a_case_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_names_that_no_dictionary_could_hold_become_words(tmp_path: Path) -> None:
-    parts = (Part("0012 {a;}", "south", 0, 12), Part("frontAndBack", "north", 0, 12))
-    write_grids(tmp_path / "case.foam", [Grid(ring().nodes, "o", parts)])
+    parts = (Patch("0012 {a;}", "south", 0, 12), Patch("frontAndBack", "north", 0, 12))
+    write_grids(tmp_path / "case.foam", [Grid.from_nodes(ring().nodes, "o", parts)])
     found = patches(tmp_path / "constant" / "polyMesh")
     assert list(found) == ["part_0012_a", "frontAndBack-2", "frontAndBack"]
     assert found["part_0012_a"][0] == "wall"
 
 
 def test_overlapping_parts_give_every_face_to_one_patch(tmp_path: Path) -> None:
-    parts = (Part("wall", "south", 0, 12), Part("slot", "south", 3, 5), Part("far", "north", 0, 12))
-    write_grids(tmp_path / "case.foam", [Grid(ring().nodes, "o", parts)])
+    parts = (Patch("wall", "south", 0, 12), Patch("slot", "south", 3, 5), Patch("far", "north", 0, 12))
+    write_grids(tmp_path / "case.foam", [Grid.from_nodes(ring().nodes, "o", parts)])
     found = patches(tmp_path / "constant" / "polyMesh")
     assert {name: told[1] for name, told in found.items()} == {
         "wall": 10, "slot": 2, "far": 12, "frontAndBack": 96,

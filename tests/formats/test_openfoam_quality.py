@@ -16,7 +16,9 @@ from meshonet.geometry.quality.checkmesh import faces
 
 def shaken() -> Grid:
     x, y = np.meshgrid(np.arange(9.0), 0.4 * np.arange(7), indexing="ij")
-    return Grid(np.stack([x, y], axis=-1) + np.random.default_rng(4).uniform(-0.12, 0.12, (9, 7, 2)))
+    return Grid.from_nodes(
+        np.stack([x, y], axis=-1) + np.random.default_rng(4).uniform(-0.12, 0.12, (9, 7, 2))
+    )
 
 
 @pytest.mark.client("checkMesh")

@@ -11,7 +11,7 @@ from format_shapes import c_grid, channel, ring
 from meshonet.formats.registry import format_named, formats, read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
 AS_BOUNDARIES = [
@@ -39,8 +39,8 @@ def test_a_grid_goes_through_two_formats_bit_for_bit(first: str, make: type[Grid
         (back,) = read_grids(str(through(second, between, folder)), second)
         assert np.array_equal(back.nodes.view(np.uint64), grid.nodes.view(np.uint64)), second
         assert back.topology == grid.topology
-        if format_named(first).names_parts and format_named(second).names_parts:
-            assert (back.parts, back.name) == (grid.parts, grid.name)
+        if format_named(first).names_patches and format_named(second).names_patches:
+            assert (back.patches, back.name) == (grid.patches, grid.name)
 
 
 @pytest.mark.parametrize("second", AS_BOUNDARIES)
@@ -48,8 +48,8 @@ def test_a_grid_goes_through_two_formats_bit_for_bit(first: str, make: type[Grid
 def test_a_mesh_gives_the_boundary_of_its_grid_from_any_format(
     second: str, make: type[Grid], tmp_path: Path
 ) -> None:
-    plain = [Part(part.name.replace(" ", "-"), part.side, part.start, part.stop) for part in make().parts]
-    grid = Grid(make().nodes, make().topology, tuple(plain), "plain")
+    plain = [Patch(part.name.replace(" ", "-"), part.side, part.start, part.stop) for part in make().patches]
+    grid = Grid.from_nodes(make().nodes, make().topology, tuple(plain), "plain")
     for first in BOTH_WAYS:
         folder = tmp_path / first
         folder.mkdir()
@@ -58,5 +58,5 @@ def test_a_mesh_gives_the_boundary_of_its_grid_from_any_format(
         assert isinstance(back, Boundary)
         assert np.array_equal(back.south, grid.nodes[:, 0])
         assert np.array_equal(back.north, grid.nodes[:, -1])
-        if format_named(first).names_parts:
-            assert {part for part in back.parts if part.name not in ("south", "north")} == set(plain)
+        if format_named(first).names_patches:
+            assert {part for part in back.patches if part.name not in ("south", "north")} == set(plain)

@@ -216,6 +216,6 @@ def test_text_keeps_every_bit_of_a_thin_cell(tmp_path: Path) -> None:
     nodes[:, 1, 1] = nodes[:, 0, 1] + 2.0**-50
     writer = format_named("plot3d-ascii").write_grids
     assert writer is not None
-    writer(tmp_path / "g.p3d", [Grid(nodes)])
+    writer(tmp_path / "g.p3d", [Grid.from_nodes(nodes)])
     (back,) = read_grids(open_source(str(tmp_path / "g.p3d")))
     assert np.array_equal(back.nodes, nodes)

@@ -49,7 +49,7 @@ def test_writing_a_vts_imports_no_heavy_library(tmp_path: Path) -> None:
     code = (
         "import sys, numpy as np; from pathlib import Path; from meshonet.geometry.blocks.grid import Grid;"
         "from meshonet.formats.registry import format_for_output, read_grids;"
-        "g = Grid(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
+        "g = Grid.from_nodes(np.stack(np.meshgrid([0., 1.], [0., 1.], indexing='ij'), -1));"
         f"p = {str(tmp_path / 'g.vts')!r};"
         "format_for_output(p).write_grids(Path(p), [g]); list(read_grids(p));"
         f"print([m for m in {HEAVY} if m in sys.modules])"
@@ -85,13 +85,13 @@ def test_a_grid_comes_back_bit_for_bit_and_the_writer_leaves_it_alone(
     assert record.write_grids is not None
     record.write_grids(path, [grid])
     assert np.array_equal(grid.nodes, untouched.nodes)
-    assert grid.parts == untouched.parts
+    assert grid.patches == untouched.patches
     (back,) = read_grids(str(path), name)
     assert back.nodes.dtype == np.float64
     assert np.array_equal(back.nodes, grid.nodes)
     assert back.topology == grid.topology
-    if record.names_parts:
-        assert (back.parts, back.name) == (grid.parts, grid.name)
+    if record.names_patches:
+        assert (back.patches, back.name) == (grid.patches, grid.name)
         assert dict(back.provenance) == dict(grid.provenance)
     else:
         assert back.name == "grid"
@@ -121,7 +121,8 @@ def test_several_grids_are_kept_or_refused_with_the_remedy(name: str, tmp_path: 
         assert [g.nodes.shape for g in read_grids(str(path), name)] == [(13, 5, 2)] * 3
     else:
         with pytest.raises(
-            InputError, match=r"holds one grid and there are several; use -o 'name-\{index\}'"
+            InputError,
+            match=r"holds one grid and there are several; write one file each \(output 'name-\{index\}'\)",
         ):
             record.write_grids(path, [ring(), ring()])
 
@@ -151,7 +152,7 @@ def test_a_boundary_comes_back_bit_for_bit(name: str, make: type[Grid], tmp_path
     assert isinstance(back, Boundary)
     for side in ("south", "east", "north", "west"):
         assert np.array_equal(getattr(back, side), getattr(boundary, side))
-    assert (back.topology, back.parts, back.name) == (boundary.topology, boundary.parts, boundary.name)
+    assert (back.topology, back.patches, back.name) == (boundary.topology, boundary.patches, boundary.name)
 
 
 @pytest.mark.parametrize("name", BOTH_WAYS)
@@ -242,8 +243,8 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("no.vts", "no.vts: no such file; check the path"),
         ("", "is a folder; name a file in it"),
         ("empty.vts", "empty.vts: is empty; give"),
-        ("a.q", r"a.q: its ending '.q' is not .*--from; known endings: "),
-        ("plain", "plain: its content is not of a known format; name it with --from"),
+        ("a.q", r"a.q: its ending '.q' is not .*from_format; known endings: "),
+        ("plain", "plain: its content is not of a known format; name it with from_format"),
         ("loop.vts", "loop.vts: cannot be opened .*symbolic"),
         ("a\0b", "null byte.*; check the path"),
         ("x.png", "x.png: png files can only be written; give a grid"),
@@ -266,9 +267,9 @@ def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("a.q", r"a.q: its ending '.q' is not known; .*--to; known endings: .*\.vts"),
-        ("", "-o: the output has no name; name a file, or - for standard output"),
-        ("grid", "grid: its name has no ending to tell the format by; .*--to"),
+        ("a.q", r"a.q: its ending '.q' is not known; .*to_format; known endings: .*\.vts"),
+        ("", "output: the output has no name; name a file, or - for standard output"),
+        ("grid", "grid: its name has no ending to tell the format by; .*to_format"),
         ("a.vts", "a.vts: vts cannot hold boundaries; write one of hdf5"),
     ],
 )

@@ -10,7 +10,7 @@ from format_shapes import c_grid, channel, ring
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.su2.write import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 
 MARKERS = {
     "quad": {"no-slip_wall": 3, "south": 3, "out_let": 4, "north": 6, "inlet": 4},
@@ -81,6 +81,6 @@ def test_several_layers_have_their_outermost_planes_as_markers(tmp_path: Path) -
 
 
 def test_names_that_no_configuration_could_list_become_different_words(tmp_path: Path) -> None:
-    parts = (Part("a (b)", "south", 0, 12), Part("a, b", "north", 0, 12))
-    write_grids(tmp_path / "g.su2", [Grid(ring().nodes, "o", parts)])
+    parts = (Patch("a (b)", "south", 0, 12), Patch("a, b", "north", 0, 12))
+    write_grids(tmp_path / "g.su2", [Grid.from_nodes(ring().nodes, "o", parts)])
     assert markers(tmp_path / "g.su2") == {"a_b": 12, "a_b-2": 12}

@@ -26,7 +26,7 @@ SQUARE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
 
 def named(boundary: Boundary) -> dict[str, str]:
     """Return the side of each part."""
-    return {part.name: part.side for part in boundary.parts}
+    return {part.name: part.side for part in boundary.patches}
 
 
 @pytest.mark.parametrize("make", [channel, ring])
@@ -43,8 +43,8 @@ def test_the_boundary_of_a_structured_mesh_comes_back_bit_for_bit(
     for side in ("south", "east", "north", "west"):
         assert np.array_equal(getattr(found, side), getattr(wanted, side))
     assert found.topology == wanted.topology
-    words = {part.name.replace(" ", "_" if name == "su2" else " "): part for part in wanted.parts}
-    parts = {part.name: part for part in found.parts}
+    words = {part.name.replace(" ", "_" if name == "su2" else " "): part for part in wanted.patches}
+    parts = {part.name: part for part in found.patches}
     for title, part in words.items():
         assert (parts[title].side, parts[title].start, parts[title].stop) == (
             part.side,
@@ -161,8 +161,8 @@ def test_a_drawing_of_lines_arcs_and_polylines_is_a_named_domain(tmp_path: Path)
     document.saveas(tmp_path / "duct.dxf")
     (found,) = read_shapes(str(tmp_path / "duct.dxf"))
     boundary = found.boundary(Sampling(81, 81))
-    assert {part.name for part in boundary.parts} == {"inlet", "floor", "roof", "outlet"}
-    floor = next(part.side for part in boundary.parts if part.name == "floor")
+    assert {part.name for part in boundary.patches} == {"inlet", "floor", "roof", "outlet"}
+    floor = next(part.side for part in boundary.patches if part.name == "floor")
     nodes = getattr(boundary, floor)
     assert nodes[:, 1].max() == pytest.approx(0.5, abs=2e-3)
     assert np.ptp(nodes[:, 0]) == pytest.approx(3, abs=1e-6)

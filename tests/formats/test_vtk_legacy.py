@@ -80,7 +80,7 @@ def test_we_read_what_vtk_writes(kind: type, binary: bool, version: int, tmp_pat
     writer.SetHeader("")
     writer.Write()
     (back,) = read_grids(open_source(str(tmp_path / "g.vtk")))
-    assert (back.topology, back.name, back.parts[0].name) == ("o", "ring é 50%", "a wall")
+    assert (back.topology, back.name, back.patches[0].name) == ("o", "ring é 50%", "a wall")
     if binary:
         assert np.array_equal(back.nodes, grid.nodes.astype(kind))
     else:

@@ -23,7 +23,7 @@ def test_blocks_of_any_size_and_topology_come_back(tmp_path: Path) -> None:
     assert file_names(tmp_path / "all_blocks") == ["block-0.vts", "block-1.vts"]
     for back, grid in zip(read_grids(open_source(str(tmp_path / "all.vtm"))), grids, strict=True):
         assert np.array_equal(back.nodes, grid.nodes)
-        assert (back.name, back.topology, back.parts) == (grid.name, grid.topology, grid.parts)
+        assert (back.name, back.topology, back.patches) == (grid.name, grid.topology, grid.patches)
 
 
 def test_vtk_opens_all_blocks(tmp_path: Path) -> None:

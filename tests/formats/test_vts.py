@@ -143,8 +143,8 @@ def test_names_survive_a_save_by_vtk(tmp_path: Path) -> None:
         writer.SetEncodeAppendedData(encoded)
         writer.Write()
         (back,) = read_grids(open_source(str(tmp_path / "again.vts")))
-        assert (back.parts, back.name, dict(back.provenance)) == (
-            grid.parts,
+        assert (back.patches, back.name, dict(back.provenance)) == (
+            grid.patches,
             grid.name,
             dict(grid.provenance),
         )

@@ -114,7 +114,7 @@ def test_c_boundaries_meet_themselves_along_the_wake_and_nowhere_else():
     north = found.north.copy()
     north[50] = [0.9, 0.0]  # through the airfoil
     with pytest.raises(InputError, match="south and north cross"):
-        check_edges(Boundary(found.south, north, found.west, found.east, "c", found.parts))
+        check_edges(Boundary(found.south, north, found.west, found.east, "c", found.patches))
 
 
 @pytest.mark.parametrize("family", [arch.FAMILY, hole.FAMILY])

@@ -91,7 +91,9 @@ class Mesh:
 
 def shaken(ni: int = 9, nj: int = 7) -> Grid:
     x, y = np.meshgrid(np.arange(float(ni)), 0.4 * np.arange(nj), indexing="ij")
-    return Grid(np.stack([x, y], axis=-1) + np.random.default_rng(4).uniform(-0.12, 0.12, (ni, nj, 2)))
+    return Grid.from_nodes(
+        np.stack([x, y], axis=-1) + np.random.default_rng(4).uniform(-0.12, 0.12, (ni, nj, 2))
+    )
 
 
 def ring() -> Grid:
@@ -99,7 +101,7 @@ def ring() -> Grid:
     radius = 1.3 ** np.arange(6)
     nodes = np.stack([np.outer(np.cos(turn + 0.3), radius), np.outer(np.sin(turn), 0.4 * radius)], axis=-1)
     nodes[-1] = nodes[0]
-    return Grid(nodes, "o")
+    return Grid.from_nodes(nodes, "o")
 
 
 @pytest.mark.parametrize("make", [shaken, ring, c_grid])
@@ -121,7 +123,7 @@ def test_they_are_those_of_openfoam(make: object, rows: int, monkeypatch: pytest
 
 def test_a_parallelogram_is_as_oblique_as_it_looks() -> None:
     x, y = np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij")
-    found = faces(Grid(np.stack([x + 3 * y, y], axis=-1)))
+    found = faces(Grid.from_nodes(np.stack([x + 3 * y, y], axis=-1)))
     assert found.non_orthogonality is not None
     assert found.non_orthogonality.max == pytest.approx(np.degrees(np.arctan(3)))
     assert found.severe == 3 * 3 + 4 * 2  # every face inside
@@ -132,12 +134,12 @@ def test_a_parallelogram_is_as_oblique_as_it_looks() -> None:
 def test_a_face_the_wrong_way_round_is_beyond_90() -> None:
     nodes = shaken().nodes.copy()
     nodes[4:6] = nodes[5:3:-1]
-    found = faces(Grid(nodes))
+    found = faces(Grid.from_nodes(nodes))
     assert found.non_orthogonality is not None
     assert found.non_orthogonality.max > 90
 
 
 def test_one_cell_has_no_faces_inside() -> None:
-    found = faces(Grid(shaken().nodes[:2, :2]))
+    found = faces(Grid.from_nodes(shaken().nodes[:2, :2]))
     assert found.non_orthogonality is None
     assert found.face_skewness is not None

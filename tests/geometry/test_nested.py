@@ -6,7 +6,7 @@ import pytest
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.coarsen import coarser_boundary, coarser_grid
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 
@@ -16,33 +16,33 @@ def lattice(ni: int, nj: int) -> np.ndarray:
 
 def test_the_kept_nodes_are_bitwise_the_same() -> None:
     nodes = lattice(13, 7) + np.random.default_rng(1).uniform(-0.2, 0.2, (13, 7, 2))
-    once = coarser_grid(Grid(nodes, name="a"), 3)
+    once = coarser_grid(Grid.from_nodes(nodes, name="a"), 3)
     np.testing.assert_array_equal(once.nodes, nodes[::3, ::3])
     assert (once.name, once.provenance["coarsened"]) == ("a", 3)
     twice = coarser_grid(once, 2)
-    np.testing.assert_array_equal(twice.nodes, coarser_grid(Grid(nodes), 6).nodes)
+    np.testing.assert_array_equal(twice.nodes, coarser_grid(Grid.from_nodes(nodes), 6).nodes)
     assert twice.provenance["coarsened"] == 6
 
 
 def test_parts_keep_their_places() -> None:
-    parts = (Part("inlet", "west", 0, 6), Part("step", "south", 4, 8), Part("wall", "north", 0, 12))
-    coarse = coarser_grid(Grid(lattice(13, 7), parts=parts), 2)
-    assert coarse.parts == (
-        Part("inlet", "west", 0, 3),
-        Part("step", "south", 2, 4),
-        Part("wall", "north", 0, 6),
+    parts = (Patch("inlet", "west", 0, 6), Patch("step", "south", 4, 8), Patch("wall", "north", 0, 12))
+    coarse = coarser_grid(Grid.from_nodes(lattice(13, 7), patches=parts), 2)
+    assert coarse.patches == (
+        Patch("inlet", "west", 0, 3),
+        Patch("step", "south", 2, 4),
+        Patch("wall", "north", 0, 6),
     )
     with pytest.raises(
         InputError, match="part 'step' ends at node 4 of south, which every 3-th leaves out; make"
     ):
-        coarser_grid(Grid(lattice(13, 7), parts=parts), 3)
+        coarser_grid(Grid.from_nodes(lattice(13, 7), patches=parts), 3)
 
 
 def test_rings_stay_closed() -> None:
     turn = np.linspace(0, -2 * np.pi, 13)
     nodes = np.arange(1.0, 4.0)[None, :, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)[:, None]
     nodes[-1] = nodes[0]
-    coarse = coarser_grid(Grid(nodes, "o"), 2)
+    coarse = coarser_grid(Grid.from_nodes(nodes, "o"), 2)
     assert (coarse.ni, coarse.nj, coarse.topology) == (7, 2, "o")
     np.testing.assert_array_equal(coarse.nodes[0], coarse.nodes[-1])
 
@@ -68,4 +68,4 @@ def test_boundaries_are_those_of_their_grids() -> None:
 )  # fmt: skip
 def test_counts_that_do_not_divide_are_told_with_a_remedy(ni: int, nj: int, k: int, told: str) -> None:
     with pytest.raises(InputError, match=told):
-        coarser_grid(Grid(lattice(ni, nj)), k)
+        coarser_grid(Grid.from_nodes(lattice(ni, nj)), k)

@@ -16,7 +16,9 @@ def lattice(ni: int, nj: int) -> np.ndarray:
 
 def shaken(ni: int, nj: int, amount: float) -> Grid:
     step = np.array([1 / (ni - 1), 1 / (nj - 1)])
-    return Grid(lattice(ni, nj) + step * np.random.default_rng(3).uniform(-amount, amount, (ni, nj, 2)))
+    return Grid.from_nodes(
+        lattice(ni, nj) + step * np.random.default_rng(3).uniform(-amount, amount, (ni, nj, 2))
+    )
 
 
 def ring(ni: int, nj: int) -> Grid:
@@ -25,20 +27,20 @@ def ring(ni: int, nj: int) -> Grid:
     radius = 1 + np.geomspace(1e-6, 10, nj)[None, :]
     nodes = np.stack([radius * np.cos(turn), (radius - 0.8) * np.sin(turn)], axis=-1)
     nodes[-1] = nodes[0]
-    return Grid(nodes, "o")
+    return Grid.from_nodes(nodes, "o")
 
 
 def folded() -> Grid:
     nodes = lattice(300, 280)
     nodes[100:140, 100:140] = nodes[139:99:-1, 100:140]
-    return Grid(nodes)
+    return Grid.from_nodes(nodes)
 
 
 GRIDS = {
     "shaken": lambda: shaken(310, 290, 0.4),
     "smooth": lambda: ring(400, 220),
     "thin": lambda: ring(20001, 5),
-    "of one value": lambda: Grid(lattice(257, 257)),
+    "of one value": lambda: Grid.from_nodes(lattice(257, 257)),
     "folded": folded,
 }
 

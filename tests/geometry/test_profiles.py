@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Part
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.measure import measure
 from meshonet.geometry.quality.profiles import PROFILES, Checked, Figures, Judgement, Limit, judge
 
 
 def oblique(slope: float, stretch: float = 1.0) -> Grid:
     x, y = np.meshgrid(np.arange(5.0), stretch * np.arange(4.0), indexing="ij")
-    return Grid(np.stack([x + slope * y / stretch, y], axis=-1))
+    return Grid.from_nodes(np.stack([x + slope * y / stretch, y], axis=-1))
 
 
-def judged(grid: Grid, profile: str, *walls: Part) -> Judgement:
+def judged(grid: Grid, profile: str, *walls: Patch) -> Judgement:
     return judge(Figures(grid, measure(grid), walls), profile)
 
 
@@ -28,10 +28,10 @@ def found(judgement: Judgement, figure: str) -> Checked:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_squares_pass_and_folds_fail(profile: str) -> None:
-    square = judged(oblique(0), profile, Part("wall", "south", 0, 4))
+    square = judged(oblique(0), profile, Patch("wall", "south", 0, 4))
     assert square.passed
     assert "fail" not in verdicts(square).values()
-    folded = judged(Grid(oblique(0).nodes[::-1]), profile, Part("wall", "south", 0, 4))
+    folded = judged(Grid.from_nodes(oblique(0).nodes[::-1]), profile, Patch("wall", "south", 0, 4))
     assert not folded.passed
     assert found(folded, "folded").value == 12
 
@@ -39,7 +39,7 @@ def test_squares_pass_and_folds_fail(profile: str) -> None:
 def ladder(first: float, second: float) -> Grid:
     y = np.array([0.0, first, first + second, first + 2 * second])
     x, y = np.meshgrid(np.arange(5.0), y, indexing="ij")
-    return Grid(np.stack([x, y], axis=-1))
+    return Grid.from_nodes(np.stack([x, y], axis=-1))
 
 
 @pytest.mark.parametrize(
@@ -68,7 +68,7 @@ def ladder(first: float, second: float) -> Grid:
     ],
 )  # fmt: skip
 def test_thresholds(profile: str, grid: Grid, figure: str, value: float, verdict: str) -> None:
-    checked = found(judged(grid, profile, Part("floor", "south", 0, 4)), figure)
+    checked = found(judged(grid, profile, Patch("floor", "south", 0, 4)), figure)
     assert checked.value == pytest.approx(value, rel=2e-3)
     assert checked.verdict == verdict
 
@@ -79,7 +79,9 @@ def test_the_far_field_is_counted_in_chords() -> None:
         radius = np.array([[0.5, 1.0, chords]]) * 2
         nodes = np.stack([7 + radius * np.cos(turn), 3 + radius * np.sin(turn)], axis=-1)
         nodes[-1] = nodes[0]
-        checked = found(judged(Grid(nodes, "o"), "viscous", Part("wall", "south", 0, 60)), "far_field")
+        checked = found(
+            judged(Grid.from_nodes(nodes, "o"), "viscous", Patch("wall", "south", 0, 60)), "far_field"
+        )
         assert checked.value == pytest.approx(chords, rel=1e-2)
         assert checked.verdict == verdict
 
@@ -91,7 +93,7 @@ def test_what_a_grid_does_not_have_is_not_judged() -> None:
 
 
 def test_growth_is_taken_away_from_the_wall() -> None:
-    floor, side = Part("wall", "south", 0, 4), Part("wall", "west", 0, 3)
+    floor, side = Patch("wall", "south", 0, 4), Patch("wall", "west", 0, 3)
     grid = ladder(1, 1.5)
     assert found(judged(grid, "viscous", floor), "wall_growth").value == pytest.approx(1.5)
     assert found(judged(grid, "viscous", side), "wall_growth").value == pytest.approx(1.0)

@@ -31,7 +31,9 @@ def lattice(ni: int, nj: int) -> np.ndarray:
 def shaken(ni: int = 23, nj: int = 17, amount: float = 0.3, seed: int = 3) -> Grid:
     """A lattice whose nodes are moved by up to `amount` of a cell: beyond 0.35 some cells are concave."""
     step = np.array([1 / (ni - 1), 1 / (nj - 1)])
-    return Grid(lattice(ni, nj) + step * np.random.default_rng(seed).uniform(-amount, amount, (ni, nj, 2)))
+    return Grid.from_nodes(
+        lattice(ni, nj) + step * np.random.default_rng(seed).uniform(-amount, amount, (ni, nj, 2))
+    )
 
 
 def ring(ni: int = 25, nj: int = 9, growth: float = 1.3) -> Grid:
@@ -39,7 +41,7 @@ def ring(ni: int = 25, nj: int = 9, growth: float = 1.3) -> Grid:
     radius = growth ** np.arange(nj)[None, :]
     nodes = np.stack([radius * np.cos(turn), radius * np.sin(turn)], axis=-1)
     nodes[-1] = nodes[0]
-    return Grid(nodes, "o")
+    return Grid.from_nodes(nodes, "o")
 
 
 def verdict(grid: Grid, measure_name: str) -> np.ndarray:
@@ -89,7 +91,9 @@ def test_concave_cells_agree_with_verdict(name: str) -> None:
 @pytest.mark.parametrize("name", ["scaled_jacobian", "aspect_ratio", "max_angle"])
 def test_boundary_layer_cells_agree_with_verdict(name: str) -> None:
     nodes = ring(61, 12, 1.2).nodes * [1.0, 0.12]
-    stretched = Grid(np.concatenate([nodes[:, :1], nodes[:, :1] * (1 + 1e-6), nodes[:, 1:]], axis=1), "o")
+    stretched = Grid.from_nodes(
+        np.concatenate([nodes[:, :1], nodes[:, :1] * (1 + 1e-6), nodes[:, 1:]], axis=1), "o"
+    )
     np.testing.assert_allclose(
         per_cell(stretched, name), verdict(stretched, VERDICT[name]), rtol=1e-9, atol=1e-10
     )
@@ -100,7 +104,7 @@ def test_every_metric_is_checked_against_verdict_or_by_hand() -> None:
 
 
 def test_rectangle_has_the_figures_of_a_rectangle() -> None:
-    quality = measure(Grid(lattice(3, 3) * [4.0, 1.0]))
+    quality = measure(Grid.from_nodes(lattice(3, 3) * [4.0, 1.0]))
     expected = {
         "max_angle": 90,
         "min_angle": 90,
@@ -117,7 +121,7 @@ def test_rectangle_has_the_figures_of_a_rectangle() -> None:
 
 
 def test_parallelogram_has_the_figures_of_a_parallelogram() -> None:
-    quality = measure(Grid(lattice(4, 4) @ np.array([[1.0, 0.0], [0.5, np.sqrt(0.75)]])))
+    quality = measure(Grid.from_nodes(lattice(4, 4) @ np.array([[1.0, 0.0], [0.5, np.sqrt(0.75)]])))
     assert quality["max_angle"].mean == pytest.approx(120, abs=1e-10)
     assert quality["min_angle"].mean == pytest.approx(60, abs=1e-10)
     assert quality["skewness"].mean == pytest.approx(1 / 3, abs=1e-12)
@@ -126,10 +130,12 @@ def test_parallelogram_has_the_figures_of_a_parallelogram() -> None:
 
 def test_area_ratio_sees_all_four_neighbours() -> None:
     x, y = np.meshgrid([0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 4.0], indexing="ij")
-    grid = Grid(np.stack([x, y], axis=-1))
+    grid = Grid.from_nodes(np.stack([x, y], axis=-1))
     np.testing.assert_allclose(per_cell(grid, "area_ratio"), [[3, 3], [3, 3], [3, 3]])
     x, y = np.meshgrid([0.0, 1.0, 3.0, 8.0], [0.0, 1.0], indexing="ij")
-    np.testing.assert_allclose(per_cell(Grid(np.stack([x, y], axis=-1)), "area_ratio").ravel(), [2, 2.5, 2.5])
+    np.testing.assert_allclose(
+        per_cell(Grid.from_nodes(np.stack([x, y], axis=-1)), "area_ratio").ravel(), [2, 2.5, 2.5]
+    )
 
 
 def test_area_ratio_looks_across_the_seam_of_an_o_grid() -> None:
@@ -138,9 +144,9 @@ def test_area_ratio_looks_across_the_seam_of_an_o_grid() -> None:
     nodes[-1] = nodes[0]
     area = np.sin(-np.diff(turn))
     assert area[-1] / area[0] > 1.5
-    across = per_cell(Grid(nodes, "o"), "area_ratio")[[0, -1], 0]
+    across = per_cell(Grid.from_nodes(nodes, "o"), "area_ratio")[[0, -1], 0]
     np.testing.assert_allclose(across, area[-1] / area[0], rtol=1e-12)
-    assert per_cell(Grid(nodes, "quad"), "area_ratio")[[0, -1], 0].max() < 1.5
+    assert per_cell(Grid.from_nodes(nodes, "quad"), "area_ratio")[[0, -1], 0].max() < 1.5
 
 
 def test_summary_is_that_of_the_cells() -> None:
@@ -182,7 +188,7 @@ def test_folded_cells_are_counted_listed_and_ranked() -> None:
     nodes[9, 9] = nodes[8, 8]  # a collapsed cell
     nodes = as_planar(nodes)
     assert {(5, 3), (5, 4), (8, 8)} <= {tuple(cell) for cell in folded_cells(nodes)}
-    assert count_folded(nodes) == len(folded_cells(nodes)) == measure(Grid(nodes)).folded
+    assert count_folded(nodes) == len(folded_cells(nodes)) == measure(Grid.from_nodes(nodes)).folded
     worst = worst_cells(nodes)
     assert (worst[0].i, worst[0].j) in {(5, 3), (5, 4)}
     assert worst[0].x == pytest.approx(
@@ -201,7 +207,7 @@ def test_three_nodes_in_a_line_are_folded_on_every_processor() -> None:
 
 
 def test_a_clockwise_grid_is_folded_everywhere() -> None:
-    quality = measure(Grid(lattice(5, 6)[::-1]))
+    quality = measure(Grid.from_nodes(lattice(5, 6)[::-1]))
     assert quality.folded == quality.cells == 20
     assert quality["scaled_jacobian"].max == pytest.approx(-1)
     assert quality["max_angle"].min == pytest.approx(270)
@@ -211,7 +217,7 @@ def test_collapsed_cells_have_finite_figures() -> None:
     nodes = lattice(3, 3)
     nodes[1, 1] = nodes[0, 0]
     nodes[2, 2] = nodes[2, 1] = nodes[1, 2] = nodes[1, 1]
-    quality = measure(Grid(nodes), percentiles=True)
+    quality = measure(Grid.from_nodes(nodes), percentiles=True)
     assert quality.folded == 4
     for metric in METRICS:
         assert np.isfinite(

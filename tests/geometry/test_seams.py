@@ -16,16 +16,16 @@ def c_grid(wake: int = 4, around: int = 9, nj: int = 5, growth: float = 1.5) -> 
     away = np.concatenate([np.tile([0, -1], (wake + 1, 1)), nose[1:-1], np.tile([0, 1.5], (wake + 1, 1))])
     reach = growth ** np.arange(nj) - 1
     nodes = south[:, None] + reach[None, :, None] * away[:, None]
-    return Grid(nodes, "c")
+    return Grid.from_nodes(nodes, "c")
 
 
 def test_the_wake_is_where_nodes_coincide() -> None:
     assert wake_cells(c_grid(wake=4)) == 4
     assert wake_cells(c_grid(wake=1)) == 1
-    assert wake_cells(Grid(c_grid().nodes, "quad")) == 0
+    assert wake_cells(Grid.from_nodes(c_grid().nodes, "quad")) == 0
     open_everywhere = c_grid().nodes.copy()
     open_everywhere[0, 0, 0] += 1e-12
-    assert wake_cells(Grid(open_everywhere, "c")) == 0
+    assert wake_cells(Grid.from_nodes(open_everywhere, "c")) == 0
 
 
 def test_lines_go_across_the_wake() -> None:
@@ -36,16 +36,16 @@ def test_lines_go_across_the_wake() -> None:
     assert (lines[:, 0, 1] > 0).all()
     assert (lines[:, 2, 1] < 0).all()
     np.testing.assert_array_equal(lines[..., 0], np.tile(lines[:, :1, 0], (1, 3)))
-    assert across_wake(Grid(grid.nodes, "quad")).shape == (0, 3, 2)
+    assert across_wake(Grid.from_nodes(grid.nodes, "quad")).shape == (0, 3, 2)
 
 
 def test_lines_go_on_beyond_the_seam() -> None:
     turn = np.linspace(0, -2 * np.pi, 9)
     nodes = np.array([1.0, 2.0])[None, :, None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)[:, None]
     nodes[-1] = nodes[0]
-    assert beyond_seam(Grid(nodes, "o")).shape == (10, 2, 2)
-    np.testing.assert_array_equal(beyond_seam(Grid(nodes, "o"))[-1], nodes[1])
-    assert beyond_seam(Grid(nodes, "quad")).shape == (9, 2, 2)
+    assert beyond_seam(Grid.from_nodes(nodes, "o")).shape == (10, 2, 2)
+    np.testing.assert_array_equal(beyond_seam(Grid.from_nodes(nodes, "o"))[-1], nodes[1])
+    assert beyond_seam(Grid.from_nodes(nodes, "quad")).shape == (9, 2, 2)
 
 
 def test_area_ratio_looks_across_the_wake() -> None:
@@ -53,4 +53,4 @@ def test_area_ratio_looks_across_the_wake() -> None:
     ratio = per_cell(grid, "area_ratio")
     np.testing.assert_allclose(ratio[0, 0], 1.5, rtol=0.02)  # half as thick again above as below
     np.testing.assert_allclose(ratio[:3, 0], ratio[-1:-4:-1, 0], rtol=1e-12)
-    assert per_cell(Grid(grid.nodes, "quad"), "area_ratio")[0, 0] < 1.1
+    assert per_cell(Grid.from_nodes(grid.nodes, "quad"), "area_ratio")[0, 0] < 1.1

@@ -14,7 +14,7 @@ def product(x: list[float], y: list[float]) -> np.ndarray:
 
 
 def test_a_product_grid_grows_as_its_factors() -> None:
-    found = growth(Grid(product([0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 2.0, 5.0, 8.0])))
+    found = growth(Grid.from_nodes(product([0.0, 1.0, 3.0, 4.0], [0.0, 1.0, 2.0, 5.0, 8.0])))
     assert found.xi is not None
     assert found.eta is not None
     assert (found.xi.max, found.xi.mean, found.xi.at) == (2.0, 2.0, (1, 0))
@@ -26,7 +26,7 @@ def test_the_seam_is_a_place_like_any_other() -> None:
     nodes = np.stack([np.outer(np.cos(turn), [1.0, 2.0]), np.outer(np.sin(turn), [1.0, 2.0])], axis=-1)
     nodes[-1] = nodes[0]
     chord = 2 * np.sin(-np.diff(turn) / 2)
-    ring, strip = growth(Grid(nodes, "o")).xi, growth(Grid(nodes, "quad")).xi
+    ring, strip = growth(Grid.from_nodes(nodes, "o")).xi, growth(Grid.from_nodes(nodes, "quad")).xi
     assert ring is not None
     assert strip is not None
     assert ring.max == pytest.approx(chord[-1] / chord[0])
@@ -36,7 +36,7 @@ def test_the_seam_is_a_place_like_any_other() -> None:
 
 def test_the_wake_is_crossed() -> None:
     grid = c_grid(growth=1.001)
-    crossed, cut = growth(grid).eta, growth(Grid(grid.nodes, "quad")).eta
+    crossed, cut = growth(grid).eta, growth(Grid.from_nodes(grid.nodes, "quad")).eta
     assert crossed is not None
     assert cut is not None
     assert crossed.max == pytest.approx(1.5)
@@ -47,9 +47,9 @@ def test_the_wake_is_crossed() -> None:
 
 def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
     nodes = product(list(range(40)), list(range(9))) + np.random.default_rng(2).uniform(-0.3, 0.3, (40, 9, 2))
-    whole = growth(Grid(nodes))
+    whole = growth(Grid.from_nodes(nodes))
     monkeypatch.setattr(steps, "ROWS", 7)
-    parts = growth(Grid(nodes))
+    parts = growth(Grid.from_nodes(nodes))
     for one, other in ((whole.xi, parts.xi), (whole.eta, parts.eta)):
         assert one is not None
         assert other is not None
@@ -62,7 +62,7 @@ def test_blocks_do_not_show(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_steps_of_no_length_are_large_and_single_steps_have_no_growth() -> None:
-    found = growth(Grid(product([0.0, 1.0], [0.0, 0.0, 1.0])))
+    found = growth(Grid.from_nodes(product([0.0, 1.0], [0.0, 0.0, 1.0])))
     assert found.xi is None
     assert found.eta is not None
     assert found.eta.max == LARGE

@@ -31,7 +31,7 @@ def growth(line: np.ndarray) -> np.ndarray:
 
 
 def span(boundary: Boundary, name: str) -> tuple[int, int]:
-    part = next(part for part in boundary.parts if part.name == name)
+    part = next(part for part in boundary.patches if part.name == name)
     return part.start, part.stop
 
 
@@ -45,7 +45,7 @@ def test_south_is_wake_wall_wake_and_the_wakes_coincide_bitwise() -> None:
     wall = boundary.south[first : last + 1]
     np.testing.assert_array_equal(wall[[0, -1]], np.tile(SHARP.trailing_edge, (2, 1)))
     assert wall[1, 1] < 0 < wall[-2, 1]
-    names = [(part.name, part.side) for part in boundary.parts]
+    names = [(part.name, part.side) for part in boundary.patches]
     sides = ("north", "east", "west")
     assert names == [(n, "south") for n in ("wake", "wall", "wake")] + [("farfield", s) for s in sides]
 
@@ -147,14 +147,14 @@ def test_resampled_boundaries_keep_wall_wake_and_parts() -> None:
     assert (other.ni, other.nj) == (239, 61)
     np.testing.assert_array_equal(other.south[: first + 1], other.south[last:][::-1])
     np.testing.assert_array_equal(other.south[[0, first]], boundary.south[[0, span(boundary, "wall")[0]]])
-    assert [p.stop for p in other.parts if p.side in ("west", "east")] == [60, 60]
+    assert [p.stop for p in other.patches if p.side in ("west", "east")] == [60, 60]
     with pytest.raises(InputError, match="4 nodes along a C boundary with a wake; use at least 5"):
         boundary.boundary(Sampling(4, 40))
 
 
 def test_parts_nobody_named_are_told_by_the_nodes() -> None:
     boundary = c()
-    assert replace(boundary, parts=()).parts == boundary.parts
+    assert replace(boundary, patches=()).patches == boundary.patches
 
 
 @pytest.mark.parametrize(

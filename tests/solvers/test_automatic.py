@@ -6,7 +6,6 @@ import pytest
 from solver_shapes import arch, folded, hole
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.pipeline.select import solve_automatic
 from meshonet.solvers.solution import Solution
@@ -20,7 +19,7 @@ def spied(seen: list[tuple[int, int]]) -> Callable[[Boundary], Solution]:
         nodes = tfi(boundary).nodes.copy(order="K")
         if boundary.ni < 200:
             nodes[60:64, 5], nodes[70:74, 5] = nodes[70:74, 5].copy(), nodes[60:64, 5].copy()
-        return Solution(Grid(nodes, boundary.topology), "variational")
+        return Solution(boundary.grid(nodes), "variational")
 
     return solver
 

@@ -27,7 +27,7 @@ METHODS: dict[str, Callable[[Boundary], Grid]] = {
 def test_c_grids_are_valid_and_their_edges_are_those_given(name: str, section: str) -> None:
     boundary = naca(section).boundary(Sampling(150, 60, "c"))
     grid = METHODS[name](boundary)
-    assert (grid.topology, grid.parts) == ("c", boundary.parts)
+    assert (grid.topology, grid.patches) == ("c", boundary.patches)
     assert count_folded(grid.nodes) == 0
     for found, given in (
         (grid.nodes[:, 0], boundary.south),

@@ -106,7 +106,7 @@ def test_provenance_name_and_parts_are_kept() -> None:
     assert grid.provenance["coarse"] == (33, 33)
     assert grid.provenance["method"] == "winslow"
     assert grid.name == "arch"
-    assert grid.parts == Grid(grid.nodes).parts
+    assert grid.patches == Grid.from_nodes(grid.nodes).patches
 
 
 def test_too_few_coarse_nodes_are_refused() -> None:

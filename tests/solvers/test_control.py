@@ -115,7 +115,7 @@ def test_a_start_does_not_spoil_what_interpolation_solves() -> None:
     nodes = np.stack(np.meshgrid(t, t, indexing="ij"), axis=-1)
     start = nodes.copy()
     start[1:-1, 1:-1] += 0.02
-    found = solve(edges_of(nodes), initial=Grid(start)).grid.nodes
+    found = solve(edges_of(nodes), initial=Grid.from_nodes(start)).grid.nodes
     np.testing.assert_allclose(found, nodes, atol=1e-14)
 
 

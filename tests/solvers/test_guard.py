@@ -69,7 +69,7 @@ def test_a_repaired_grid_says_so_and_keeps_its_names() -> None:
     grid, path = guard(solve(boundary).grid, boundary)
     assert path == ("repair",)
     assert grid.provenance["path"] == ("repair",)
-    assert (grid.name, grid.parts) == ("wrench", boundary.parts)
+    assert (grid.name, grid.patches) == ("wrench", boundary.patches)
 
 
 def test_a_grid_beyond_repair_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -77,7 +77,7 @@ def test_a_grid_beyond_repair_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> N
     boundary = arch(30, 20)
     nodes = tfi(boundary).nodes.copy()
     nodes[1:-1, 1:-1] = nodes[-2:0:-1, 1:-1]
-    grid, path = guard(Grid(nodes), boundary)
+    grid, path = guard(Grid.from_nodes(nodes), boundary)
     assert folded(grid.nodes) == 0
     assert path in {("winslow",), ("tfi",)}
 

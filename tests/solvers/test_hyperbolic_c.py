@@ -21,9 +21,9 @@ def test_a_c_grid_keeps_wall_and_wake_and_has_its_first_cells(name: str) -> None
     boundary = c_boundary(name)
     grid = hyperbolic(boundary, wall_spacing=1e-5).grid
     assert count_folded(grid.nodes) == 0
-    assert (grid.topology, grid.parts) == ("c", boundary.parts)
+    assert (grid.topology, grid.patches) == ("c", boundary.patches)
     np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
-    wall = next(part for part in grid.parts if part.name == "wall")
+    wall = next(part for part in grid.patches if part.name == "wall")
     height = first_cells(grid.nodes)
     np.testing.assert_allclose(height[wall.start : wall.stop + 1], 1e-5, rtol=1e-8)
     behind = np.hypot(*(boundary.south[: wall.start] - boundary.south[wall.start]).T)

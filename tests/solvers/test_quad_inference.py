@@ -45,7 +45,9 @@ def test_edges_are_met_bitwise(boundary: Boundary, model: str, polish: int) -> N
 
 
 def turned(boundary: Boundary, matrix: Floats, away: Floats) -> Boundary:
-    return replace(boundary, parts=(), **{side: getattr(boundary, side) @ matrix.T + away for side in SIDES})
+    return replace(
+        boundary, patches=(), **{side: getattr(boundary, side) @ matrix.T + away for side in SIDES}
+    )
 
 
 @pytest.mark.parametrize("polish", [0, 2])

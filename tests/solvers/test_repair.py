@@ -7,12 +7,12 @@ from solver_shapes import arch, folded, hole, l_shape, meets, naca, spike, wrenc
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import family
+from meshonet.kernels._native import repair_energy, repair_minimise
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy import untangle as unfolding
 from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.energy.untangle import FUTILE, Patience, reference_lengths, unfold
-from solvers._repair import energy, minimise
 
 
 def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
@@ -32,7 +32,7 @@ def test_gradient_is_that_of_the_energy(shape: float, epsilon: float, periodic: 
     nodes = tangled(naca(9, 6) if periodic else arch(7, 6), 0.004 if epsilon == 0 else 0.3)
     lengths = reference_lengths(nodes, periodic)
     x, y = nodes[..., 0], nodes[..., 1]
-    _, gx, gy, _ = energy(x, y, *lengths, periodic, shape, epsilon)
+    _, gx, gy, _ = repair_energy(x, y, *lengths, periodic, shape, epsilon)
     rng = np.random.default_rng(1)
     dx, dy = rng.normal(0, 1, x.shape), rng.normal(0, 1, x.shape)
     dx[:, [0, -1]] = dy[:, [0, -1]] = 0
@@ -41,8 +41,8 @@ def test_gradient_is_that_of_the_energy(shape: float, epsilon: float, periodic: 
     else:
         dx[[0, -1]] = dy[[0, -1]] = 0
     h = 1e-6
-    up = energy(x + h * dx, y + h * dy, *lengths, periodic, shape, epsilon)[0]
-    down = energy(x - h * dx, y - h * dy, *lengths, periodic, shape, epsilon)[0]
+    up = repair_energy(x + h * dx, y + h * dy, *lengths, periodic, shape, epsilon)[0]
+    down = repair_energy(x - h * dx, y - h * dy, *lengths, periodic, shape, epsilon)[0]
     assert (gx * dx + gy * dy).sum() == pytest.approx((up - down) / (2 * h), rel=1e-5)
     assert (gx[:, [0, -1]] == 0).all()
     assert periodic or (gx[[0, -1]] == 0).all()
@@ -53,10 +53,10 @@ def test_energy_of_a_parallelogram_is_known() -> None:
     u, v = np.array([2.0, 0.0]), 0.5 * np.array([np.cos(angle), np.sin(angle)])
     nodes = as_planar(np.array([[[0, 0], v], [u, u + v]], dtype=float))
     width, height = np.array([2.0]), np.array([0.5])
-    total, _, _, smallest = energy(nodes[..., 0], nodes[..., 1], width, height, False, 1.0, 0.0)
+    total, _, _, smallest = repair_energy(nodes[..., 0], nodes[..., 1], width, height, False, 1.0, 0.0)
     assert total == pytest.approx(4 / np.sin(angle) ** 4)
     assert smallest == pytest.approx(np.sin(angle))
-    harmonic = energy(nodes[..., 0], nodes[..., 1], width, height, False, 0.0, 0.0)[0]
+    harmonic = repair_energy(nodes[..., 0], nodes[..., 1], width, height, False, 0.0, 0.0)[0]
     assert harmonic == pytest.approx(4 / np.sin(angle))
 
 
@@ -64,7 +64,8 @@ def test_a_folded_patch_costs_infinitely_without_regularisation() -> None:
     nodes = tangled(arch(9, 9), 0.3)
     assert folded(nodes) > 0
     assert (
-        energy(nodes[..., 0], nodes[..., 1], *reference_lengths(nodes, False), False, 0.0, 0.0)[0] == np.inf
+        repair_energy(nodes[..., 0], nodes[..., 1], *reference_lengths(nodes, False), False, 0.0, 0.0)[0]
+        == np.inf
     )
 
 
@@ -72,10 +73,12 @@ def test_a_minimum_is_found_to_the_tolerance_and_kept() -> None:
     nodes = tangled(arch(17, 17), 0.005)
     lengths = reference_lengths(nodes, False)
     x, y = nodes[..., 0], nodes[..., 1]
-    first = minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)
-    gx, gy = energy(x, y, *lengths, False, 0.0, 0.0)[1:3]
+    first = repair_minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)
+    gx, gy = repair_energy(x, y, *lengths, False, 0.0, 0.0)[1:3]
     assert np.hypot(gx, gy).max() < 1e-4
-    assert minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)[1] == pytest.approx(first[1], rel=1e-12)
+    assert repair_minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)[1] == pytest.approx(
+        first[1], rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(
@@ -162,8 +165,8 @@ def test_what_cannot_be_unfolded_is_given_up_soon(monkeypatch: pytest.MonkeyPatc
     def counted(x: Floats, *rest: object) -> tuple[int, float, float]:
         nonlocal spent
         spent += x.size
-        return minimise(x, *rest)  # type: ignore[no-any-return]
+        return repair_minimise(x, *rest)  # type: ignore[no-any-return]
 
-    monkeypatch.setattr(unfolding, "minimise", counted)
+    monkeypatch.setattr(unfolding, "repair_minimise", counted)
     assert repair(nodes, False) > 0
     assert 0 < spent < 4 * FUTILE

@@ -190,7 +190,7 @@ def test_a_far_from_valid_start_still_ends_at_the_solution() -> None:
     boundary = arch(65, 65)
     rng = np.random.default_rng(3)
     start = tfi(boundary).nodes + rng.normal(0, 0.05, (65, 65, 2))
-    found = solve(boundary, tol=1e-8, max_cycles=60, initial=Grid(start)).grid.nodes
+    found = solve(boundary, tol=1e-8, max_cycles=60, initial=Grid.from_nodes(start)).grid.nodes
     np.testing.assert_allclose(found, solve(boundary, tol=1e-8).grid.nodes, atol=1e-6)
 
 

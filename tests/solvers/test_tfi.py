@@ -73,7 +73,7 @@ def test_ring_between_circles_is_polar() -> None:
 def test_the_grid_keeps_name_topology_and_parts() -> None:
     boundary = naca(41, 12)
     grid = tfi(boundary)
-    assert (grid.name, grid.topology, grid.parts) == (boundary.name, "o", boundary.parts)
+    assert (grid.name, grid.topology, grid.patches) == (boundary.name, "o", boundary.patches)
     assert grid.provenance == {"method": "tfi", "blending": "arclength"}
 
 

@@ -42,7 +42,7 @@ from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
 
 
 def angle(nodes: Floats) -> Summary:
-    return measure(Grid(nodes))["max_angle"]
+    return measure(Grid.from_nodes(nodes))["max_angle"]
 
 
 def never_worse(found: Floats, reference: Floats) -> None:
@@ -207,7 +207,7 @@ def test_a_folded_start_is_unfolded() -> None:
     nodes = tfi(boundary).nodes
     nodes[8:16, 8:16] = nodes[24:16:-1, 24:16:-1]
     assert folded(nodes) > 10
-    found = solve(boundary, initial=Grid(nodes), max_cycles=1000)
+    found = solve(boundary, initial=Grid.from_nodes(nodes), max_cycles=1000)
     assert folded(found.grid.nodes) == 0
     assert found.notes == ()
 
@@ -304,7 +304,7 @@ def test_behind_a_sharp_edge_the_wake_stays() -> None:
     boundary = naca_section("0012").boundary(Sampling(101, 41, topology="c"))
     reference, found = tfi(boundary), solve(boundary).grid
     assert found.topology == "c"
-    assert found.parts == reference.parts
+    assert found.patches == reference.patches
     assert np.array_equal(found.nodes[:, 0], boundary.south)
     never_worse(found.nodes, reference.nodes)
     assert angle(found.nodes).mean < 93
@@ -321,7 +321,7 @@ def test_a_bent_cut_is_straightened() -> None:
         np.cos(angle) * x - np.sin(angle) * y,
         np.sin(angle) * x + np.cos(angle) * y,
     )
-    found = solve(boundary, initial=Grid(bent, "o"), tol=1e-6).grid.nodes
+    found = solve(boundary, initial=Grid.from_nodes(bent, "o"), tol=1e-6).grid.nodes
     rays = np.arctan2(found[..., 1], found[..., 0]) - np.arctan2(walls[0][:, 1], walls[0][:, 0])[:, None]
     assert np.abs((rays + np.pi) % (2 * np.pi) - np.pi).max() < 1e-4
     assert np.ptp(np.hypot(found[..., 0], found[..., 1]), axis=0).max() < 1e-4

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded, folded_cells
+from meshonet.kernels._native import resample
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH
 from meshonet.solvers.algebraic.resample.spline import places
-from solvers._evaluate import evaluate_all
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Planes of south and north (batch, 2, ni), west and east (batch, 2, nj)."""
@@ -90,5 +90,5 @@ def _evaluated(coarse: Floats, sides: Sides, straight: Straight | None) -> Float
     opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
     nodes = np.empty((len(coarse), 2, ni, nj))
     fine = places(m, ni), places(n, nj)
-    evaluate_all(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
+    resample(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
     return nodes

@@ -11,7 +11,6 @@ import torch
 from torch import Tensor, nn
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.neural.fit.task import Task
@@ -86,7 +85,7 @@ def judged(operator: PaperOperator, samples: Samples) -> dict[str, float]:
     for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):
         own, away = operator.nodes(edges, paste=False)
         boundary, folded = max(boundary, away), folded + count_folded(own)
-        errors.append(compare(Grid(own, samples.topology), Grid(nodes, samples.topology)).relative_l2)
+        errors.append(compare(edges.grid(own), edges.grid(nodes)).relative_l2)
     if not errors:
         return {}
     median, worst = float(np.median(errors)), float(np.max(errors))

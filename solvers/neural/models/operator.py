@@ -11,7 +11,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.conformal.chebyshev import barycentric, points, weights
 from meshonet.solvers.conformal.harmonic import extend
@@ -81,7 +80,7 @@ class PaperOperator(Operator):
         nodes, error = self.nodes(boundary, paste=paste)
         spent = time.perf_counter() - begun
         facts = {"method": "operator", "model": self.name, "boundary_error": error}
-        grid = Grid(nodes, boundary.topology, boundary.parts, boundary.name, facts)
+        grid = boundary.grid(nodes, facts)
         done = "replaced by the true one" if paste else "left so"
         notes = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
         return Solution(

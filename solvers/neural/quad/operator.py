@@ -13,7 +13,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.neural.operator import Operator, in_batches
 from meshonet.solvers.neural.quad.canonical import canonical
@@ -98,7 +97,7 @@ class QuadOperator(Operator):
         solutions = []
         for boundary, nodes, cycles in zip(boundaries, planes.transpose(0, 2, 3, 1), taken, strict=True):
             facts = {"method": "operator", "model": self.name, "polish": cycles}
-            grid = Grid(nodes, self.topology, boundary.parts, boundary.name, facts, finite=finite)
+            grid = boundary.grid(nodes, facts, finite=finite)
             solutions.append(
                 Solution(grid, "operator", model=self.name, cycles=cycles, seconds={"grid": spent})
             )

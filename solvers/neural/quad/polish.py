@@ -9,7 +9,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
 from meshonet.solvers.neural.quad.edges import Edges
@@ -118,7 +117,7 @@ def _cycles(planes: Floats, steps: int, topology: Topology) -> int:
     nodes = np.moveaxis(planes, 0, -1)
     try:
         boundary = Boundary(nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1], topology)
-        initial = Grid(nodes.copy(order="K"), topology)
+        initial = boundary.grid(nodes.copy(order="K"))
         solution = solve(boundary, tol=1e-12, max_cycles=steps, initial=initial)
     except (SolverError, InputError):
         return 0  # diverged, or nodes that no boundary can have

@@ -23,7 +23,7 @@ def test_they_are_those_of_the_quality_report() -> None:
     rng, t = np.random.default_rng(3), np.linspace(0.0, 1.0, 9)
     x, y = (plane + 0.02 * rng.normal(size=(9, 9)) for plane in np.meshgrid(t, t, indexing="ij"))
     least, most = extremes(torch.from_numpy(x + 1j * y)[None])
-    grid = Grid(np.stack([x, y], axis=-1))
+    grid = Grid.from_nodes(np.stack([x, y], axis=-1))
     np.testing.assert_allclose(np.degrees(most[0].numpy()), per_cell(grid, "max_angle"), rtol=1e-12)
     np.testing.assert_allclose(np.degrees(least[0].numpy()), per_cell(grid, "min_angle"), rtol=1e-12)
 
