@@ -37,8 +37,10 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quad.coarse_grids import evaluate, near_grids
+from meshonet.solvers.neural.quad.coarse_grids import evaluate
 from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.encoding import LATENT, frame
+from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
@@ -113,7 +115,12 @@ def to_winslow(n: int, boundaries: list[Boundary], network: Callable[..., Soluti
 def near(boundary: Boundary) -> Solution:
     """Return the grid that the network goes out from, evaluated as its own are."""
     edges = Edges.of([boundary])
-    (planes,) = evaluate(near_grids(edges), edges)
+    thin = edges.thinned(LATENT, LATENT)
+    base = thin.interpolated(thin.laws())
+    z = base[:, 0] + 1j * base[:, 1]
+    middle, factor = frame(z, np)
+    z = approach((z - middle) * factor, np)[0] / factor + middle
+    (planes,) = evaluate(np.stack([z.real, z.imag], axis=1), edges)
     return Solution(
         Grid.from_nodes(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.patches), "picard"
     )

@@ -37,8 +37,8 @@ from torch import Tensor, nn
 
 from meshonet.geometry.families.family import family
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.neural.fit.operator_task import OperatorTask
-from meshonet.solvers.neural.models.meshonet import MeshONet
+from meshonet.solvers.neural.fit.operators import OperatorTask
+from meshonet.solvers.neural.models.branch_trunk import MeshONet
 from meshonet.solvers.neural.models.sensors import lift, rim, sensors, square
 from meshonet.solvers.neural.samples import Samples, gathered
 

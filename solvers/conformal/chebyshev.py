@@ -19,7 +19,7 @@ def weights(n: int) -> Floats:
     """Return the barycentric weights of `points(n)`."""
     signs = (-1.0) ** np.arange(n)
     signs[[0, -1]] *= 0.5
-    return signs
+    return np.asarray(signs, dtype=np.float64)
 
 
 def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:

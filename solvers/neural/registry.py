@@ -39,13 +39,13 @@ OPERATORS: dict[Kind, tuple[str, str]] = {
 """Module and class of each kind of file."""
 
 ARCHITECTURES: dict[str, tuple[str, str]] = {
-    "meshonet": ("meshonet", "MeshONet"),
+    "meshonet": ("branch_trunk", "MeshONet"),
     "meshonet-hard": ("meshonet_hard", "MeshONetHard"),
-    "deeponet": ("deeponet", "DeepONet"),
-    "pod-deeponet": ("pod_deeponet", "PODDeepONet"),
-    "fno1d": ("fno1d", "FNO1D"),
-    "fno2d": ("fno2d", "FNO2D"),
-    "mionet": ("mionet", "MIONet"),
+    "deeponet": ("branch_trunk", "DeepONet"),
+    "pod-deeponet": ("branch_trunk", "PODDeepONet"),
+    "fno1d": ("fourier", "FNO1D"),
+    "fno2d": ("fourier", "FNO2D"),
+    "mionet": ("branch_trunk", "MIONet"),
     "mgnet": ("mgnet", "MGNet"),
     "meshnet": ("mgnet", "MeshNet"),
 }
@@ -97,7 +97,7 @@ def load(name: str | Path) -> Operator:
     path = model_path(name)
     operator = _load(path, path.stat().st_mtime_ns)
     if name in shipped():
-        head = {"head": HEADS[name][1]} if name in HEADS else {}
+        head: dict[str, Any] = {"head": HEADS[name][1]} if name in HEADS else {}
         operator = dataclasses.replace(operator, name=name, **head)
     return operator
 

@@ -17,7 +17,7 @@ from meshonet.geometry.families.bodies import boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.kernels._native import activate, upsample
-from meshonet.solvers.neural.quad.features import features
+from meshonet.solvers.neural.quad.encoding import features
 from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import Network, shapes
 from meshonet.solvers.neural.quad.picard import approach

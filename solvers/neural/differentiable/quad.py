@@ -10,10 +10,8 @@ from torch import Tensor
 from meshonet.solvers.neural.differentiable.resample import arrays, between, evaluated, folded
 from meshonet.solvers.neural.differentiable.sides import as_complex, check_sides, quad_network
 from meshonet.solvers.neural.operator import Operator
-from meshonet.solvers.neural.quad.damping import share
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW
-from meshonet.solvers.neural.quad.features import features
-from meshonet.solvers.neural.quad.frame import frame
+from meshonet.solvers.neural.quad.coarse_grids import share
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, frame
 from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
 Sides = tuple[Tensor, ...]

@@ -15,9 +15,8 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from meshonet.solvers.neural.quad import kernels
-from meshonet.solvers.neural.quad.encoding import HEADS
-from meshonet.solvers.neural.quad.features import FEATURES
+from meshonet.solvers.neural.quad import symmetry
+from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 
 
@@ -40,11 +39,11 @@ class GroupConvolution(nn.Module):
         self.weight = nn.Parameter(spread * torch.randn(out, into, ORDER, size, size))
         self.bias = nn.Parameter(torch.zeros(out))
         self.stride, self.padding, self.around = stride, size // 2, around
-        self.register_buffer("places", torch.from_numpy(kernels.table(size)), persistent=False)
+        self.register_buffer("places", torch.from_numpy(symmetry.table(size)), persistent=False)
 
     def forward(self, x: Tensor) -> Tensor:
         """Return (batch, 8 out, ...) for `x` (batch, 8 in, m, n)."""
-        kernel = kernels.convolution(self.weight, self.places, torch)
+        kernel = symmetry.convolution(self.weight, self.places, torch)
         bias = self.bias.repeat_interleave(ORDER)
         along = self.padding
         if self.around and self.padding:
@@ -99,7 +98,7 @@ class QuadUNet(nn.Module):
         m is n, or around a body a multiple of 2 for each level but the coarsest.
         """
         x = features.movedim(-1, 1)  # channels last in memory, where convolutions are fastest
-        lift = kernels.lift(self.lift, self.seen, torch)
+        lift = symmetry.lift(self.lift, self.seen, torch)
         x = functional.conv2d(x, lift[:, :, None, None], self.lift_bias.repeat_interleave(ORDER))
         skipped = []
         for before, down in zip(self.before, self.down, strict=False):
@@ -109,7 +108,7 @@ class QuadUNet(nn.Module):
         x = self.before[-1](x)
         for k in range(len(skipped) - 1, -1, -1):
             x = self.after[k](self._finer(self.up[k](x), skipped[k]) + skipped[k])
-        project = kernels.projection(self.project, self.elements, torch)
+        project = symmetry.projection(self.project, self.elements, torch)
         answer = functional.conv2d(functional.silu(x), project[:, :, None, None]) * self._bubble(x)
         return torch.complex(answer[:, 0::2].contiguous(), answer[:, 1::2].contiguous())
 

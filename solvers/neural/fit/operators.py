@@ -1,20 +1,25 @@
-"""Training of the paper's models, from solved grids."""
+"""Training of the paper's models: batches over geometries and over places drawn at random."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
+import torch
+from torch import Tensor
+from torch.nn.functional import mse_loss
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.model_task import ModelTask
-from meshonet.solvers.neural.fit.operator_task import OperatorTask
+from meshonet.solvers.conformal.harmonic import extend
+from meshonet.solvers.neural.fit.model_task import ModelTask, tensor, tensors
 from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.models.architecture import Architecture
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.registry import architecture, settings_of
 from meshonet.solvers.neural.samples import Samples
@@ -26,6 +31,100 @@ HELD_OUT = 0
 
 MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
 """Settings that a resumed run may change without changing what it computes."""
+
+
+class OperatorTask(ModelTask):
+    """An operator model on solved grids.
+
+    ::
+
+        loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
+
+    over the places of a step, in squares of the unit of length; error = answer - (grid - base). Where there
+    is a base, both are divided by the mean square of grid - base, so that the loss is of the order of 1.
+
+    Parameters
+    ----------
+    model : what is trained.
+    training, held_out : its shapes.
+    points : places drawn for a step, inside and on the boundary; None takes all.
+    seed : of the first weights and of the places.
+    """
+
+    parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
+
+    def __init__(
+        self, model: Architecture, training: Samples, held_out: Samples | None,
+        points: tuple[int, int] | None, seed: int, device: torch.device,
+    ) -> None:  # fmt: skip
+        targets = differences(model, training)
+        super().__init__(model, training, targets, points, seed, device)
+        self.inputs = tensors(model.encode(training.boundaries()), device)
+        # places first: those of a step are then whole rows of a matrix, which torch gathers fastest
+        self.targets = tensor(_by_place(targets).reshape(training.ni * training.nj, -1)).to(device)
+        size = float((targets**2).mean()) if model.base != "none" else 1.0
+        self.weights = model.interior / size, model.boundary / size
+        self.places = model.seen(torch, self.places)
+        self.held_out: tuple[dict[str, Tensor], Tensor] | None = None
+        if held_out is not None and len(held_out):
+            goal = tensor(_by_place(differences(model, held_out))).to(device)
+            self.held_out = tensors(model.encode(held_out.boundaries()), device), goal
+        self.to(device)
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the interior and the boundary part of the loss over the shapes `rows`."""
+        index, inner = self._drawn(step)
+        place = torch.from_numpy(index).to(self.places.device)
+        goal = self.targets.index_select(0, place).view(len(place), self.count, 2)
+        inputs = self.inputs
+        if len(rows) < self.count:  # of all shapes the order does not matter
+            inputs = {name: value[rows] for name, value in inputs.items()}
+            goal = goal.index_select(1, rows)
+        found = self._answer(inputs, self.places[place], place)
+        return self._weighted(found.float().transpose(0, 1), goal, inner)
+
+    def validate(self) -> dict[str, float]:
+        """Return the loss over the held-out shapes and the median of their relative L2 error."""
+        if self.held_out is None:
+            return {}
+        inputs, goal = self.held_out
+        index = np.concatenate([self.inside, self.outside])
+        place = torch.from_numpy(index).to(self.places.device)
+        with torch.no_grad():
+            found, wanted = self._answer(inputs, self.places[place], place).transpose(0, 1), goal[place]
+            loss = self._weighted(found, wanted, len(self.inside)).sum()
+            return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(found, wanted))}
+
+    def _answer(self, inputs: Mapping[str, Tensor], points: Tensor, place: Tensor) -> Tensor:
+        weights: dict[str, Any] = {**dict(self.named_parameters()), **self.fixed}
+        return self.model.answer(torch, weights, inputs, points, place)
+
+    def _drawn(self, step: int) -> tuple[np.ndarray[Any, np.dtype[np.intp]], int]:
+        """Return numbers of nodes, those inside first, and how many are inside."""
+        if self.points is None:
+            return np.concatenate([self.inside, self.outside]), len(self.inside)
+        rng = np.random.default_rng([self.seed, 1, step])
+        groups = zip((self.inside, self.outside), self.points, strict=True)
+        drawn = [group[rng.integers(0, len(group), n)] for group, n in groups]
+        return np.concatenate(drawn), self.points[0]
+
+    def _weighted(self, found: Tensor, goal: Tensor, inner: int) -> Tensor:
+        """Return both parts of the loss of answers (p, batch, 2), of which the first `inner` are inside."""
+        inside, outside = (2.0 * weight for weight in self.weights)  # two coordinates a place
+        first, second = mse_loss(found[:inner], goal[:inner]), mse_loss(found[inner:], goal[inner:])
+        return torch.stack([inside * first, outside * second])
+
+
+def differences(model: Architecture, samples: Samples) -> Floats:
+    """Return the grids less the model's base (n, ni, nj, 2)."""
+    if model.base == "none":
+        return samples.nodes
+    return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
+
+
+def _by_place(nodes: Floats) -> Floats:
+    """Return nodes (n, ni, nj, 2) as (ni nj, n, 2)."""
+    return nodes.reshape(len(nodes), -1, 2).swapaxes(0, 1)
 
 
 def run(

@@ -23,8 +23,7 @@ from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import QUAD, write_model
 from meshonet.solvers.neural.operator import Operator
-from meshonet.solvers.neural.quad.encoding import SCALE
-from meshonet.solvers.neural.quad.features import features
+from meshonet.solvers.neural.quad.encoding import SCALE, features
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.quad.unrolled import TURN, rolled
 

@@ -17,8 +17,7 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.quad.edges import Edges, rims
-from meshonet.solvers.neural.quad.encoding import HEADS, LATENT
-from meshonet.solvers.neural.quad.frame import frame
+from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame
 from meshonet.solvers.neural.quad.picard import approached
 from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
 from meshonet.solvers.neural.samples import Samples, gathered
@@ -120,7 +119,7 @@ def _unrolled(goal: Complexes, other: Complexes) -> Quads:
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
     """Return domains by their grids, the base transfinite."""
     near, step = (p[:, 0] + 1j * p[:, 1] for p in approached(base, around))
-    return Quads(*map(_single, (near, step, winslow, variational)), around)
+    return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
 
 
 def _single(z: Complexes) -> Tensor:

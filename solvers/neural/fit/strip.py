@@ -18,9 +18,8 @@ from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import STRIP, write_model
-from meshonet.solvers.neural.strip.dataset import Strips
+from meshonet.solvers.neural.strip.dataset import Strips, Targets, make_targets
 from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
-from meshonet.solvers.neural.strip.pod import Targets, make_targets
 
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
@@ -94,8 +93,8 @@ class StripTask(Task):
         """Write the model file: float16 weights, the basis in float32."""
         arrays = {key: value.cpu().numpy().astype(np.float16) for key, value in self.net.state_dict().items()}
         arrays["basis"] = self.targets.basis.astype(np.float32)
-        facts = {"name": path.stem, "topology": "o", "scale": self.targets.scale}
-        write_model(path, STRIP, arrays, recipe=recipe, figures=figures, **facts)
+        told = {"recipe": recipe, "figures": figures, "scale": self.targets.scale}
+        write_model(path, STRIP, arrays, name=path.stem, topology="o", **told)
 
 
 def run(

@@ -15,15 +15,17 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
 from meshonet.solvers.algebraic.resample import quad as evaluation
 from meshonet.solvers.algebraic.resample.spline import places
-from meshonet.solvers.neural.quad.damping import share
 from meshonet.solvers.neural.quad.edges import Edges
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW
-from meshonet.solvers.neural.quad.features import FEATURES
+from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
 from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
 from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
+
+SHARES = (0.95, 0.9, 0.8)
+"""Of the way from the grid that the network sees to its answer, the first of them without folds; else all."""
 
 
 def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
@@ -50,16 +52,6 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
                 one[:] = other + part * (one - other)
         frame_put_back(planes, near, unit, factors)
     return _nearer(base, edges) if head == WINSLOW else base
-
-
-def near_grids(edges: Edges) -> Floats:
-    """Return the planes (batch, 2, n, n) that the network goes out from, at n = 33 nodes each."""
-    base = _begun(edges)
-    unit, factors = _unit(base)
-    near = unit.copy()
-    step_all(near)
-    frame_put_back(base, near, unit, factors)
-    return base
 
 
 def _nearer(coarse: Floats, edges: Edges) -> Floats:
@@ -90,3 +82,11 @@ def _unit(planes: Floats) -> tuple[Floats, Floats]:
 def evaluate(coarse: Floats, edges: Edges) -> Floats:
     """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
     return evaluation.evaluate(coarse, edges.sides)
+
+
+def share(start: Floats, answer: Floats) -> float:
+    """Return how much of the way from `start` to `answer`, planes (2, m, n) both, to go: 1 but for folds."""
+    if count_folded(answer.transpose(1, 2, 0)) == 0:
+        return 1.0
+    tried = ((part, start + part * (answer - start)) for part in SHARES)
+    return next((part for part, one in tried if count_folded(one.transpose(1, 2, 0)) == 0), 1.0)

@@ -26,9 +26,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.kernels._native import LayerProgram, activate, convolve, upsample, winograd, winograd_scratch
-from meshonet.solvers.neural.quad import kernels
-from meshonet.solvers.neural.quad.encoding import HEADS
-from meshonet.solvers.neural.quad.features import FEATURES
+from meshonet.solvers.neural.quad import symmetry
+from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 
 Reals: TypeAlias = NDArray[Any]
@@ -124,15 +123,15 @@ class Network:
         self.dtype, self.blocks, self.around = np.dtype(dtype), tuple(blocks), around
         exact = {name: np.asarray(value, np.float64) for name, value in weights.items()}
         self._layers = {
-            "lift": _packed(kernels.lift(exact["lift"], SEEN, np), exact["lift_bias"], self.dtype),
-            "project": _packed(kernels.projection(exact["project"], ELEMENTS, np), None, self.dtype),
+            "lift": _packed(symmetry.lift(exact["lift"], SEEN, np), exact["lift_bias"], self.dtype),
+            "project": _packed(symmetry.projection(exact["project"], ELEMENTS, np), None, self.dtype),
         }
         for name in exact:
             layer, _, rest = name.rpartition(".")
             if rest == "weight":
-                kernel = kernels.convolution(exact[name], kernels.table(exact[name].shape[-1]), np)
+                kernel = symmetry.convolution(exact[name], symmetry.table(exact[name].shape[-1]), np)
                 if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
-                    kernel = kernels.at_points(kernel)
+                    kernel = symmetry.at_points(kernel)
                 self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
         self._idle: dict[tuple[int, int], list[LayerProgram]] = {}  # of no thread at the time
         self.heads = len(exact["project"])

@@ -23,8 +23,7 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample.spline import between
-from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW
-from meshonet.solvers.neural.quad.features import features
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features
 from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.picard import AFTER, approached

@@ -7,8 +7,9 @@ one for each element; a kernel of the layer is one small set of weights, seen fr
     K[h, g](p) = w[h^-1 g](h^-1 p)
 
 so the network's answer to a relabelled domain is the relabelled answer, to rounding, and an ordinary
-convolution with the expanded kernels computes it. Cohen & Welling, Group Equivariant Convolutional Networks,
-ICML 2016.
+convolution with the expanded kernels computes it. Channels lie as (set, element), the element fastest; arrays
+are of numpy or of torch where `xp` is the module they are of.
+Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Floats
 
 Integers: TypeAlias = NDArray[np.int64]
 Reals: TypeAlias = NDArray[np.floating[Any]]
@@ -90,18 +91,43 @@ SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])
 """(8, FEATURES, FEATURES)"""
 
 
-def relabelled(values: Complexes, element: int) -> Complexes:
-    """Return fields (..., n, n) of complex vectors or places, index axes and plane moved by an element.
+def table(size: int) -> Integers:
+    """Return (8, 8, size²): where in a set of weights (8 size²,) each tap of the kernel K[h, g] stands."""
+    count = size * size
+    return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
 
-    >>> square = np.array([[0, 1j], [1, 1 + 1j]]) - (0.5 + 0.5j)
-    >>> [bool(np.allclose(relabelled(square, k), square)) for k in range(8)]
-    [True, True, True, True, True, True, True, True]
-    """
-    n = values.shape[-1]
-    centred = np.arange(n) - (n - 1) / 2
-    places = np.stack(np.meshgrid(centred, centred, indexing="ij")).reshape(2, -1)
-    at = np.rint(ELEMENTS[element] @ places + (n - 1) / 2).astype(np.int64)
-    moved = values[..., at[0], at[1]].reshape(values.shape)
-    back = ELEMENTS[element].T
-    real = back[0, 0] * moved.real + back[0, 1] * moved.imag
-    return np.asarray(real + 1j * (back[1, 0] * moved.real + back[1, 1] * moved.imag))
+
+def convolution(weight: Any, places: Any, xp: Any) -> Any:
+    """Return (8 out, 8 in, size, size) from `weight` (out, in, 8, size, size) and `places`, its `table`."""
+    out, into, _, size, _ = weight.shape
+    spread = weight.reshape(out, into, -1)[:, :, places]
+    return xp.moveaxis(spread, 2, 1).reshape(ORDER * out, ORDER * into, size, size)
+
+
+POINTS: Floats = np.array(
+    [
+        [1 / 2, 0, 0],
+        [-1 / 2, -1 / 2, -1 / 2],
+        [-1 / 6, 1 / 6, -1 / 6],
+        [1 / 6, 1 / 3, 2 / 3],
+        [0, 0, 1],
+    ]
+)
+"""(5, 3) takes the taps of a kernel along an axis to what `winograd.h` multiplies: values at 0, 1, -1, 2 and
+infinity, divided by what interpolation through these divides by."""
+
+
+def at_points(kernel: Floats) -> Floats:
+    """Return (out, in, 5, 5) of a kernel (out, in, 3, 3), `POINTS` along both axes."""
+    return np.asarray(POINTS @ kernel @ POINTS.T)
+
+
+def lift(weight: Any, seen: Any, xp: Any) -> Any:
+    """Return (8 out, FEATURES) from `weight` (out, FEATURES): the features as seen from each element."""
+    return xp.einsum("cf,gfk->cgk", weight, seen).reshape(ORDER * len(weight), -1)
+
+
+def projection(weight: Any, elements: Any, xp: Any) -> Any:
+    """Return (2 heads, 8 in) from `weight` (heads, 2, in): vectors brought back from each element."""
+    back = xp.einsum("gda,hac->hdcg", elements, weight) / ORDER
+    return back.reshape(2 * len(weight), -1)

@@ -13,7 +13,7 @@ from families import arches, rings
 from safetensors.numpy import load_file, save_file
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.operator_task import differences
+from meshonet.solvers.neural.fit.operators import differences
 from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.model_file import HEADER, PAPER, write_model
 from meshonet.solvers.neural.models.architecture import Frame

@@ -9,7 +9,7 @@ import pytest
 
 from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out
-from meshonet.solvers.neural.quad.frame import frame
+from meshonet.solvers.neural.quad.encoding import frame
 
 
 def grids() -> Floats:

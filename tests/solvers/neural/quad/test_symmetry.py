@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from relabelling import relabelled
 
 from meshonet.geometry.arrays import Complexes
-from meshonet.solvers.neural.quad import kernels
-from meshonet.solvers.neural.quad.features import FEATURES, features
-from meshonet.solvers.neural.quad.frame import frame
-from meshonet.solvers.neural.quad.symmetry import ELEMENTS, INVERSE, ORDER, PRODUCT, SEEN, relabelled
+from meshonet.solvers.neural.quad import symmetry
+from meshonet.solvers.neural.quad.encoding import FEATURES, features, frame
+from meshonet.solvers.neural.quad.symmetry import ELEMENTS, INVERSE, ORDER, PRODUCT, SEEN
 
 ALL = range(ORDER)
 
@@ -71,7 +71,7 @@ def test_the_normalised_outline_has_area_one_about_the_origin() -> None:
 @pytest.mark.parametrize("size", [1, 3])
 def test_a_kernel_from_one_element_to_another_is_the_weights_moved(size: int) -> None:
     weight = np.random.default_rng(1).normal(size=(2, 3, ORDER, size, size))
-    kernel = kernels.convolution(weight, kernels.table(size), np).reshape(2, ORDER, 3, ORDER, size, size)
+    kernel = symmetry.convolution(weight, symmetry.table(size), np).reshape(2, ORDER, 3, ORDER, size, size)
     half = size // 2
     for h in ALL:
         for g in ALL:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from relabelling import relabelled
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.kernels._native import (
@@ -18,11 +19,10 @@ from meshonet.kernels._native import (
     winograd,
     winograd_scratch,
 )
-from meshonet.solvers.neural.quad.features import FEATURES, features
-from meshonet.solvers.neural.quad.kernels import at_points
+from meshonet.solvers.neural.quad.encoding import FEATURES, features
 from meshonet.solvers.neural.quad.network import CHUNK, Network, shapes
 from meshonet.solvers.neural.quad.picard import approach
-from meshonet.solvers.neural.quad.symmetry import ORDER, relabelled
+from meshonet.solvers.neural.quad.symmetry import ORDER, at_points
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
 CLOSE: dict[Any, float] = {np.float32: 2e-5, np.float64: 1e-13}

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from relabelling import relabelled
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.neural.quad.picard import approach, approached
-from meshonet.solvers.neural.quad.symmetry import ORDER, relabelled
+from meshonet.solvers.neural.quad.symmetry import ORDER
 
 
 def conformal(n: int, bend: float) -> Complexes:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from relabelling import relabelled
 
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.four_sided import boundary
@@ -21,10 +22,9 @@ from meshonet.solvers.neural.fit.quad_grids import Quads, quads
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.fit.train import train
 from meshonet.solvers.neural.model_file import read_tensors
-from meshonet.solvers.neural.quad.encoding import LATENT
-from meshonet.solvers.neural.quad.features import FEATURES, features
+from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, features
 from meshonet.solvers.neural.quad.picard import approach
-from meshonet.solvers.neural.quad.symmetry import ORDER, relabelled
+from meshonet.solvers.neural.quad.symmetry import ORDER
 from meshonet.solvers.neural.samples import Samples, gathered
 
 SMALL = Plan(
