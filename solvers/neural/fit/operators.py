@@ -80,8 +80,8 @@ class OperatorTask(ModelTask):
         if len(rows) < self.count:  # of all shapes the order does not matter
             inputs = {name: value[rows] for name, value in inputs.items()}
             goal = goal.index_select(1, rows)
-        found = self._answer(inputs, self.places[place], place)
-        return self._weighted(found.float().transpose(0, 1), goal, inner)
+        answer = self._answer(inputs, self.places[place], place)
+        return self._weighted(answer.float().transpose(0, 1), goal, inner)
 
     def validate(self) -> dict[str, float]:
         """Return the loss over the held-out shapes and the median of their relative L2 error."""
@@ -91,9 +91,9 @@ class OperatorTask(ModelTask):
         index = np.concatenate([self.inside, self.outside])
         place = torch.from_numpy(index).to(self.places.device)
         with torch.no_grad():
-            found, wanted = self._answer(inputs, self.places[place], place).transpose(0, 1), goal[place]
-            loss = self._weighted(found, wanted, len(self.inside)).sum()
-            return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(found, wanted))}
+            answer, goal = self._answer(inputs, self.places[place], place).transpose(0, 1), goal[place]
+            loss = self._weighted(answer, goal, len(self.inside)).sum()
+            return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(answer, goal))}
 
     def _answer(self, inputs: Mapping[str, Tensor], points: Tensor, place: Tensor) -> Tensor:
         weights: dict[str, Any] = {**dict(self.named_parameters()), **self.fixed}
@@ -108,10 +108,10 @@ class OperatorTask(ModelTask):
         drawn = [group[rng.integers(0, len(group), n)] for group, n in groups]
         return np.concatenate(drawn), self.points[0]
 
-    def _weighted(self, found: Tensor, goal: Tensor, inner: int) -> Tensor:
+    def _weighted(self, answer: Tensor, goal: Tensor, inner: int) -> Tensor:
         """Return both parts of the loss of answers (p, batch, 2), of which the first `inner` are inside."""
         inside, outside = (2.0 * weight for weight in self.weights)  # two coordinates a place
-        first, second = mse_loss(found[:inner], goal[:inner]), mse_loss(found[inner:], goal[inner:])
+        first, second = mse_loss(answer[:inner], goal[:inner]), mse_loss(answer[inner:], goal[inner:])
         return torch.stack([inside * first, outside * second])
 
 

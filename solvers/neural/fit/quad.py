@@ -23,7 +23,7 @@ from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import QUAD, write_model
 from meshonet.solvers.neural.operator import Operator
-from meshonet.solvers.neural.quad.encoding import SCALE, features
+from meshonet.solvers.neural.quad.encoding import HEADS, SCALE, features
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.quad.unrolled import TURN, rolled
 
@@ -41,7 +41,7 @@ PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "fold
 """Weights of the loss's parts: the distances from Winslow's and from variational grids, then the mean angle,
 the largest and the folds of the variational answer. Picard steps are all but Winslow's grids."""
 
-COMES = (0.1, 0.3)
+FADE_IN = (0.1, 0.3)
 """Between these shares of the steps angles and folds come into the loss."""
 
 NEAR, CLOSE = 0.1, 3e-4
@@ -95,27 +95,26 @@ class QuadTask(Task):
     def begin(self, weights: Mapping[str, Floats]) -> None:
         """Start from `weights`."""
         for net in (self.net, self.mean):
-            net.load_state_dict({name: torch.from_numpy(one) for name, one in weights.items()})
+            net.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the parts of the loss over the domains `rows`."""
         self._average(step)
-        given = self.training_set[rows.cpu()]
-        grids = [z.to(self.device) for z in (given.base, given.step, given.winslow, given.variational)]
+        grids = [z.to(self.device) for z in self.training_set[rows.cpu()].grids()]
         if self.around:
             grids = [_further(z, step % STARTS) for z in grids]
         base, last, winslow, variational = grids
-        found = self._found(self.net, base, last)
-        comes = float(np.interp(step / self.steps, COMES, (0.0, 1.0)))
-        angles = excess(found[:, 1], variational)
+        answers = self._answers(self.net, base, last)
+        fade_in = float(np.interp(step / self.steps, FADE_IN, (0.0, 1.0)))
+        angles = excess(answers[:, 1], variational)
         values = (
-            _missed(found[:, 0], winslow) + _away(found[:, 0], winslow),
-            _missed(found[:, 1], variational),
-            *(comes * angle.mean() for angle in angles),
+            _error(answers[:, 0], winslow) + _distance(answers[:, 0], winslow),
+            _error(answers[:, 1], variational),
+            *(fade_in * angle.mean() for angle in angles),
         )
         return torch.stack([weight * value for weight, value in zip(self.weights, values, strict=True)])
 
-    def _found(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
+    def _answers(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
         """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
         answer = SCALE * net(features(base, step, torch, self.around))
         if self.around:
@@ -130,11 +129,11 @@ class QuadTask(Task):
                 mean.lerp_(own, 1.0 - keep)
 
     def validate(self) -> dict[str, float]:
-        """Return medians of the relative distance to both targets over the held-out domains, and folds."""
-        found, goals = self.answers(), self.held_out
-        loss: dict[str, float] = {}
-        for k, (name, goal) in enumerate((("winslow", goals.winslow), ("variational", goals.variational))):
-            error = (found[:, k] - goal).abs().square().sum((1, 2)) / goal.abs().square().sum((1, 2))
+        """Return medians of the relative distance to both targets over the held-out domains."""
+        answers, loss = self.answers(), {}
+        for k, name in enumerate(HEADS):
+            goal = self.held_out.grids()[2 + k]
+            error = (answers[:, k] - goal).abs().square().sum((1, 2)) / goal.abs().square().sum((1, 2))
             loss[name] = float(error.sqrt().median())
         return {"loss": loss["variational"], **loss}
 
@@ -142,22 +141,21 @@ class QuadTask(Task):
         """Return the held-out grids (m, heads, n, n) of the mean weights."""
         with torch.no_grad():
             pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
-            parts = [self._found(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
+            parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
         return torch.cat(parts)
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
         """Return what the network's held-out grids are like beside their targets."""
-        goals = self.held_out
-        grids = (self.answers(), goals.base, goals.winslow, goals.variational)
+        base, _, *goals = self.held_out.grids()
+        grids = (self.answers(), base, *goals)
         return held_out_figures(*(_in_plane(z) if self.around else z.numpy() for z in grids))
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
         """Write the model file: the mean weights in float32 by torch's names."""
-        arrays = {
-            key: value.cpu().numpy().astype(np.float32) for key, value in self.mean.state_dict().items()
-        }
+        state = self.mean.state_dict()
+        arrays = {key: value.cpu().numpy().astype(np.float32) for key, value in state.items()}
         topology: Topology = "o" if self.around else "quad"
-        write_model(path, QUAD, arrays, name=path.stem, topology=topology, recipe=recipe, figures=figures)
+        write_model(path, QUAD, arrays, path.stem, topology, recipe=recipe, figures=figures)
 
 
 def _further(z: Tensor, by: int) -> Tensor:
@@ -166,12 +164,12 @@ def _further(z: Tensor, by: int) -> Tensor:
     return torch.cat([z[:, by:-1], z[:, : by + 1] + turn], 1)
 
 
-def _missed(found: Tensor, goal: Tensor) -> Tensor:
+def _error(answer: Tensor, goal: Tensor) -> Tensor:
     """Return the mean over grids of how far steps are from the goal's, in its steps, and a little of places.
 
     The logarithm keeps the few domains that are hard from ruling the rest.
     """
-    error = found - goal
+    error = answer - goal
     total = 3.0 * error.abs().mean()
     rough = torch.zeros(len(goal), device=goal.device)
     for axis in (1, 2):
@@ -180,9 +178,9 @@ def _missed(found: Tensor, goal: Tensor) -> Tensor:
     return total + (rough + 1e-7).sqrt().mean()
 
 
-def _away(found: Tensor, goal: Tensor) -> Tensor:
+def _distance(answer: Tensor, goal: Tensor) -> Tensor:
     """Return the logarithm of the distance between grids, which counts in near ones too, in the mean."""
-    distance = (found - goal).abs().square().mean((1, 2)).sqrt()
+    distance = (answer - goal).abs().square().mean((1, 2)).sqrt()
     return NEAR * torch.log1p(distance / CLOSE).mean()
 
 
@@ -228,15 +226,15 @@ def run(
     return Run(task, facts)
 
 
-def _weights(given: Mapping[str, float]) -> dict[str, float]:
-    """Return the weights of all parts of the loss, with those that are given."""
-    for part, weight in given.items():
+def _weights(changed: Mapping[str, float]) -> dict[str, float]:
+    """Return the weights of all parts of the loss, some of them changed."""
+    for part, weight in changed.items():
         if part not in PARTS:
-            told = f"the quad operator's loss has no part {part!r}"
-            raise InputError(told, "use one of " + ", ".join(PARTS), parameter="set")
+            problem = f"the quad operator's loss has no part {part!r}"
+            raise InputError(problem, "use one of " + ", ".join(PARTS), parameter="set")
         if not (isinstance(weight, int | float) and 0 <= weight < np.inf):
             raise InputError(f"{part}={weight} is no weight", "use a number from 0 on", parameter="set")
-    return {**PARTS, **given}
+    return {**PARTS, **changed}
 
 
 def _in_plane(z: Tensor) -> Complexes:

@@ -5,55 +5,48 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.solvers.neural.fit.angles import extremes
 from meshonet.solvers.neural.quad.encoding import HEADS
 
 Grids = NDArray[np.complexfloating[Any, Any]]
 
 
-def held_out_figures(found: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
-    """Return what the network's grids `found` (m, heads, n, n) are like beside their targets (m, n, n).
+def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: Grids) -> dict[str, Any]:
+    """Return what the network's grids `answers` (m, heads, n, n) are like beside their targets (m, n, n).
 
-    Angles are those of cells' corners, degrees: the largest of a grid and the mean over cells of the largest
-    of each. A gain is what a grid's figure improves on Winslow's, over what the variational grid does;
-    Winslow's grid may fold where its equations do, and such domains are left out of gains.
+    Angles are those of cells' corners: the largest of a grid and the mean over cells of the largest of each.
+    A gain is what a grid's figure improves on Winslow's, over what the variational grid does; Winslow's grid
+    may fold where its equations do, and such domains are left out of gains.
     """
-    goals = dict(zip(HEADS, (winslow, variational), strict=True))
-    solved = {name: angles(goal) for name, goal in goals.items()}
-    valid = solved["winslow"][0] < 360.0
-    figures: dict[str, Any] = {"domains": len(found), "winslow_valid": _share(valid)}
-    for k, (name, goal) in enumerate(goals.items()):
-        own = angles(found[:, k])
-        error = _norm(found[:, k] - goal) / _norm(goal)
-        told = {
-            "relative_l2": {
-                key: _rounded(np.quantile(error, q)) for key, q in (("median", 0.5), ("p90", 0.9))
-            },
+    solved, best = angles(winslow), angles(variational)
+    valid = solved[0] < 360.0
+    figures: dict[str, Any] = {"domains": len(answers), "winslow_valid": _share(valid)}
+    for k, (name, goal) in enumerate(zip(HEADS, (winslow, variational), strict=True)):
+        own = angles(answers[:, k])
+        error = _norm(answers[:, k] - goal) / _norm(goal)
+        quantiles = {"median": np.quantile(error, 0.5), "p90": np.quantile(error, 0.9)}
+        figures[name] = {
+            "relative_l2": {key: _rounded(value) for key, value in quantiles.items()},
             "base": _rounded(np.median(_norm(base - goal) / _norm(goal))),
             "fold_free": _share(own[0] < 360.0),
         }
-        if name == "variational":
-            for which, label in ((0, "max"), (1, "mean")):
-                before, best = solved["winslow"][which], solved["variational"][which]
-                told[f"{label}_not_above_winslow"] = _share(own[which] <= before + 1e-2)
-                both = valid & (own[0] < 360.0)
-                gain = (before - own[which])[both].sum() / (before - best)[both].sum()
-                told[f"{label}_gain"] = _rounded(gain)
-        figures[name] = told
+    both = valid & (own[0] < 360.0)
+    for which, label in enumerate(("max", "mean")):
+        gain = (solved[which] - own[which])[both].sum() / (solved[which] - best[which])[both].sum()
+        figures["variational"][f"{label}_not_above_winslow"] = _share(own[which] <= solved[which] + 1e-2)
+        figures["variational"][f"{label}_gain"] = _rounded(gain)
     return figures
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return the largest angle and the mean of cells' largest (m,) of grids (m, n, n); 360 if folded."""
-    u, v = np.diff(z, axis=1), np.diff(z, axis=2)
-    south, north, west, east = u[:, :, :-1], u[:, :, 1:], v[:, :-1], v[:, 1:]
-    turns = [np.angle(p.conj() * q) for p, q in ((south, west), (south, east), (north, east), (north, west))]
-    opening = np.stack([turns[0], np.pi - turns[1], turns[2], np.pi - turns[3]])
-    largest = np.degrees(opening.max(axis=0))
-    folded = (np.stack(turns) <= 0).any(axis=(0, 2, 3)) | (np.stack(turns) >= np.pi).any(axis=(0, 2, 3))
-    return tuple(np.where(folded, 360.0, value) for value in (largest.max((1, 2)), largest.mean((1, 2))))  # type: ignore[return-value]
+    """Return the largest angle and the mean of cells' largest (m,) of grids (m, n, n), degrees; 360 if folded."""
+    least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
+    folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
+    return np.where(folded, 360.0, most.max((1, 2))), np.where(folded, 360.0, most.mean((1, 2)))
 
 
 def _norm(z: Grids) -> Floats:

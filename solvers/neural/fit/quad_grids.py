@@ -1,7 +1,4 @@
-"""What the quad operator is trained on: Winslow's and variational grids of the same domains, normalised.
-
-Domains around bodies are unrolled.
-"""
+"""What the quad operator is trained on: Winslow's and variational grids of the same domains, normalised."""
 
 from __future__ import annotations
 
@@ -28,7 +25,7 @@ class Quads:
     """m domains of unit size: `base`, `winslow` and `variational` grids (m, n, n), complex64.
 
     The base, with the last `step` to it, is what `approach` makes of transfinite grids. Domains `around`
-    bodies are unrolled, (m, 65, n), and theirs begins with even steps from wall to wall.
+    bodies are unrolled, (m, 65, n), and their base is made from even steps between wall and far field.
     """
 
     base: Tensor
@@ -41,9 +38,11 @@ class Quads:
         return len(self.base)
 
     def __getitem__(self, rows: Any) -> Quads:
-        return Quads(
-            self.base[rows], self.step[rows], self.winslow[rows], self.variational[rows], self.around
-        )
+        return Quads(*(grids[rows] for grids in self.grids()), around=self.around)
+
+    def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Return base, step, Winslow's and variational grids."""
+        return self.base, self.step, self.winslow, self.variational
 
 
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
@@ -54,22 +53,18 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     Raises
     ------
     InputError
-        no grids; grids of one of the methods only, or of others; as `quads`.
+        no grids; grids by one of the methods only, or by others; as `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:
-        grids = list(dataset)
-        if grids:
+        if grids := list(dataset):
             method = str(grids[0].provenance.get("method", "an unknown method"))
             groups.setdefault(method, []).extend(grids)
-    if not groups:
-        return quads(gathered([]), gathered([]))
-    if sorted(groups) != sorted(HEADS):
-        raise InputError(
-            f"grids by {' and '.join(sorted(groups))} for the quad operator",
-            "give grids of the same boundaries by winslow and by variational",
-        )
-    return quads(gathered(groups["variational"]), gathered(groups["winslow"]))
+    if groups and sorted(groups) != sorted(HEADS):
+        problem = f"grids by {' and '.join(sorted(groups))} for the quad operator"
+        raise InputError(problem, "give grids of the same boundaries by winslow and by variational")
+    winslow, variational = (gathered(groups.get(method, [])) for method in HEADS)
+    return quads(variational, winslow)
 
 
 def quads(variational: Samples, winslow: Samples) -> Quads:
@@ -82,48 +77,43 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
         domain in common.
     """
     around = variational.topology == "o"
-    ni = AROUND if around else LATENT
+    wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)
     for samples in (variational, winslow):
-        if (samples.topology, samples.ni, samples.nj) != ("o" if around else "quad", ni, LATENT):
+        if (samples.topology, samples.ni, samples.nj) != wanted:
             raise InputError(
                 f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
                 f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}",
             )
     sides = slice(2 if around else 4)  # the cut of an O grid is no boundary
     where = {_rim(nodes, sides): k for k, nodes in enumerate(winslow.nodes)}
-    rims = [_rim(nodes, sides) for nodes in variational.nodes]
-    pairs = [(k, where[rim]) for k, rim in enumerate(rims) if rim in where]
+    keys = [_rim(nodes, sides) for nodes in variational.nodes]
+    pairs = [(k, where[key]) for k, key in enumerate(keys) if key in where]
     if not pairs:
         raise InputError("no domain is in both datasets", "solve the same boundaries with both methods")
     first, second = (list(rows) for rows in zip(*pairs, strict=True))
-    goal, other = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
+    best, solved = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
     if around:
-        return _unrolled(goal, other)
-    base = transfinite(goal)
-    middle, factor = frame(base, np)
-    base, other, goal = ((z - middle[:, None, None]) * factor[:, None, None] for z in (base, other, goal))
-    return _approached(base, other, goal)
+        return _unrolled(best, solved)
+    base = transfinite(best)
+    middle, factor = (value[:, None, None] for value in frame(base, np))
+    return _approached(*((z - middle) * factor for z in (base, solved, best)))
 
 
-def _unrolled(goal: Complexes, other: Complexes) -> Quads:
+def _unrolled(best: Complexes, solved: Complexes) -> Quads:
     """Return the domains around bodies that both grids go round once in the same sense."""
-    centres = middles(goal[:, :-1, 0])
-    (goal, once), (other, also) = unrolled(goal, centres), unrolled(other, centres)
-    alike = np.abs(goal[:, :, -1] - other[:, :, -1]).max(axis=1) < 1e-6
-    kept = once & also & alike
-    goal, other = goal[kept], other[kept]
-    factor = factors(goal)[:, None, None]
-    return _approached(even(goal, goal.shape[2]) * factor, other * factor, goal * factor, around=True)
+    centres = middles(best[:, :-1, 0])
+    (best, once), (solved, also) = unrolled(best, centres), unrolled(solved, centres)
+    kept = once & also & (np.abs(best[:, :, -1] - solved[:, :, -1]).max(axis=1) < 1e-6)
+    best, solved = best[kept], solved[kept]
+    factor = factors(best)[:, None, None]
+    return _approached(even(best, best.shape[2]) * factor, solved * factor, best * factor, around=True)
 
 
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
     """Return domains by their grids, the base transfinite."""
-    near, step = (p[:, 0] + 1j * p[:, 1] for p in approached(base, around))
-    return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
-
-
-def _single(z: Complexes) -> Tensor:
-    return torch.from_numpy(z.astype(np.complex64))
+    near, step = (planes[:, 0] + 1j * planes[:, 1] for planes in approached(base, around))
+    single = (torch.from_numpy(z.astype(np.complex64)) for z in (near, step, winslow, variational))
+    return Quads(*single, around=around)
 
 
 def _rim(nodes: Floats, sides: slice) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -18,7 +18,7 @@ from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import STRIP, write_model
-from meshonet.solvers.neural.strip.dataset import Strips, Targets, make_targets
+from meshonet.solvers.neural.strip.dataset import Strips, make_targets
 from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
 
 PLAN = Plan(
@@ -55,46 +55,61 @@ class StripTask(Task):
 
     def __init__(self, training: Strips, held_out: Strips, sizes: Sizes, device: torch.device) -> None:
         super().__init__()
-        self.targets, self.held_out = make_targets(training, sizes.basis), held_out
+        targets = make_targets(training, sizes.basis)
+        self.held_out, self.basis, self.scale = held_out, targets.basis, targets.scale
         self.net = StripFNO(CHANNELS, SCALARS, 2 * sizes.basis, sizes.width, sizes.modes, sizes.layers)
-        self.count = len(self.targets.wanted)
-        given = (self.targets.channels, self.targets.scalars, self.targets.wanted)
-        self.given = tuple(_tensor(array).to(device) for array in given)
-        self.importance = 1.0 / ((self.given[2] ** 2).sum(1).mean(1) + 0.03) ** 0.75
-        self.device = device
+        self.count, self.device = len(targets.wanted), device
+        self.data = [_tensor(a).to(device) for a in (targets.channels, targets.scalars, targets.wanted)]
+        self.importance = 1.0 / ((self.data[2] ** 2).sum(1).mean(1) + 0.03) ** 0.75
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:  # noqa: ARG002 - nothing is drawn
-        """Return the weighted mean square of what is missing in the answers to the strips `rows`."""
-        channels, scalars, wanted = (array[rows] for array in self.given)
+        """Return the weighted mean square error of the answers to the strips `rows`."""
+        channels, scalars, wanted = (array[rows] for array in self.data)
         error = self.net(channels, scalars).float() - wanted
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
         """Return quantiles of the distance to R over the held-out strips; ``loss`` is the median."""
-        answers = self.answers()
-        errors = [distance(found, goal) for found, goal in zip(answers, self.held_out.residual, strict=True)]
-        median, p90, worst = (float(q) for q in np.quantile(errors, [0.5, 0.9, 1.0]))
+        pairs = zip(self.answers(), self.held_out.residual, strict=True)
+        errors = [distance(answer, goal) for answer, goal in pairs]
+        median, p90, worst = (float(q) for q in np.quantile(errors, list(QUANTILES.values())))
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
         """Return the network's R for every held-out strip."""
-        targets: Targets = self.targets
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(_tensor(channels).to(self.device), _tensor(scalars).to(self.device)).cpu()
-        return list(decode(out.numpy().astype(np.float64), targets.basis, targets.scale, size))
+        return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
 
     def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
         """Return quantiles of the distance to R over the held-out strips, with the network and without."""
-        return held_out_figures(self.answers().__getitem__, self.held_out)
+        test, errors = self.held_out, dict[str, list[float]]()
+        for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
+            base = harmonic(wall, far, across().eta)
+            for way, residual in (
+                ("base", np.zeros_like(goal)),
+                ("base + 1 Picard", picard(base, 1)[0] - base),
+                ("base + 2 Picard", picard(base, 2)[0] - base),
+                ("network", answer),
+                ("network + 1 Picard", picard(base + answer, 1)[0] - base),
+            ):
+                errors.setdefault(way, []).append(distance(residual, goal))
+        figures: dict[str, Any] = {
+            "strips": len(test),
+            "error": "root mean square distance to the Winslow solution in the strip, radians",
+        }
+        for way, values in errors.items():
+            figures[way] = {key: float(f"{np.quantile(values, q):.3e}") for key, q in QUANTILES.items()}
+        return figures
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
         """Write the model file: float16 weights, the basis in float32."""
         arrays = {key: value.cpu().numpy().astype(np.float16) for key, value in self.net.state_dict().items()}
-        arrays["basis"] = self.targets.basis.astype(np.float32)
-        told = {"recipe": recipe, "figures": figures, "scale": self.targets.scale}
-        write_model(path, STRIP, arrays, name=path.stem, topology="o", **told)
+        arrays["basis"] = self.basis.astype(np.float32)
+        made = {"scale": self.scale, "recipe": recipe, "figures": figures}
+        write_model(path, STRIP, arrays, path.stem, "o", **made)
 
 
 def run(
@@ -119,35 +134,9 @@ def run(
     return Run(StripTask(data[:kept], data[kept:], sizes, team.device), facts)
 
 
-def distance(found: Complexes, goal: Complexes) -> float:
-    """Return the root mean square of |found - goal| (radians) over the strip, from modes (.., LEVELS)."""
-    return float(np.sqrt((np.abs(found - goal) ** 2).sum(axis=0).mean()))
-
-
-def held_out_figures(answer: Callable[[int], Complexes], test: Strips) -> dict[str, Any]:
-    """Return quantiles of the distance to R over held-out strips: the network's beside those without it.
-
-    `answer(m)` is the network's R for strip m, (2 MODES + 1, LEVELS).
-    """
-    misses: dict[str, list[float]] = {}
-    for m in range(len(test)):
-        goal, start = test.residual[m], harmonic(test.wall[m], test.far[m], across().eta)
-        found = answer(m)
-        for way, residual in (
-            ("base", np.zeros_like(goal)),
-            ("base + 1 Picard", picard(start, 1)[0] - start),
-            ("base + 2 Picard", picard(start, 2)[0] - start),
-            ("network", found),
-            ("network + 1 Picard", picard(start + found, 1)[0] - start),
-        ):
-            misses.setdefault(way, []).append(distance(residual, goal))
-    figures: dict[str, Any] = {
-        "strips": len(test),
-        "error": "root mean square distance to the Winslow solution in the strip, radians",
-    }
-    for way, values in misses.items():
-        figures[way] = {key: float(f"{np.quantile(values, q):.3e}") for key, q in QUANTILES.items()}
-    return figures
+def distance(answer: Complexes, goal: Complexes) -> float:
+    """Return the root mean square of |answer - goal| (radians) over the strip, from modes (.., LEVELS)."""
+    return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))
 
 
 def _tensor(array: np.ndarray[Any, Any]) -> Tensor:

@@ -38,10 +38,6 @@ class Strips:
     def __getitem__(self, rows: slice) -> Strips:
         return Strips(self.wall[rows], self.far[rows], self.residual[rows])
 
-    def mirrored(self) -> Strips:
-        """Return the strips seen in a mirror: F(theta) -> conj F(-theta) turns mode c_k into conj c_k."""
-        return Strips(self.wall.conj(), self.far.conj(), self.residual.conj())
-
 
 def solve_strips(
     boundaries: Iterable[Boundary], progress: Callable[[int, int], None] | None = None
@@ -75,10 +71,10 @@ def solve_strips(
 
 def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None:
     try:
-        found = walls(boundary)
+        body = walls(boundary)
     except InputError:
         return None
-    a, b = modes(found.wall), modes(found.far)
+    a, b = modes(body.wall), modes(body.far)
     base = harmonic(a, b, across().eta)
     c, last = base, np.inf
     for _ in range(MOST_STEPS):
@@ -108,11 +104,10 @@ class Targets:
 
 def make_targets(strips: Strips, count: int) -> Targets:
     """Return the inputs and answers of `strips` and their mirror images, with `count` basis functions."""
-    other = strips.mirrored()
-    pairs = ((strips.wall, other.wall), (strips.far, other.far), (strips.residual, other.residual))
-    both = Strips(*(np.concatenate(pair) for pair in pairs))
-    channels, scalars, size = encode(both.wall, both.far)
-    inner = np.array([to_columns(r.T).T[:, 1:-1] for r in both.residual])
+    # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
+    wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
+    channels, scalars, size = encode(wall, far)
+    inner = np.array([to_columns(r.T).T[:, 1:-1] for r in residual])
     inner /= (size**2)[:, None, None]
     product = _h1_product()
     rows = inner[:, ::4].reshape(-1, inner.shape[2])  # every fourth column tells as much
