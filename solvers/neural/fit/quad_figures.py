@@ -43,7 +43,7 @@ def held_out_figures(answers: Grids, base: Grids, winslow: Grids, variational: G
 
 
 def angles(z: Grids) -> tuple[Floats, Floats]:
-    """Return the largest angle and the mean of cells' largest (m,) of grids (m, n, n), degrees; 360 if folded."""
+    """Return largest angles and means of cells' largest (m,), degrees, of grids (m, n, n); 360 if folded."""
     least, most = (np.degrees(value.numpy()) for value in extremes(torch.from_numpy(z)))
     folded = (least <= 0.0).any((1, 2)) | (most >= 180.0).any((1, 2))
     return np.where(folded, 360.0, most.max((1, 2))), np.where(folded, 360.0, most.mean((1, 2)))
