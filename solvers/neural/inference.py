@@ -108,10 +108,10 @@ def _by_best(topology: Topology, boundaries: Sequence[Boundary]) -> list[Solutio
 
 def _by_bodies(boundary: Boundary, why: str) -> Solution | None:
     """Return the grid by `hole-o` of a compact body, None where that has folds."""
+    from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quad.encoding import LATENT
     from meshonet.solvers.neural.quad.o_grids import compact
     from meshonet.solvers.neural.quad.unrolled import AROUND
-    from meshonet.solvers.pipeline.coarse import thinned
 
     if boundary.ni < LATENT or not compact(boundary):
         return None

@@ -13,6 +13,7 @@ from solver_shapes import arch, hexagon, ring, segment, wrench
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.operator import in_batches
@@ -21,7 +22,6 @@ from meshonet.solvers.neural.quad.edges import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER
 from meshonet.solvers.neural.registry import load
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
 
 SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
 

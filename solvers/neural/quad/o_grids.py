@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.resample import grids as resample
 from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features
 from meshonet.solvers.neural.quad.inside import inside
 from meshonet.solvers.neural.quad.network import CHUNK, Network
 from meshonet.solvers.neural.quad.picard import AFTER, approached
 from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, even, factors, rolled
-from meshonet.solvers.pipeline import coarse
 
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
 
@@ -110,7 +110,7 @@ def compact(boundary: Boundary) -> bool:
 def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
     """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
     pairs = zip(grids, boundaries, strict=True)
-    nodes = [coarse.evaluate(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
+    nodes = [resample.evaluate(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
     return np.stack([np.moveaxis(grid, -1, 0) for grid in nodes])
 
 

@@ -10,11 +10,11 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
 from meshonet.solvers.neural.quad.edges import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
-from meshonet.solvers.pipeline.coarse import thinned
 
 Counts: TypeAlias = tuple[int, int]
 """Nodes along xi and eta."""
