@@ -162,7 +162,7 @@ class _HighModes:
 
     def _felt(self, depth: Floats) -> list[tuple[int, int]]:
         """Return, highest octave of modes first, how many levels feel it and how many modes it ends."""
-        found: list[tuple[int, int]] = []
+        octaves: list[tuple[int, int]] = []
         strength = np.abs(self.ahead) + np.abs(self.behind[::-1])
         begin = 0
         while begin < len(strength):
@@ -170,6 +170,6 @@ class _HighModes:
             end = min(begin + low, len(strength))
             total = float(strength[begin:end].sum())
             felt = np.log(max(total / FAINT, 1.0)) / (low * self.height)
-            found.append((int(np.searchsorted(depth, felt)), end))
+            octaves.append((int(np.searchsorted(depth, felt)), end))
             begin = end
-        return found[::-1]
+        return octaves[::-1]

@@ -44,10 +44,10 @@ def columns(modes: Complexes) -> Floats:
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
     gain, unit = _transform(columns_for(modes.shape[1] // 2))
-    found = np.zeros((2 * len(unit), 2, wide))
+    samples = np.zeros((2 * len(unit), 2, wide))
     if count:
-        fourier_columns(np.ascontiguousarray(modes), gain, unit, found)
-    return found
+        fourier_columns(np.ascontiguousarray(modes), gain, unit, samples)
+    return samples
 
 
 @lru_cache(maxsize=16)

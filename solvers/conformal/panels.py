@@ -48,7 +48,7 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     list of Panel
         without gaps, outwards, ending at `last`; empty when none is worth it.
     """
-    found: list[Panel] = []
+    chosen: list[Panel] = []
     distance = NEAREST
     while spread + distance < height:
         far = spread + 2.0 * distance
@@ -56,11 +56,11 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
         start = max(int(ends[0]), first)
         stop = last if far >= height else min(int(ends[1]), last)
         if stop - start >= WORTH * NODES:
-            found.append(_panel(eta, start, stop))
+            chosen.append(_panel(eta, start, stop))
         elif stop > start:
-            found.clear()  # too few levels here: they and all before them are evaluated themselves
+            chosen.clear()  # too few levels here: they and all before them are evaluated themselves
         distance *= 2.0
-    return found
+    return chosen
 
 
 def _panel(eta: Floats, start: int, stop: int) -> Panel:

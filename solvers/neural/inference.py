@@ -103,7 +103,9 @@ def _by_best(topology: Topology, boundaries: Sequence[Boundary]) -> list[Solutio
         return [solve_automatic(boundary, solve, "variational") for boundary in boundaries]
     solutions = [solve_automatic(boundary, solve, "auto") for boundary in boundaries]
     note = "no shipped model makes c grids: this one is {}"
-    return [replace(one, notes=(note.format(one.method), *one.notes)) for one in solutions]
+    return [
+        replace(solution, notes=(note.format(solution.method), *solution.notes)) for solution in solutions
+    ]
 
 
 def _by_bodies(boundary: Boundary, why: str) -> Solution | None:
@@ -128,9 +130,9 @@ def _by_bodies(boundary: Boundary, why: str) -> Solution | None:
     return replace(solution, notes=(f"{why}: hole-o used",))
 
 
-def _refuse(**given: object) -> None:
+def _refuse(**parameters: object) -> None:
     """Raise InputError for parameters that C grids, which no network makes, have no use for."""
-    for name, value in given.items():
+    for name, value in parameters.items():
         if value is not None:
             raise InputError(
                 f"{{{name}}} {value} is of no use to a c grid: it is marched, no model makes it",

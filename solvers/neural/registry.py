@@ -105,8 +105,8 @@ def load(name: str | Path) -> Operator:
 @lru_cache(maxsize=4)
 def _load(path: Path, _modified: int) -> Operator:
     kind, header, arrays = read_model(path)
-    told = header.get("name")
-    name = told if isinstance(told, str) and told.isprintable() else path.stem
+    own = header.get("name")
+    name = own if isinstance(own, str) and own.isprintable() else path.stem
     module, made = OPERATORS[kind]
     cls: type[Operator] = getattr(importlib.import_module(f"{__package__}.{module}"), made)
     try:

@@ -81,7 +81,7 @@ def _shares(near: Tensor, by: Tensor) -> Tensor:
     """Return how much (batch, 1, 1) of moves `by` to take from grids `near`; no gradients go through it."""
     start, answer = (torch.stack([z.real, z.imag], 1).detach() for z in (near, near + by))
     where = folded(answer).nonzero()[:, 0]
-    parts = [share(*one) for one in zip(arrays(start[where]), arrays(answer[where]), strict=True)]
+    parts = [share(*pair) for pair in zip(arrays(start[where]), arrays(answer[where]), strict=True)]
     few = torch.tensor(parts, dtype=start.dtype, device=start.device)
     return torch.ones_like(start[:, 0, 0, 0]).index_copy(0, where, few)[:, None, None]
 
@@ -122,9 +122,9 @@ def interpolated(sides: Any, laws: Any) -> Tensor:
 
 
 def _laws(sides: Any) -> tuple[Tensor, ...]:
-    found = []
+    fractions = []
     for side in sides:
         steps = side[..., 1:] - side[..., :-1]
         along = torch.cumsum(torch.hypot(steps[:, 0], steps[:, 1]), -1)
-        found.append(torch.cat([torch.zeros_like(along[:, :1]), along / along[:, -1:]], -1))
-    return tuple(found)
+        fractions.append(torch.cat([torch.zeros_like(along[:, :1]), along / along[:, -1:]], -1))
+    return tuple(fractions)

@@ -29,9 +29,9 @@ def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
     few, some = coarse[where], tuple(side[where] for side in sides)
     straight = [
         mended(planes[0], planes[1:-1], planes[-1])
-        for planes in zip(*(arrays(one) for one in (few, *some, nodes[where])), strict=True)
+        for planes in zip(*(arrays(planes) for planes in (few, *some, nodes[where])), strict=True)
     ]
-    curved = np.stack([np.ones(few.shape[2:]) if one is None else 1.0 - one for one in straight])
+    curved = np.stack([np.ones(few.shape[2:]) if lines is None else 1.0 - lines for lines in straight])
     kept = array_like(curved, coarse, torch)
     return nodes.index_copy(0, where, _evaluated(few, some, kept[:, None]))
 
@@ -56,7 +56,7 @@ def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None 
     nodes = low @ values + high @ bends
 
     south, north, west, east = sides
-    felt = [(low @ one @ line.mT)[:, None] for one in inwards(coarse, torch)]
+    felt = [(low @ share @ line.mT)[:, None] for share in inwards(coarse, torch)]
     missed = (west - nodes[:, :, 0])[:, :, None], (east - nodes[:, :, -1])[:, :, None]
     nodes = nodes + felt[2] * missed[0] + felt[3] * missed[1]
     missed = (south - nodes[..., 0])[..., None], (north - nodes[..., -1])[..., None]

@@ -81,11 +81,11 @@ def fit(
     """
     optimiser = _optimiser(task, plan)
     state = _State()
-    found = load_checkpoint(checkpoint, facts) if resume else None
-    if found is not None:
-        task.load_state_dict({**task.state_dict(), **found["task"]})
-        optimiser.load_state_dict(found["optimiser"])
-        state = _State(**found["state"])
+    saved = load_checkpoint(checkpoint, facts) if resume else None
+    if saved is not None:
+        task.load_state_dict({**task.state_dict(), **saved["task"]})
+        optimiser.load_state_dict(saved["optimiser"])
+        state = _State(**saved["state"])
     run = _wrapped(task, plan, team)
     begun, first = time.perf_counter(), state.epoch
     while state.epoch < plan.epochs:

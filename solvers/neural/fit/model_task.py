@@ -65,8 +65,8 @@ class ModelTask(Task):
     def figures(self, epoch: int) -> dict[str, Any]:
         """Return the epoch, and what the model does on training and on test grids."""
         operator, own = self.operator(), self.samples
-        found = {name: judged(operator, own.pick(own.where(name))) for name in ("train", "test")}
-        return {"epoch": epoch, **{name: figures for name, figures in found.items() if figures}}
+        parts = {name: judged(operator, own.pick(own.where(name))) for name in ("train", "test")}
+        return {"epoch": epoch, **{name: figures for name, figures in parts.items() if figures}}
 
     def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
         """Write the model file: float32 arrays."""

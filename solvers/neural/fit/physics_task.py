@@ -43,13 +43,13 @@ class PhysicsTask(ModelTask):
         """Return the parts of the loss over the geometries `rows`."""
         net = {name: value[rows] for name, value in self.named_parameters()}
         inner, outer = self._drawn(step)
-        found = self._plain(net, self.places[outer])
-        boundary = ((found - self.nodes[rows][:, outer]) ** 2).sum(-1).mean()
+        answer = self._plain(net, self.places[outer])
+        boundary = ((answer - self.nodes[rows][:, outer]) ** 2).sum(-1).mean()
         winslow = (self._residual(net, inner) ** 2).sum(-1).mean()
         data = 0.0 * boundary
         if len(self.known):
-            found = self._plain(net, self.places[self.known])
-            data = ((found - self.nodes[rows][:, self.known]) ** 2).sum(-1).mean()
+            answer = self._plain(net, self.places[self.known])
+            data = ((answer - self.nodes[rows][:, self.known]) ** 2).sum(-1).mean()
         return torch.stack([winslow, self.model.rim * boundary, self.model.data * data])
 
     def _drawn(self, step: int) -> tuple[Tensor, Tensor]:

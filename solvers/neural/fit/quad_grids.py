@@ -38,7 +38,8 @@ class Quads:
         return len(self.base)
 
     def __getitem__(self, rows: Any) -> Quads:
-        return Quads(*(grids[rows] for grids in self.grids()), around=self.around)
+        base, step, winslow, variational = (grids[rows] for grids in self.grids())
+        return Quads(base, step, winslow, variational, self.around)
 
     def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
         """Return base, step, Winslow's and variational grids."""
@@ -112,8 +113,11 @@ def _unrolled(best: Complexes, solved: Complexes) -> Quads:
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
     """Return domains by their grids, the base transfinite."""
     near, step = (planes[:, 0] + 1j * planes[:, 1] for planes in approached(base, around))
-    single = (torch.from_numpy(z.astype(np.complex64)) for z in (near, step, winslow, variational))
-    return Quads(*single, around=around)
+    return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
+
+
+def _single(z: Complexes) -> Tensor:
+    return torch.from_numpy(z.astype(np.complex64))
 
 
 def _rim(nodes: Floats, sides: slice) -> bytes:

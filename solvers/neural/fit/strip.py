@@ -108,7 +108,7 @@ class StripTask(Task):
         """Write the model file: float16 weights, the basis in float32."""
         arrays = {key: value.cpu().numpy().astype(np.float16) for key, value in self.net.state_dict().items()}
         arrays["basis"] = self.basis.astype(np.float32)
-        made = {"scale": self.scale, "recipe": recipe, "figures": figures}
+        made: dict[str, Any] = {"scale": self.scale, "recipe": recipe, "figures": figures}
         write_model(path, STRIP, arrays, path.stem, "o", **made)
 
 

@@ -65,7 +65,7 @@ class Architecture:
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
         """Return the inputs of a batch of boundaries, each array with the batch first."""
-        return {"sensors": np.array([sensors(one, self.sensors) for one in boundaries])}
+        return {"sensors": np.array([sensors(boundary, self.sensors) for boundary in boundaries])}
 
     def check(self, w: Weights, inputs: Weights) -> None:
         """Raise InputError for boundaries that the model cannot answer; there are none."""

@@ -74,8 +74,3 @@ def gelu(xp: Any, x: Any) -> Any:
     if xp is not np:  # one pass over memory, and one for the gradient
         return xp.nn.functional.gelu(x, approximate="tanh")
     return 0.5 * x * (1.0 + xp.tanh(0.7978845608028654 * (x + 0.044715 * x * x * x)))
-
-
-def count(shapes: Shapes) -> int:
-    """Return how many numbers arrays of these shapes hold."""
-    return int(sum(np.prod(shape, dtype=np.int64) for shape in shapes.values()))

@@ -76,7 +76,7 @@ class MeshONetHard(Architecture):
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
         """Return mean and spread of the sensors, size and modes (nodes, modes) of the differences."""
-        seen = np.array([sensors(one, self.sensors) for one in samples.boundaries()])
+        seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
         size = np.sqrt((targets**2).mean())
         fixed = {
@@ -127,9 +127,9 @@ def _modes(targets: Floats, count: int) -> Floats:
     """
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
-    found = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])
+    largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])
     modes: Floats = np.zeros((rows.shape[1], count))
-    modes[:, : len(found)] = found.T
+    modes[:, : len(largest)] = largest.T
     return modes
 
 

@@ -89,8 +89,10 @@ class MGNet(Architecture):
         away = np.sqrt(((seen - w["fixed/sensors"][k]) ** 2).sum(-1)).max(axis=1) / w["fixed/size"][k, 0]
         if away.max() > SAME:
             known = len(w["fixed/sensors"])
-            told = f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
-            raise InputError(told, "train it on this one too: it has a network for each geometry")
+            problem = (
+                f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
+            )
+            raise InputError(problem, "train it on this one too: it has a network for each geometry")
 
     def features(self, xp: Any, points: Any) -> Any:
         """Return what the networks see at places (p, 2)."""

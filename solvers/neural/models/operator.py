@@ -11,13 +11,14 @@ import numpy as np
 
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.conformal.chebyshev import barycentric, points, weights
 from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Weights
-from meshonet.solvers.neural.models.sensors import at_nodes, square
+from meshonet.solvers.neural.models.sensors import square
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import architecture, name_of, settings_of
 from meshonet.solvers.solution import Solution
@@ -118,7 +119,9 @@ class PaperOperator(Operator):
         self.check([boundary])
         ni, nj = boundary.ni, boundary.nj
         # a native model answers on the nodes of the training grids, so these are the ones it sees
-        known = at_nodes(boundary, self.frame.ni, self.frame.nj) if self.model.native else boundary
+        known, frame = boundary, self.frame
+        if self.model.native and (ni, nj) != (frame.ni, frame.nj):
+            known = thinned(boundary, frame.ni, frame.nj)
         inputs = {name: value.astype(np.float32) for name, value in self.model.encode([known]).items()}
         self.model.check(self.weights, inputs)
         if self.model.native:

@@ -22,21 +22,11 @@ def sensors(boundary: Boundary, count: int) -> Floats:
         return np.concatenate([_along(boundary.south, inner), _along(boundary.north, count - inner)])
     place = 4.0 * np.arange(count) / count
     sides = (boundary.south, boundary.east, boundary.north[::-1], boundary.west[::-1])
-    found = np.empty((count, 2))
+    points = np.empty((count, 2))
     for k, side in enumerate(sides):
         own = (place >= k) & (place < k + 1)
-        found[own] = _at(side, place[own] - k)
-    return found
-
-
-def at_nodes(boundary: Boundary, ni: int, nj: int) -> Boundary:
-    """Return the boundary at ni x nj nodes, equal steps of xi and eta; between its own on straight lines."""
-    if (boundary.ni, boundary.nj) == (ni, nj):
-        return boundary
-    xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)
-    south, north = (_at(side, xi) for side in (boundary.south, boundary.north))
-    west, east = (_at(side, eta) for side in (boundary.west, boundary.east))
-    return Boundary(south, north, west, east, boundary.topology, name=boundary.name)
+        points[own] = _at(side, place[own] - k)
+    return points
 
 
 def square(ni: int, nj: int) -> Floats:

@@ -67,9 +67,9 @@ class Canonical:
         z = z.T if transposed else z
         z = z[:: -1 if along else 1, :: -1 if across else 1]
         z = self.origin + self.unit * (z.conj() if _mirrors(self.element) else z)
-        given = self.original
-        z[:, 0], z[:, -1] = _complex(given.south), _complex(given.north)
-        z[0], z[-1] = (z[0], z[0]) if given.topology == "o" else (_complex(given.west), _complex(given.east))
+        own = self.original
+        z[:, 0], z[:, -1] = _complex(own.south), _complex(own.north)
+        z[0], z[-1] = (z[0], z[0]) if own.topology == "o" else (_complex(own.west), _complex(own.east))
         return np.stack([z.real, z.imag])
 
 

@@ -47,9 +47,9 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
         grid_features(near, step, seen)
         start = near.copy()
         add_answers(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
-        for one, other in () if head == WINSLOW else zip(near, start, strict=True):
-            if (part := share(other, one)) < 1.0:
-                one[:] = other + part * (one - other)
+        for grid, before in () if head == WINSLOW else zip(near, start, strict=True):
+            if (part := share(before, grid)) < 1.0:
+                grid[:] = before + part * (grid - before)
         frame_put_back(planes, near, unit, factors)
     return _nearer(base, edges) if head == WINSLOW else base
 
@@ -89,4 +89,4 @@ def share(start: Floats, answer: Floats) -> float:
     if count_folded(answer.transpose(1, 2, 0)) == 0:
         return 1.0
     tried = ((part, start + part * (answer - start)) for part in SHARES)
-    return next((part for part, one in tried if count_folded(one.transpose(1, 2, 0)) == 0), 1.0)
+    return next((part for part, grid in tried if count_folded(grid.transpose(1, 2, 0)) == 0), 1.0)

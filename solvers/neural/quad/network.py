@@ -55,10 +55,10 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
     blocks : residual blocks on each.
     heads : displacement fields that it answers with.
     """
-    found: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
+    arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
 
     def layer(name: str, into: int, out: int, size: int = 3) -> None:
-        found[f"{name}.weight"], found[f"{name}.bias"] = (out, into, ORDER, size, size), (out,)
+        arrays[f"{name}.weight"], arrays[f"{name}.bias"] = (out, into, ORDER, size, size), (out,)
 
     for level, (fine, coarse) in enumerate(pairwise(widths)):
         layer(f"down.{level}", fine, coarse)
@@ -67,8 +67,8 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
         for part in ("before", "after")[: 1 if level == len(widths) - 1 else 2]:
             for k, half in product(range(blocks[level]), "ab"):
                 layer(f"{part}.{level}.{k}.{half}", width, width)
-    found["project"] = (heads, 2, widths[0])
-    return found
+    arrays["project"] = (heads, 2, widths[0])
+    return arrays
 
 
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:

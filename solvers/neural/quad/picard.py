@@ -74,9 +74,9 @@ def approach(
         inner = left @ ((left @ missed @ right) / (alpha * slow[:, None] + gamma * fast)) @ right
         square = (inner**2).mean((1, 2, 3))[:, None, None, None]
         taken = square < GROWTH * size  # and a number
-        found = _inside(inner, xp, around)
-        move = found if harmonic or k == 1 else _extrapolated(found, step, move, xp)
-        move, step = (xp.where(taken, one, 0.0 * step) for one in (move, found))
+        correction = _inside(inner, xp, around)
+        move = correction if harmonic or k == 1 else _extrapolated(correction, step, move, xp)
+        move, step = (xp.where(taken, value, 0.0 * step) for value in (move, correction))
         size, p = xp.where(taken, square, size), p + move
     if around:
         p, step = xp.concatenate([p, p[:, :, :1] + turn], 2), xp.concatenate([step, step[:, :, :1]], 2)
@@ -100,11 +100,11 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
     return last
 
 
-def _extrapolated(found: Any, step: Any, move: Any, xp: Any) -> Any:
+def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
     """Return the move to where steps vanish that were `step` before the last `move`, and `found` after."""
-    change = found - step
-    share = (change * found).sum((1, 2, 3)) / ((change**2).sum((1, 2, 3)) + TINY)
-    return found - xp.clip(share, -1.0, 1.0)[:, None, None, None] * (change + move)
+    change = correction - step
+    share = (change * correction).sum((1, 2, 3)) / ((change**2).sum((1, 2, 3)) + TINY)
+    return correction - xp.clip(share, -1.0, 1.0)[:, None, None, None] * (change + move)
 
 
 def nodes_after(n: int) -> int:
@@ -149,8 +149,8 @@ def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tup
     body = p[:, :, 2:-2] if around else p[:, :, 1:-1]
     bends = _second(p, share, xp, around)[..., 1:-1], _across(_second, body, share, xp)
     if linear:
-        one = 1.0 + 0.0 * p[:, :1, :1, :1]
-        return bends[0] + bends[1], one, one
+        unit = 1.0 + 0.0 * p[:, :1, :1, :1]
+        return bends[0] + bends[1], unit, unit
     slopes = _first(p, share, xp, around)
     u, v = slopes[..., 1:-1], _across(_first, body, share, xp)
     twist = _across(_first, slopes, share, xp)

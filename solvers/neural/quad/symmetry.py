@@ -80,10 +80,10 @@ def _seen(element: Integers) -> Floats:
     turn = element.astype(np.float64)
     axes = np.abs(turn)
     sign = axes[0, 0] * turn[0, 0] * turn[1, 1] + axes[0, 1] * turn[0, 1] * turn[1, 0]
-    one = np.ones((1, 1))
+    unit = np.ones((1, 1))
     return _sum(
-        np.kron(turn.T, turn.T), np.kron(turn.T, axes.T), axes.T, turn.T, sign * one, one, one, turn.T,
-        turn.T, one,
+        np.kron(turn.T, turn.T), np.kron(turn.T, axes.T), axes.T, turn.T, sign * unit, unit, unit, turn.T,
+        turn.T, unit,
     )  # fmt: skip
 
 
