@@ -90,7 +90,6 @@ MESHONET_INLINE float log_float(float x)
 #define MOST EXP_MOST_float
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
@@ -101,7 +100,6 @@ MESHONET_INLINE float log_float(float x)
 #define MOST EXP_MOST_double
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
@@ -119,7 +117,6 @@ MESHONET_INLINE float log_float(float x)
 #define MOST EXP_MOST_float
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
@@ -130,7 +127,6 @@ MESHONET_INLINE float log_float(float x)
 #define MOST EXP_MOST_double
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
@@ -144,11 +140,9 @@ MESHONET_INLINE float log_float(float x)
     {                                                                                                                 \
         const Convolution *c = &l->c;                                                                                 \
         const T *x = l->x, *w = l->w, *bias = l->bias, *add = l->add;                                                 \
-        T *scratch = l->scratch, *out = l->out;                                                                       \
+        T *out = l->out;                                                                                              \
         if (l->kind == CONVOLVE)                                                                                      \
             convolve##SUFFIX(x, c, w, bias, add, out);                                                                \
-        else if (l->kind == WINOGRAD)                                                                                 \
-            winograd##SUFFIX(x, c, w, bias, add, scratch, out);                                                       \
         else if (l->kind == ACTIVATE)                                                                                 \
             activate##SUFFIX(x, c->batch, c->m, c->n, c->inputs, l->around, c->size, out);                            \
         else                                                                                                          \
