@@ -35,7 +35,7 @@ NUMERICS = (
 OWN_FLAGS = {
     "conformal/strip_rows.c": ["-fno-associative-math"],  # order matters to argument reduction
 }
-GLUE = [] if WINDOWS else ["-O1", "-g0"]
+GLUE = [] if WINDOWS else ["-O0", "-g0"]  # checks and calls: nothing to gain
 LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up
 
 
