@@ -62,18 +62,18 @@ _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it
 
 def rows() -> list[dict[str, str]]:
     """Return a row for each format, by the table's headings."""
-    return [dict(zip(_HEAD, _row(found), strict=True)) for found in formats()]
+    return [dict(zip(_HEAD, _row(record), strict=True)) for record in formats()]
 
 
 def markdown() -> str:
     """Return the table in Markdown."""
-    lines = [_HEAD, ("---",) * len(_HEAD), *(_row(found) for found in formats())]
+    lines = [_HEAD, ("---",) * len(_HEAD), *(_row(record) for record in formats())]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def plain() -> str:
     """Return the table in columns, for a terminal."""
-    lines = [_HEAD, *(_row(found) for found in formats())]
+    lines = [_HEAD, *(_row(record) for record in formats())]
     widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
     return "\n".join(
         "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines
@@ -85,17 +85,17 @@ def page() -> str:
     return f"{_PAGE}{markdown()}\n{_REST}"
 
 
-def _row(found: Format) -> tuple[str, ...]:
+def _row(record: Format) -> tuple[str, ...]:
     return (
-        found.name,
-        " ".join(found.suffixes),
-        _what(found.read_grids is not None, found.read_shapes is not None),
-        _what(found.write_grids is not None, found.write_boundaries is not None),
-        "yes" if found.names_patches else "",
-        "yes" if found.write_extruded is not None else "",
-        "yes" if found.many else "",
-        found.description,
-        " ".join("/".join(row) for row in found.choices),
+        record.name,
+        " ".join(record.suffixes),
+        _what(record.read_grids is not None, record.read_shapes is not None),
+        _what(record.write_grids is not None, record.write_boundaries is not None),
+        "yes" if record.names_patches else "",
+        "yes" if record.write_extruded is not None else "",
+        "yes" if record.many else "",
+        record.description,
+        " ".join("/".join(row) for row in record.choices),
     )
 
 

@@ -90,8 +90,8 @@ def format_named(name: str) -> Format:
     family, _, own = word.partition("-")
     if own and family in TABLE:  # as in plot3d-binary, which was a format of its own that read any other too
         record = _record(family)
-        found = record.with_options(f"{own}:{options}")
-        return found if options else replace(found, read_grids=record.read_grids)
+        variant = record.with_options(f"{own}:{options}")
+        return variant if options else replace(variant, read_grids=record.read_grids)
     raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
 
 
@@ -114,9 +114,9 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
     if len(claimed) == 1:
         return claimed[0]
     head = source.head()
-    for found in claimed or formats():
-        if found.sniff is not None and found.sniff(head):
-            return found
+    for record in claimed or formats():
+        if record.sniff is not None and record.sniff(head):
+            return record
     if claimed:
         return claimed[-1]
     what = f"ending {source.suffix!r} is" if source.suffix else "content is"
@@ -153,7 +153,7 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         if getattr(record, f"write_{kind}") is not None:
             plain = ":" not in record.name
             return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
-    able = ", ".join(found.name for found in formats() if getattr(found, f"write_{kind}") is not None)
+    able = ", ".join(record.name for record in formats() if getattr(record, f"write_{kind}") is not None)
     raise InputError(
         f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
     )
@@ -177,15 +177,15 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
         yield naca(text[len(_DESIGNATION) :])
         return
     source = open_source(text)
-    found = _selectable(source, format_of(source, fmt))
-    with _blamed(source):
-        if found.read_shapes is not None:
-            yield from found.read_shapes(source)
-        elif found.read_grids is not None:
-            for grid in found.read_grids(source):
+    record = _selectable(source, format_of(source, fmt))
+    with _named_errors(source):
+        if record.read_shapes is not None:
+            yield from record.read_shapes(source)
+        elif record.read_grids is not None:
+            for grid in record.read_grids(source):
                 yield boundary_of(grid)
         else:
-            raise _unreadable(found)
+            raise _unreadable(record)
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
@@ -203,24 +203,24 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
             source=text,
         )
     source = open_source(text)
-    found = _selectable(source, format_of(source, fmt))
-    with _blamed(source):
-        if found.read_grids is not None:
-            yield from found.read_grids(source)
-        elif found.read_shapes is not None:
+    record = _selectable(source, format_of(source, fmt))
+    with _named_errors(source):
+        if record.read_grids is not None:
+            yield from record.read_grids(source)
+        elif record.read_shapes is not None:
             raise InputError(
                 "holds a boundary, not a grid",
                 f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
             )
         else:
-            raise _unreadable(found)
+            raise _unreadable(record)
 
 
 def _is_designation(text: str) -> bool:
     return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
 
 
-class _blamed:  # noqa: N801  (a context manager; contextlib's form would swallow the generator's own close)
+class _named_errors:  # noqa: N801  (a context manager; contextlib's form would swallow the generator's own close)
     """Names the source in errors that do not, and turns the system's errors into ours."""
 
     def __init__(self, source: Source) -> None:
@@ -233,18 +233,20 @@ class _blamed:  # noqa: N801  (a context manager; contextlib's form would swallo
         if isinstance(error, InputError):
             error.source = error.source or self.source.name
         elif isinstance(error, (OSError, MemoryError)) and not isinstance(error, MeshonetError):
-            told = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            raise InputError(f"cannot be read ({told})", "check the file", source=self.source.name) from error
+            reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+            raise InputError(
+                f"cannot be read ({reason})", "check the file", source=self.source.name
+            ) from error
 
 
-def _selectable(source: Source, found: Format) -> Format:
-    if source.split and found.name != "hdf5":
+def _selectable(source: Source, record: Format) -> Format:
+    if source.split and record.name != "hdf5":
         raise InputError(
-            f"{found.name} files do not say which samples are to {source.split}",
+            f"{record.name} files do not say which samples are to {source.split}",
             f"leave #{source.split} out",
             source=source.name,
         )
-    return found
+    return record
 
 
 def _record(name: str) -> Format:
@@ -261,7 +263,7 @@ def _known() -> str:
     return "known endings: " + " ".join(sorted({suffix for row in TABLE.values() for suffix in row.suffixes}))
 
 
-def _unreadable(found: Format) -> InputError:
+def _unreadable(record: Format) -> InputError:
     return InputError(
-        f"{found.name} files can only be written", "give a grid or a boundary in another format"
+        f"{record.name} files can only be written", "give a grid or a boundary in another format"
     )

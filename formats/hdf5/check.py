@@ -246,8 +246,8 @@ def opened(source: Source) -> Iterator[h5py.File]:
     _check_heaps(source)
     with contextlib.ExitStack() as stack:
         try:
-            given = source.path or stack.enter_context(source.open())
-            file = stack.enter_context(h5py.File(given, "r", locking="best-effort"))
+            target = source.path or stack.enter_context(source.open())
+            file = stack.enter_context(h5py.File(target, "r", locking="best-effort"))
         except Exception as error:  # a damaged file makes h5py raise almost anything
             raise InputError(
                 f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"

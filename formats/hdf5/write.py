@@ -131,8 +131,8 @@ class Writer:
         for name, values in arrays.items():
             shape = self._shapes.setdefault(name, values.shape)
             if values.shape != shape:
-                told = f"{name} of sample {self._count} has shape {values.shape}"
-                raise InputError(told, f"the first has {shape}")
+                problem = f"{name} of sample {self._count} has shape {values.shape}"
+                raise InputError(problem, f"the first has {shape}")
 
     def _hold(self, name: str, value: Floats | str) -> None:
         """Keep the entry of this sample for the next block; a text of nothing has none."""
