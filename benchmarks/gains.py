@@ -17,25 +17,25 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded, measure
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.solution import Solution
 
 Way = Callable[[Boundary], Solution]
 
 ANGLES = (
-    "| way | valid % | max and mean not above Winslow's % | max / mean angle, averaged "
-    "| gain in the mean %, of all / median | gain in the max % | CPU ms, median |",
+    "| method | valid % | no worse than Winslow % | max / mean angle, average "
+    "| gain in mean angle %, all / median | gain in largest angle % | CPU ms, median |",
     7 * "| --- " + "|",
 )
 DISTANCES = (
-    "\n| way | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
+    "\n| method | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
     3 * "| --- " + "|",
 )
 
 
 def operate(model: str, polish: int, boundary: Boundary) -> Solution:
     """Return the solution of `boundary` alone by a quad model."""
-    return infer_quads([boundary], model, polish)[0]
+    return load(model).solve([boundary], polish)[0]
 
 
 def figures(way: Way, boundary: Boundary) -> tuple[float, float, float, float]:
@@ -62,7 +62,7 @@ def gains(title: str, boundaries: Sequence[Boundary], ways: Mapping[str, Way]) -
             f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
             f"| {100 * of_mean:.0f} / {100 * each:.0f} | {100 * of_max:.0f} | {1e3 * np.median(spent):.1f} |"
         )
-    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; gains are over these.")
+    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; the gains are over these.")
     return "\n".join(lines)
 
 

@@ -7,10 +7,11 @@ nothing for formats that are not used.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 from meshonet.formats.format import Format
 from meshonet.formats.mesh.recover_topology import boundary_of
@@ -20,6 +21,7 @@ from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.shapes.shape import Shape
 
 Kind = Literal["grids", "boundaries"]
+T = TypeVar("T")
 
 
 class Row(NamedTuple):
@@ -160,9 +162,10 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 
 def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
-    """Yield what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
+    """Return what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
 
-    The outer edges of a grid are boundaries, so a grid file serves too.
+    The outer edges of a grid are boundaries, so a grid file serves too. Behind a record that cannot be read,
+    for which it raises, the iterator goes on with those that formats can still reach.
 
     Raises
     ------
@@ -174,22 +177,19 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
             format_named(fmt)
         from meshonet.geometry.shapes.airfoil.naca import naca
 
-        yield naca(text[len(_DESIGNATION) :])
-        return
+        return iter([naca(text[len(_DESIGNATION) :])])
     source = open_source(text)
     record = _selectable(source, format_of(source, fmt))
-    with _named_errors(source):
-        if record.read_shapes is not None:
-            yield from record.read_shapes(source)
-        elif record.read_grids is not None:
-            for grid in record.read_grids(source):
-                yield boundary_of(grid)
-        else:
-            raise _unreadable(record)
+    if record.read_shapes is not None:
+        return _Records(source, partial(record.read_shapes, source))
+    if record.read_grids is not None:
+        read = record.read_grids
+        return _Records(source, lambda: map(boundary_of, read(source)))
+    raise _unreadable(record, source)
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
-    """Yield the grids of a path or of ``-``.
+    """Return the grids of a path or of ``-``; the iterator goes on behind a record as `read_shapes` does.
 
     Raises
     ------
@@ -204,39 +204,42 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
         )
     source = open_source(text)
     record = _selectable(source, format_of(source, fmt))
-    with _named_errors(source):
-        if record.read_grids is not None:
-            yield from record.read_grids(source)
-        elif record.read_shapes is not None:
-            raise InputError(
-                "holds a boundary, not a grid",
-                f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
-            )
-        else:
-            raise _unreadable(record)
+    if record.read_grids is not None:
+        return _Records(source, partial(record.read_grids, source))
+    if record.read_shapes is not None:
+        raise InputError(
+            "holds a boundary, not a grid",
+            f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
+            source=source.name,
+        )
+    raise _unreadable(record, source)
 
 
 def _is_designation(text: str) -> bool:
     return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
 
 
-class _named_errors:  # noqa: N801  (a context manager; contextlib's form would swallow the generator's own close)
-    """Names the source in errors that do not, and turns the system's errors into ours."""
+class _Records(Iterator[T]):
+    """The records of a source: names it in errors that do not, and turns the system's errors into ours."""
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
+    def __init__(self, source: Source, records: Callable[[], Iterator[T]]) -> None:
+        self._source, self._read = source, records
+        self._records: Iterator[T] | None = None
 
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, InputError):
-            error.source = error.source or self.source.name
-        elif isinstance(error, (OSError, MemoryError)) and not isinstance(error, MeshonetError):
+    def __next__(self) -> T:
+        try:
+            if self._records is None:
+                self._records = self._read()
+            return next(self._records)
+        except InputError as error:
+            error.source = error.source or self._source.name
+            raise
+        except MeshonetError:
+            raise
+        except (OSError, MemoryError) as error:
             reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            raise InputError(
-                f"cannot be read ({reason})", "check the file", source=self.source.name
-            ) from error
+            problem = f"cannot be read ({reason})"
+            raise InputError(problem, "check the file", source=self._source.name) from error
 
 
 def _selectable(source: Source, record: Format) -> Format:
@@ -263,7 +266,6 @@ def _known() -> str:
     return "known endings: " + " ".join(sorted({suffix for row in TABLE.values() for suffix in row.suffixes}))
 
 
-def _unreadable(record: Format) -> InputError:
-    return InputError(
-        f"{record.name} files can only be written", "give a grid or a boundary in another format"
-    )
+def _unreadable(record: Format, source: Source) -> InputError:
+    problem = f"{record.name} files can only be written"
+    return InputError(problem, "give a grid or a boundary in another format", source=source.name)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
+from operator import call
+from typing import TypeVar
 
 import numpy as np
 
@@ -18,48 +21,61 @@ from meshonet.geometry.blocks.metadata import Origin
 from meshonet.geometry.blocks.patches import Kind, Patch
 from meshonet.geometry.errors import InputError
 
+T = TypeVar("T")
+
 
 def read_shapes(source: Source) -> Iterator[Boundary]:
-    """Yield the boundaries; of a grid dataset, the grids' outer edges as they were stored."""
-    with checked(source) as data:
-        if data.blocks:
-            raise InputError(
-                f"holds grids of {data.blocks} blocks, not boundaries", "give a grid of one block"
-            )
-        for k in data.kept(source.split):
-            with data.place(k):
-                south, north, west, east = (
-                    data.sample(side, k) for side in ("south", "north", "west", "east")
-                )
-                name = data.text("names", k)
-                parts, origin = _patches(data, k), _origin(data, k)
-                yield Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
+    """Return an iterator over the boundaries; of a grid dataset, the grids' outer edges as they were stored.
+
+    It continues after a sample that is not right and raised InputError.
+    """
+    return map(call, _samples(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids.
+    """Return an iterator over the grids; it continues after a sample that is not right.
 
     Raises
     ------
     InputError
         the dataset holds boundaries only, or is not right.
     """
+    return map(call, _samples(source, _grid))
+
+
+def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
+    """Yield functions that read one sample each: what they raise does not end the generator."""
     with checked(source) as data:
-        if "nodes" not in data and not data.blocks:
+        if read is _grid and "nodes" not in data and not data.blocks:
             raise InputError(
                 "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
             )
+        if read is _boundary and data.blocks:
+            raise InputError(
+                f"holds grids of {data.blocks} blocks, not boundaries", "give a grid of one block"
+            )
         for k in data.kept(source.split):
-            with data.place(k):
-                facts = json.loads(data.text("provenance", k) or "{}")
-                if not isinstance(facts, dict):
-                    raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
-                named = _patches(data, k), data.text("names", k), facts, _origin(data, k)
-                if data.blocks:
-                    blocks = (usable(data.sample(f"blocks/{m}", k)) for m in range(data.blocks))
-                    yield Grid(tuple(map(Block, blocks)), named[0], data.connections, *named[1:])
-                else:
-                    yield Grid.from_nodes(usable(data.sample("nodes", k)), data.topology, *named)
+            yield partial(read, data, k)
+
+
+def _boundary(data: Checked, k: int) -> Boundary:
+    with data.place(k):
+        south, north, west, east = (data.sample(side, k) for side in ("south", "north", "west", "east"))
+        name = data.text("names", k)
+        patches, origin = _patches(data, k), _origin(data, k)
+        return Boundary(south, north, west, east, data.topology, patches, name, origin=origin)
+
+
+def _grid(data: Checked, k: int) -> Grid:
+    with data.place(k):
+        facts = json.loads(data.text("provenance", k) or "{}")
+        if not isinstance(facts, dict):
+            raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
+        named = _patches(data, k), data.text("names", k), facts, _origin(data, k)
+        if data.blocks:
+            blocks = (usable(data.sample(f"blocks/{m}", k)) for m in range(data.blocks))
+            return Grid(tuple(map(Block, blocks)), named[0], data.connections, *named[1:])
+        return Grid.from_nodes(usable(data.sample("nodes", k)), data.topology, *named)
 
 
 def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str, ...]]:

@@ -95,7 +95,7 @@ def sniff(head: bytes) -> bool:
 
 def _with_notes(shape: Boundary | Outline | Airfoil, notes: tuple[str, ...]) -> Shape:
     if isinstance(shape, Boundary):
-        return replace(shape, notes=notes)
+        return replace(shape, notes=(*notes, *shape.notes))
     shape.notes = (*notes, *shape.notes)
     return shape
 

@@ -10,7 +10,7 @@ from command_line import Meshonet
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.solvers.neural.inference import infer
-from meshonet.solvers.neural.quads.operator import in_batches
+from meshonet.solvers.neural.operator import in_batches
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """How many boundaries went into each call of the solver."""
     counts: list[int] = []
     monkeypatch.setattr(
-        "meshonet.solvers.neural.quads.inference.in_batches",
+        "meshonet.solvers.neural.quad.operator.in_batches",
         lambda boundaries, threads: counts.append(len(boundaries)) or in_batches(boundaries, threads),
     )
     return counts
@@ -82,7 +82,7 @@ def test_large_grids_are_solved_a_few_at_a_time(
     solved: list[int],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("meshonet_cli.together.NODES", 2 * 21 * 17)
+    monkeypatch.setattr("meshonet.solvers.pipeline.make_grid.MOST_NODES", 2 * 21 * 17)
     meshonet("infer", arches, "--model", quad_model, "-o", "{index}.vts")
     assert solved == [2, 2, 1]
 
