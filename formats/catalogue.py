@@ -51,13 +51,14 @@ has one plane block:
 | attributes | `format` (`meshonet-boundary` or `meshonet-grid`), `version` 1, `topology` (`quad`, `o`, `c`) |
 | `south`, `north`, `west`, `east` | (n, ni, 2) and (n, nj, 2), the corners shared |
 | `nodes` | (n, ni, nj, 2), of grids |
-| `names`, `split`, `parts`, `provenance` | (n,) texts, where there are any; `parts` JSON lists of `[name, side, start, stop]` |
+| `names`, `split`, `provenance` | (n,) texts, where there are any; `provenance` is JSON |
+| `parts` | (n,) texts, JSON lists of `[name, side, start, stop]` |
 | `parameters`, `sensors` | (n, p) with the attribute `names`; (n, m, 2) |
 
 Version 2, of grids of several blocks or of blocks in space, has `blocks/0`, `blocks/1` ... in place of edges,
-`nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of `parts` go on
-with `block, across, kind`: `across` is the range along the second direction of a side, null for all of it. The
-attribute `connections` is a JSON list of what all samples share: `[block, side, range, donor, donor_side,
+`nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of `parts` go
+on with `block, across, kind`: `across` is the range along the second direction of a side, null for all of it.
+The attribute `connections` is a JSON list of what all samples share: `[block, side, range, donor, donor_side,
 donor_range, orientation, transform]`. A range has the first and last node along each direction of the side;
 `orientation` the donor's direction that runs along each one, counted from 1, negative when reversed;
 `transform` is null, or `{"shift": [...], "turn": [[...]]}` between periodic sides.

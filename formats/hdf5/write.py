@@ -102,7 +102,7 @@ class Writer:
             self._flush()
 
     def _check_size(self, sample: Boundary | Grid) -> None:
-        """Raise InputError when a sample is not as the first one, of which the attributes of the file tell."""
+        """Raise InputError when a sample is not as the first one, which the file's attributes describe."""
         several = _is_of_blocks(sample)
         size = _size_of(sample)
         connections = connections_text(sample.connections) if several else ""
