@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice
 
@@ -36,7 +37,8 @@ class Result:
     quality : of the grid.
     seconds : wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from
         boundary nodes in memory to grid nodes in memory), guard, quality.
-    notes : sentences a user should read, those of boundary and solution among them.
+    notes : sentences a user should read, those of boundary and solution among them; names of parameters
+        stand in braces, for `meshonet.geometry.errors.spelled`.
     history : its cycles, when asked for.
     """
 
@@ -90,11 +92,8 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     shapes = iter(shapes)
     while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
         _solve_together(group, method)
-        for member in group:
-            try:
-                yield _finished(member, method, request)
-            except Exception as error:
-                yield error
+        while group:
+            yield _finished_or_error(group.popleft(), method, request)
 
 
 @dataclass
@@ -106,8 +105,8 @@ class _Member:
     solution: Solution | None = None
 
 
-def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> list[_Member]:
-    group: list[_Member] = []
+def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_Member]:
+    group: deque[_Member] = deque()
     nodes = 0
     for shape in islice(shapes, most):
         begun = time.perf_counter()
@@ -141,7 +140,7 @@ def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Samp
     return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
 
 
-def _solve_together(group: Sequence[_Member], method: Method) -> None:
+def _solve_together(group: Iterable[_Member], method: Method) -> None:
     """Solve those that the method takes in one call; when that fails each is solved in its turn."""
     alike = [
         (member, member.boundary)
@@ -157,6 +156,13 @@ def _solve_together(group: Sequence[_Member], method: Method) -> None:
         for (member, _), solution in zip(alike, solutions, strict=True):
             member.solution = solution
             _add_times(member.seconds, solution, share)
+
+
+def _finished_or_error(member: _Member, method: Method, request: GridRequest) -> Result | Exception:
+    try:
+        return _finished(member, method, request)
+    except Exception as error:
+        return error
 
 
 def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
