@@ -177,9 +177,9 @@ def test_choices_of_options_are_those_of_the_library() -> None:
 
 
 def test_solve_pde_offers_every_method_that_solves() -> None:
-    from meshonet.solvers.method import METHODS, method_named
-
     import re
+
+    from meshonet.solvers.method import METHODS, method_named
 
     found = re.search(r"--method (\S+[|]\S+)", (ROOT / "docs" / "cli.md").read_text())
     offered = found[1].split("|") if found else []
