@@ -39,7 +39,7 @@ class Result:
         boundary nodes in memory to grid nodes in memory), guard, quality.
     notes : sentences a user should read, those of boundary and solution among them; names of parameters
         stand in braces, for `meshonet.geometry.errors.spelled`.
-    history : its cycles, when asked for.
+    history : its cycles, when the request keeps them.
     """
 
     solution: Solution
@@ -80,7 +80,7 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
     """Yield for each of the shapes, in order, its grid or the error that it ended in.
 
-    Shapes are read as results are asked for, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
+    Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
     solves many faster in one call. They do not change one another's grids but in the last digits.
 
     Raises
@@ -132,7 +132,7 @@ def _sampled(shape: Shape, request: GridRequest) -> Boundary:
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
     """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those along a wake included.
 
-    Edges that were given share their nodes out as they are.
+    The nodes of boundaries are distributed as before.
     """
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
@@ -213,4 +213,4 @@ def _changed_first_cells(solution: Solution, checked: Solution) -> tuple[str, ..
     error = worst_first_cell(checked)
     if error < 1e-8:
         return ()
-    return (f"the guard changed first cells: they miss what was asked by up to {error:.1g} of it",)
+    return (f"the guard changed first cells: their heights are off by up to {error:.1g} of what was asked",)
