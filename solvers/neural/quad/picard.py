@@ -101,7 +101,7 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
 
 
 def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
-    """Return the move to where steps vanish that were `step` before the last `move`, and `found` after."""
+    """Return the move to where steps vanish that were `step` before the last `move`, and `correction` after."""
     change = correction - step
     share = (change * correction).sum((1, 2, 3)) / ((change**2).sum((1, 2, 3)) + TINY)
     return correction - xp.clip(share, -1.0, 1.0)[:, None, None, None] * (change + move)
