@@ -67,7 +67,7 @@ class BodyGrids(NetworkGrids):
 
 
 def _inside(wall: Tensor) -> Tensor:
-    """Return the point that `inside.inside` finds, which follows `wall` (n,) as a step of Newton's does."""
+    """Return the point of `inside.inside`; its gradient is that of one step of Newton's method."""
     point = complex(inside(as_numpy(wall).astype(np.complex128)))
     size = (wall.detach() - wall[0].detach()).abs().max()
     curve = (wall - wall[0]) / size
@@ -78,7 +78,7 @@ def _inside(wall: Tensor) -> Tensor:
 
 
 def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
-    """Return the nodes (batch, ni, nj), as `o_grid.evaluate_around` does; the rim is not theirs."""
+    """Return the nodes (batch, ni, nj) that `o_grid.evaluate_around` returns, except on the boundary."""
     m, ni = coarse.shape[1], south.shape[1]
     lines, share = along_lines(coarse, nj, torch)
     shares = array_like(corner_damping.linear(m, ni), share, torch) @ share

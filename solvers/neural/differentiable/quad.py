@@ -62,7 +62,7 @@ def _framed(planes: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:
-    """Return how much (batch, 1, 1) of moves `by` to take from grids `near`; no gradients go through it."""
+    """Return the share (batch, 1, 1) of the moves `by` to take from grids `near`, without gradients."""
     start, answer = (torch.stack([z.real, z.imag], 1).detach() for z in (near, near + by))
     where = folded(answer).nonzero()[:, 0]
     parts = [share(*pair) for pair in zip(arrays(start[where]), arrays(answer[where]), strict=True)]

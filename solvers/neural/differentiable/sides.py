@@ -1,4 +1,4 @@
-"""What differentiable operators take: nodes of sides in batches, and an operator by name or as an object."""
+"""Arguments of differentiable operators: nodes of sides in batches, an operator by name or as an object."""
 
 from __future__ import annotations
 
