@@ -1,6 +1,5 @@
 /* Energy of a patch of a grid and its minimiser; see repair.c. */
-#ifndef MESHONET_REPAIR_H
-#define MESHONET_REPAIR_H
+#pragma once
 #include <stddef.h>
 
 typedef struct {
@@ -22,4 +21,3 @@ double repair_energy(const Patch *patch, double epsilon, double *gx, double *gy,
    cells, or, with `until_valid`, as soon as every corner Jacobian over reference area exceeds `until_valid`. */
 int repair_minimise(const Patch *patch, double epsilon, int most, double still, double until_valid, double *energy,
                     double *smallest, double *work);
-#endif

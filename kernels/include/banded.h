@@ -1,6 +1,5 @@
 /* A symmetric banded matrix, assembled from 2 x 2 blocks of nodes and solved by Cholesky's factors. */
-#ifndef MESHONET_BANDED_H
-#define MESHONET_BANDED_H
+#pragma once
 #include "clones.h"
 #include <math.h>
 #include <stddef.h>
@@ -94,5 +93,3 @@ static void banded_solve(const Banded *a, double *b)
             b[m] -= value * row[m];
     }
 }
-
-#endif
