@@ -26,7 +26,6 @@ import numpy as np
 
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.quality.measure import count_folded
@@ -209,7 +208,7 @@ def unasked(case: Case, name: str, n: int) -> list[float]:
         (elliptic() if name == "auto" else fewer_on_quads(method_named(name))).solve([edges])[0].grid.nodes
     )
     spent = 1e3 * (time.process_time() - begun)
-    wake = wake_nodes(edges.south)
+    wake = edges.wake + 1
     found = figures(nodes, 1.0, wake)
     wall = nodes[wake - 1 : n - wake + 1, :2]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T) / edges.chord
@@ -234,7 +233,7 @@ def measured(case: Case, ni: int, nj: int, first: float) -> list[float]:
         edges = case.make().boundary(sampling)
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
         spent.append(1e3 * (time.process_time() - begun))
-    wake = wake_nodes(edges.south) if edges.topology == "c" else 0
+    wake = edges.wake + 1 if edges.wake else 0
     return [*figures(nodes, first * edges.chord, wake), min(spent)]
 
 

@@ -1,13 +1,14 @@
-"""Which format a file is in: by ``--from``/``--to``, by its ending, by its content.
+"""Which format a file is in: by its name, by its ending, by its content.
 
-The table below is all that is known without loading a format's module, so that starting the program
-costs nothing for formats that are not used.
+The table below is all that is known without loading a format's room, so that starting the program costs
+nothing for formats that are not used.
 """
 
 from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple, TypeVar
@@ -24,87 +25,81 @@ T = TypeVar("T")
 
 
 class Row(NamedTuple):
-    """A format's module and file endings; the endings repeat its record's, and a test holds them equal."""
+    """A format's room and file endings; the endings repeat its record's, and a test holds them equal."""
 
-    module: str
+    room: str
     suffixes: tuple[str, ...]
 
 
 TABLE: dict[str, Row] = {
-    "hdf5": Row("meshonet.formats.hdf5.dataset", (".h5", ".hdf5")),
-    "vts": Row("meshonet.formats.vtk.vts", (".vts",)),
-    "vtm": Row("meshonet.formats.vtk.vtm", (".vtm",)),
-    "vtk": Row("meshonet.formats.vtk.legacy", (".vtk",)),
-    "vtk-ascii": Row("meshonet.formats.vtk.legacy", (".vtk",)),
-    "vtu": Row("meshonet.formats.vtk.vtu", (".vtu",)),
-    "gmsh": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "gmsh-ascii": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "gmsh41": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "gmsh41-ascii": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "cgns": Row("meshonet.formats.cgns.write", (".cgns",)),
-    "openfoam": Row("meshonet.formats.openfoam", (".foam",)),
-    "geo": Row("meshonet.formats.gmsh.geo", (".geo",)),
-    "nmf": Row("meshonet.formats.plot3d.nmf", (".nmf",)),
-    "su2": Row("meshonet.formats.su2.write", (".su2",)),
-    "stl": Row("meshonet.formats.meshio_export", (".stl",)),
-    "ply": Row("meshonet.formats.meshio_export", (".ply",)),
-    "obj": Row("meshonet.formats.meshio_export", (".obj",)),
-    "off": Row("meshonet.formats.meshio_export", (".off",)),
-    "abaqus": Row("meshonet.formats.meshio_export", (".inp",)),
-    "medit": Row("meshonet.formats.meshio_export", (".mesh",)),
-    "plot3d-ascii": Row("meshonet.formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
-    "plot3d-binary": Row("meshonet.formats.plot3d", (".bin", ".xyz", ".p3d")),
-    "plot3d-fortran": Row("meshonet.formats.plot3d", (".ufmt", ".unf")),
-    "dxf": Row("meshonet.formats.outlines.dxf", (".dxf",)),
-    "wkt": Row("meshonet.formats.outlines.vector", (".wkt",)),
-    "geojson": Row("meshonet.formats.outlines.vector", (".geojson", ".json")),
-    "airfoil": Row("meshonet.formats.text.airfoil_dat", (".dat",)),
-    "points": Row("meshonet.formats.text.points", (".csv", ".txt", ".xy")),
-    "png": Row("meshonet.formats.figure.figure", (".png",)),
-    "svg": Row("meshonet.formats.figure.figure", (".svg",)),
-    "pdf": Row("meshonet.formats.figure.figure", (".pdf",)),
-}
+    "hdf5": Row("hdf5", (".h5", ".hdf5")),
+    "vts": Row("vtk", (".vts",)),
+    "vtm": Row("vtk", (".vtm",)),
+    "vtk": Row("vtk", (".vtk",)),
+    "vtu": Row("vtk", (".vtu",)),
+    "gmsh": Row("gmsh", (".msh",)),
+    "cgns": Row("cgns", (".cgns",)),
+    "openfoam": Row("openfoam", (".foam",)),
+    "geo": Row("gmsh", (".geo",)),
+    "nmf": Row("plot3d", (".nmf",)),
+    "su2": Row("su2", (".su2",)),
+    "plot3d": Row("plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat", ".bin", ".ufmt", ".unf")),
+    "dxf": Row("outlines", (".dxf",)),
+    "wkt": Row("outlines", (".wkt",)),
+    "geojson": Row("outlines", (".geojson", ".json")),
+    "airfoil": Row("text", (".dat",)),
+    "points": Row("text", (".csv", ".txt", ".xy")),
+    "png": Row("figure", (".png",)),
+    "svg": Row("figure", (".svg",)),
+    "pdf": Row("figure", (".pdf",)),
+    "meshio": Row(
+        "meshio_export",
+        (
+            ".stl", ".ply", ".obj", ".off", ".inp", ".mesh", ".avs", ".tec", ".dato",
+            ".post", ".mdpa", ".med", ".vol", ".xdmf", ".xmf",
+        ),
+    ),
+}  # fmt: skip
 """Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
 whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
 
+_OLD_NAMES = {
+    "gmsh41": "gmsh:4.1",
+    "gmsh41-ascii": "gmsh:4.1,ascii",
+    **{name: f"meshio:{name}" for name in ("stl", "ply", "obj", "off", "abaqus", "medit")},
+}
 _DESIGNATION = "naca:"
 
 
 def format_named(name: str) -> Format:
-    """Return the format that ``--from`` or ``--to`` names: by its name, its ending, or the start of its name.
-
-    Behind a colon may follow what only Plot3D files need: ``plot3d:big,float32`` (`meshonet.formats.plot3d.variant`).
+    """Return the format of a name: its own, with options (``gmsh:4.1,ascii``), an old name, or an ending.
 
     Raises
     ------
     InputError
-        no such format; the message lists those there are.
+        no such format, or no such option of it; the message lists those there are.
     """
-    word, _, variant = name.lower().lstrip(".").partition(":")
+    word, _, options = name.lower().lstrip(".").partition(":")
+    if word in _OLD_NAMES:
+        word, _, own = _OLD_NAMES[word].partition(":")
+        return _record(word).with_options(f"{own}:{options}")
+    if word in TABLE:
+        return _record(word).with_options(options)
     for known, row in TABLE.items():
-        if word and (known == word or f".{word}" in row.suffixes[:1] or known.startswith(f"{word}-")):
-            return in_variant(_record(known, row), variant) if variant else _record(known, row)
+        if f".{word}" in row.suffixes:
+            record = _record(known)
+            return record.with_options(f"{record.suffix_options.get(f'.{word}', '')}:{options}")
+    family, _, own = word.partition("-")
+    if own and family in TABLE:  # as in plot3d-binary, which was a format of its own that read any other too
+        record = _record(family)
+        found = record.with_options(f"{own}:{options}")
+        return found if options else replace(found, read_grids=record.read_grids)
     raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
 
 
-def in_variant(found: Format, words: str) -> Format:
-    """Return a Plot3D format in the variant that comma-separated words describe.
-
-    Raises
-    ------
-    InputError
-        another format, or words that are not known.
-    """
-    if not found.name.startswith("plot3d"):
-        raise InputError(f"{found.name} files have no variants", "leave the words out", source=words)
-    from meshonet.formats.plot3d import variant_of
-
-    return variant_of(found, words)
-
-
 def formats() -> tuple[Format, ...]:
-    """Return every format; loads their modules, though not the libraries these call."""
-    return tuple(_record(name, row) for name, row in TABLE.items())
+    """Return every format; loads their rooms, though not the libraries these call."""
+    return tuple(map(_record, TABLE))
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
@@ -156,9 +151,10 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
                 f"choose the format with {{to_format}}; {_known()}",
                 source=printable(path_text),
             )
-    for found in claimed:
-        if getattr(found, f"write_{kind}") is not None:
-            return found
+    for record in claimed:
+        if getattr(record, f"write_{kind}") is not None:
+            plain = ":" not in record.name
+            return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
     able = ", ".join(found.name for found in formats() if getattr(found, f"write_{kind}") is not None)
     raise InputError(
         f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
@@ -256,14 +252,14 @@ def _selectable(source: Source, found: Format) -> Format:
     return found
 
 
-def _record(name: str, row: Row) -> Format:
-    module = importlib.import_module(row.module)
-    records: tuple[Format, ...] = getattr(module, "FORMATS", None) or (module.FORMAT,)
+def _record(name: str) -> Format:
+    room = importlib.import_module(f"meshonet.formats.{TABLE[name].room}")
+    records: tuple[Format, ...] = room.FORMATS
     return next(record for record in records if record.name == name)
 
 
 def _by_suffix(suffix: str) -> tuple[Format, ...]:
-    return tuple(_record(name, row) for name, row in TABLE.items() if suffix and suffix in row.suffixes)
+    return tuple(_record(name) for name, row in TABLE.items() if suffix and suffix in row.suffixes)
 
 
 def _known() -> str:

@@ -26,7 +26,6 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.hdf5.check import Checked, checked
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.metadata import plain
@@ -250,7 +249,7 @@ def _grid(data: Checked, k: int) -> Grid:
         facts = json.loads(data.text("provenance", k) or "{}")
         if not isinstance(facts, dict):
             raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
-        return Grid(
+        return Grid.from_nodes(
             usable(data.sample("nodes", k)),
             data.topology,
             _parts(data, k),
@@ -268,11 +267,6 @@ def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str,
             return (), np.empty((data.count, 0)), tuple(data.text("split", k) for k in count)
         rows = np.array([data.sample("parameters", k) for k in count])
         return data.parameter_names(), rows, tuple(data.text("split", k) for k in count)
-
-
-def sniff(head: bytes) -> bool:
-    """Say whether `head` starts as HDF5 files do; those of CGNS have a reader of their own."""
-    return head.startswith(b"\x89HDF\r\n\x1a\n") and b"HDF5 MotherNode" not in head
 
 
 def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
@@ -302,18 +296,3 @@ def _parts(data: Checked, k: int) -> tuple[Patch, ...]:
         raise InputError(
             "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
         ) from None
-
-
-FORMAT = Format(
-    name="hdf5",
-    suffixes=(".h5", ".hdf5"),
-    description="HDF5 dataset of boundaries or grids",
-    read_shapes=read_shapes,
-    read_grids=read_grids,
-    write_grids=write_grids,
-    write_boundaries=write_boundaries,
-    sniff=sniff,
-    names_patches=True,
-    many=True,
-    one_size=True,
-)

@@ -180,7 +180,7 @@ class Figures:
         return max((one for one in along if one), key=lambda one: one.max, default=None)
 
     def _far_field(self) -> tuple[float, None] | None:
-        if self.grid.topology == "quad" or not self.walls:
+        if not self.grid.around_body or not self.walls:
             return None
         wall = np.concatenate([self.grid.nodes[part.start : part.stop + 1, 0] for part in self.walls])
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))

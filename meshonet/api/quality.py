@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from meshonet.formats.mesh.boundary_patches import patches, roles
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.report import QualityReport, quality_report
 
@@ -38,7 +36,7 @@ def quality(
     """
     grid = single_grid(grid)
     reference = None if compare is None else single_grid(compare)
-    return quality_report(grid, walls(grid), profile, reference)
+    return quality_report(grid, profile, reference)
 
 
 def single_grid(grid: Grid | str | Path) -> Grid:
@@ -58,13 +56,3 @@ def single_grid(grid: Grid | str | Path) -> Grid:
     if next(found, None) is not None:
         raise InputError("holds several grids", "read them one by one", source=str(grid))
     return first
-
-
-def walls(grid: Grid) -> list[Patch]:
-    """Return the stretches of wall of `grid`, known by their names; south and north of a quad without."""
-    stretches = patches(grid)
-    kinds = roles(grid, stretches)
-    named = [part for part in stretches if kinds[part.name] == "wall"]
-    if named or grid.topology != "quad" or "wall" in kinds.values():
-        return named
-    return [part for part in stretches if part.side in ("south", "north") and kinds[part.name] == "other"]

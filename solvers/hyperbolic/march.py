@@ -21,7 +21,6 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
@@ -276,7 +275,7 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
 
 def _told(boundary: Boundary, nodes: Floats, first: float) -> str:
     """Return what there is to say of the rows from the wall outwards."""
-    behind = max(wake_nodes(boundary.south) - 1, 0) if boundary.topology == "c" else 0
+    behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)
     if np.abs(heights / first - 1.0).max() > 1e-6:

@@ -20,10 +20,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import default_patches
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
-from meshonet.geometry.spacing.laws import on_corners
-from meshonet.geometry.spacing.sampling import monotone_cubic
 from meshonet.kernels._native import layer_lines, redistribute
 from meshonet.solvers.layers.first_cells import (
     Heights,
@@ -101,7 +101,7 @@ def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg
     """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
     if all(part.side in ("south", "north") for part in boundary.patches):
         return boundary.patches
-    return default_patches(boundary.topology, *nodes.shape[:2])
+    return default_patches(boundary.topology, nodes.shape[0], nodes.shape[1], boundary.wake)
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from command_line import Meshonet, dataset, wave
 
-from meshonet.api.quality import walls
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.profiles import PROFILES
 from meshonet_cli.app import application
@@ -72,7 +71,7 @@ def test_the_choices_are_those_of_the_library() -> None:
 def test_quads_have_walls_where_they_are_named(meshonet: Meshonet, duct_h5: Path) -> None:
     meshonet("tfi", duct_h5, "-o", "d.vts")
     (grid,) = read_grids("d.vts")
-    assert [part.name for part in walls(grid)] == ["south", "north"]
+    assert [part.name for part in grid.walls()] == ["south", "north"]
     named = [type(part)("lower wall" if part.name == "south" else part.name, part.side, part.start, part.stop)
              for part in grid.patches]  # fmt: skip
-    assert [part.name for part in walls(grid.from_nodes(grid.nodes, patches=tuple(named)))] == ["lower wall"]
+    assert [part.name for part in grid.from_nodes(grid.nodes, patches=tuple(named)).walls()] == ["lower wall"]

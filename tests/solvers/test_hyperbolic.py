@@ -1,16 +1,14 @@
 """Hyperbolic marching: against circles, whose levels follow a scalar recursion; on airfoils."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from march_shapes import airfoil, circle, deviation, ellipse, first_cells
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.families import procedural
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
@@ -242,7 +240,7 @@ def test_folded_cells_of_a_march_are_repaired_by_the_guard(topology: Topology) -
     solution = hyperbolic(boundary, wall_spacing=1e-3)
     nodes = solution.grid.nodes.copy(order="K")
     nodes[30, 20] += 2.5 * (nodes[31, 20] - nodes[30, 20])
-    folded = replace(solution.grid, nodes=nodes)
+    folded = solution.grid.with_nodes(nodes)
     assert count_folded(nodes) > 0
     assert solution.boundary is not None
     made = guard(replace(solution, grid=folded), boundary)
@@ -270,7 +268,7 @@ def test_constant_layers_are_equal_at_every_wall_node(topology: Topology, te: st
     wall = naca("4415").boundary(Sampling(160, 70, topology, "curvature", te=te))  # type: ignore[arg-type]
     nodes = hyperbolic(wall, wall_spacing=1e-5, constant=6).grid.nodes
     height = np.hypot(*np.moveaxis(np.diff(nodes, axis=1), -1, 0))
-    behind = max(wake_nodes(wall.south) - 1, 0) if topology == "c" else 0
+    behind = wall.wake
     at_wall = height[behind : len(height) - behind]
     np.testing.assert_allclose(at_wall[:, 1:6], np.repeat(at_wall[:, :1], 5, axis=1), rtol=1e-6)
     assert (at_wall[:, 6:] / at_wall[:, 5:-1]).min() > 0.8

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
@@ -26,7 +25,7 @@ def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, re
     assert angle.max < 125
     assert angle.mean < 94
     np.testing.assert_array_equal(nodes[:, 0], boundary.south)
-    behind = wake_nodes(boundary.south) - 1
+    behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*np.diff(wall, axis=1).T).T
     np.testing.assert_allclose(heights[:, 0], first_cell(boundary), rtol=1e-7)
@@ -36,7 +35,7 @@ def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, re
 def test_first_cells_are_a_part_of_the_smallest_and_larger_with_few_rows() -> None:
     def over_the_smallest(nj: int) -> float:
         boundary = naca("2412").boundary(Sampling(160, nj, "c"))
-        behind = wake_nodes(boundary.south) - 1
+        behind = boundary.wake
         wall = boundary.south[behind : boundary.ni - behind]
         return first_cell(boundary) / np.hypot(*np.diff(wall, axis=0).T).min()
 

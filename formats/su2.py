@@ -1,22 +1,65 @@
-"""Reading the boundary of SU2 meshes: points, cells and the lines of the markers."""
+"""SU2's own mesh, ``.su2``: merged seams, counter-clockwise cells, a marker for every patch.
+
+Written as text with 17 significant digits, nodes counted from 0; markers are words
+(`meshonet.formats.mesh.names`), since configuration files list them by name. Of a mesh that is read, points,
+cells and the lines of the markers make boundaries. https://su2code.github.io/docs_v7/Mesh-File/
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 
 import numpy as np
 
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.surface import Surface, shapes_of
-from meshonet.formats.mesh.unstructured import Indices
+from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
 from meshonet.formats.source import Source, printable
-from meshonet.formats.text.free_numbers import parsed
+from meshonet.formats.text.number_table import parsed, write_rows
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
+_LINE, _QUADRILATERAL, _HEXAHEDRON = 3, 9, 12  # VTK's numbers
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
 """Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""
 _CUT = "the file is cut short: write it again"
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`: quadrilaterals, and lines under the names of its parts."""
+    mesh = unstructured(only_one(grids, "a .su2 file"))
+    _write(path, mesh.points, (_QUADRILATERAL, mesh.quads), (_LINE, mesh.edges))
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the one grid of `grids` repeated in z, the outer planes as markers ``back`` and ``front``."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .su2 file")), heights)
+    _write(path, points, (_HEXAHEDRON, hexahedra), (_QUADRILATERAL, faces))
+
+
+def _write(
+    path: Path, points: Floats, cells: tuple[int, Indices], markers: tuple[int, Mapping[str, Indices]]
+) -> None:
+    """Write points (n, 2 or 3), the cells (kind, nodes) and the markers (kind, nodes by name)."""
+    kind, nodes = cells
+    marker_kind, parts = markers
+    with path.open("wb") as stream:
+        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(nodes)}\n".encode("ascii"))
+        write_rows(stream, _row(kind, nodes), nodes)
+        stream.write(f"NPOIN= {len(points)}\n".encode("ascii"))
+        write_rows(stream, " ".join(["%e"] * points.shape[1]), points)
+        stream.write(f"NMARK= {len(parts)}\n".encode("ascii"))
+        for name, word in words(parts).items():
+            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(parts[name])}\n".encode("ascii"))
+            write_rows(stream, _row(marker_kind, parts[name]), parts[name])
+
+
+def _row(kind: int, nodes: Indices) -> str:
+    return " ".join([str(kind), *["%d"] * nodes.shape[1]])
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
@@ -146,3 +189,17 @@ class _Reader:
 
 def _told(word: bytes) -> str:
     return printable(word[:40].decode("utf-8", "replace"))
+
+
+FORMATS = (
+    Format(
+        name="su2",
+        suffixes=(".su2",),
+        description="SU2 mesh, text, patches as markers; read as a boundary",
+        write_grids=write_grids,
+        write_extruded=write_extruded,
+        read_shapes=read_shapes,
+        sniff=sniff,
+        names_patches=True,
+    ),
+)

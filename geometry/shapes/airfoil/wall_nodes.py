@@ -22,8 +22,9 @@ from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.te_fillet import half_rounds
-from meshonet.geometry.spacing.laws import on_corners
-from meshonet.geometry.spacing.sampling import Sampling, TanhLaw
+from meshonet.geometry.spacing.along_curve import on_corners
+from meshonet.geometry.spacing.laws import LAWS, TanhLaw
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
 _EDGE_STEP = 20.0
@@ -77,10 +78,10 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
 
     Spacings: ``conformal`` has equal angles of the circle that the section is an image of
-    (`meshonet.geometry.conformal.spacing`); ``tanh`` stretches each side between a step at its two edges; ``auto`` is
-    ``conformal``, or ``tanh`` where a step is given or the section has no usable map; ``cosine`` is the half
-    circle's on each side, or ``tanh`` with its end steps where one is given or the edge is blunt; ``uniform``
-    has equal steps on a side; ``curvature`` follows `meshonet.geometry.spacing.size_field`.
+    (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between a step at its two
+    edges; ``cosine`` is the half circle's on each side, or ``tanh`` with its end steps where one is given or
+    the edge is blunt; ``uniform`` has equal steps on a side; ``curvature`` follows
+    `meshonet.geometry.spacing.size_field`.
 
     Parameters
     ----------
@@ -97,22 +98,15 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     if ni < least:
         raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
     steps_given = sampling.le_spacing is not None or sampling.te_spacing is not None
-    if sampling.spacing in ("uniform", "conformal") and steps_given:
+    if steps_given and not LAWS[sampling.spacing].sets_ends:
         raise InputError(
             f"{sampling.spacing} spacing leaves no cell size to choose",
             "use tanh, cosine or curvature with it",
         )
-    if sampling.spacing == "conformal" or (sampling.spacing == "auto" and not steps_given):
-        corners = (
-            np.array([stations.lower, stations.upper])
-            if stations.half_base and not stations.rounded
-            else np.zeros(0)
-        )
-        try:
-            return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
-        except InputError:
-            if sampling.spacing == "conformal":
-                raise
+    if sampling.spacing == "conformal":
+        blunt = stations.half_base and not stations.rounded
+        corners = np.array([stations.lower, stations.upper]) if blunt else np.zeros(0)
+        return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
         sides = arcs_by_curvature(
@@ -152,7 +146,7 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
     wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
     plan = _natural(stations, Plan(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
     if stations.half_base:
-        fixed = bool(wanted_te) or sampling.spacing == "uniform"
+        fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
         half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
         if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
             half = min(_ROUND_CELLS, cells // 16)
@@ -232,10 +226,11 @@ def _half_base(plan: Plan, half_base: float) -> Floats:
 
 def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
     """Return distances along a side from its trailing edge at the places `q` of 0 to 1."""
-    asked = sampling.te_spacing is not None or sampling.le_spacing is not None
-    if sampling.spacing == "uniform" or (plan.cells < 4 and not asked):
+    ends_set = sampling.te_spacing is not None or sampling.le_spacing is not None
+    if plan.cells < 4 and not ends_set:
         return np.asarray(length * q)
-    if sampling.spacing == "cosine" and not asked and not plan.half:
-        return np.asarray(length * np.sin(0.5 * np.pi * q) ** 2)
+    law = LAWS[sampling.spacing]
+    if law.place and not (law.sets_ends and (ends_set or plan.half)):
+        return np.asarray(length * law.place(q))
     part = 1.0 if float(plan.cells).is_integer() else 0.5
     return np.asarray(length * TanhLaw.fitted(plan.cells, plan.te / length, plan.le / length, part)(q))
