@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -98,12 +99,12 @@ class Format:
 
 def later(function: str, **settings: Any) -> Callable[..., Any]:
     """Return what loads the module of `function`, ``package.module:name``, and calls it with `settings`."""
+    return partial(_loaded, function, settings)  # which can be pickled, for several processes
 
-    def call(*args: Any) -> Any:
-        module, _, name = function.partition(":")
-        return getattr(importlib.import_module(module), name)(*args, **settings)
 
-    return call
+def _loaded(function: str, settings: Mapping[str, Any], *args: Any) -> Any:
+    module, _, name = function.partition(":")
+    return getattr(importlib.import_module(module), name)(*args, **settings)
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:

@@ -55,7 +55,8 @@ class Each:
     Parameters
     ----------
     name : in `METHODS`.
-    function : of a boundary, its settings and perhaps ``initial``, a grid to start from.
+    target : a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or
+        ``module:name`` of one, which is loaded when it is needed.
     settings : keywords of the function.
 
     Raises
@@ -65,12 +66,18 @@ class Each:
     """
 
     name: str
-    function: Callable[..., Solution]
+    target: str | Callable[..., Solution]
     settings: Mapping[str, Any] = field(default_factory=dict)
     together: None = None
 
     def __post_init__(self) -> None:
-        _check_settings(self.name, self.function, self.settings)
+        if self.settings:
+            _check_settings(self.name, self.function, self.settings)
+
+    @property
+    def function(self) -> Callable[..., Solution]:
+        """The function."""
+        return _loaded(self.target) if isinstance(self.target, str) else self.target
 
     def takes(self, setting: str) -> bool:
         """Return whether the function has such a keyword."""
@@ -104,28 +111,38 @@ class Row(NamedTuple):
     solves: bool = True
     sweeps: bool = True
 
+    @property
+    def is_class(self) -> bool:
+        """Whether the target is a class, whose name begins with a capital."""
+        return self.target.partition(":")[2][0].isupper()
 
-METHODS: Mapping[str, Row] = MappingProxyType({
-    "tfi": Row("meshonet.solvers.algebraic.tfi:solve", "interpolates between the edges", solves=False),
-    "winslow": Row("meshonet.solvers.elliptic.solve:solve", "is elliptic"),
-    "thomas-middlecoff": Row(
-        "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-        "too, with control functions that carry the spacing of the edges inside", sweeps=False,
-    ),
-    "steger-sorenson": Row(
-        "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
-        "has sources at walls that turn the lines there to {wall_angle}", sweeps=False,
-    ),
-    "variational": Row(
-        "meshonet.solvers.energy.variational:solve",
-        "minimises a functional of angles and edge lengths: better angles, no folds",
-    ),
-    "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
-    "conformal": Row(
-        "meshonet.solvers.neural.method:Conformal", "solves around bodies in a strip, by a conformal map"
-    ),
-    "operator": Row("meshonet.solvers.neural.method:Operator", "is a neural operator", solves=False),
-})  # fmt: skip
+
+METHODS: Mapping[str, Row] = MappingProxyType(
+    {
+        "tfi": Row("meshonet.solvers.algebraic.tfi:solve", "interpolates between the edges", solves=False),
+        "winslow": Row("meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"),
+        "thomas-middlecoff": Row(
+            "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
+            "with control functions that carry the spacing of the edges inside",
+            sweeps=False,
+        ),
+        "steger-sorenson": Row(
+            "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
+            "with sources at walls that turn grid lines to {wall_angle} there",
+            sweeps=False,
+        ),
+        "variational": Row(
+            "meshonet.solvers.energy.variational:solve",
+            "minimises a functional of angles and edge lengths; better angles, no folds",
+        ),
+        "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
+        "conformal": Row(
+            "meshonet.solvers.neural.method:Conformal",
+            "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
+        ),
+        "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),
+    }
+)
 """Methods by name; ``operator:NAME`` is the operator of that name."""
 
 
@@ -146,14 +163,19 @@ def method_named(name: str, **settings: Any) -> Method:
     if base not in METHODS or (model and base != "operator"):
         known = "use one of " + ", ".join(METHODS)
         raise InputError(f"method {name!r} is not known", known, parameter="method")
-    module, _, attribute = METHODS[base].target.partition(":")
-    target = getattr(import_module(module), attribute)
-    if not isinstance(target, type):
-        return Each(base, target, settings)
+    row = METHODS[base]
+    if not row.is_class:
+        return Each(base, row.target, settings)
+    target = _loaded(row.target)
     settings |= {"model": model} if model else {}
     _check_settings(base, target, settings)
     method: Method = target(**settings)
     return method
+
+
+def _loaded(target: str) -> Any:
+    module, _, name = target.partition(":")
+    return getattr(import_module(module), name)
 
 
 def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:

@@ -174,3 +174,14 @@ def test_choices_of_options_are_those_of_the_library() -> None:
 
     assert get_args(SpacingName) == SPACINGS
     assert set(get_args(TopologyName)) <= {"auto", "quad", "o", "c"}
+
+
+def test_solve_pde_offers_every_method_that_solves() -> None:
+    from meshonet.solvers.method import METHODS, method_named
+
+    told = (ROOT / "docs" / "cli.md").read_text()
+    section = told[told.index("meshonet solve-pde") :]
+    offered = section[section.index("--method auto|") :].split()[1].split("|")
+    assert offered == ["auto", *(name for name, row in METHODS.items() if row.solves)]
+    for name in METHODS:
+        assert method_named(name).name == name

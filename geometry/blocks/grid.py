@@ -197,4 +197,3 @@ class Grid(Connected):
             raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
         planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
         return StructuredGrid(*planes)
-

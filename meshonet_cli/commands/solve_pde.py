@@ -1,7 +1,9 @@
 """``meshonet solve-pde``."""
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from meshonet.geometry.errors import spelled
+from meshonet.solvers.method import METHODS
 from meshonet_cli import options as o
 
 EXAMPLES = (
@@ -18,18 +20,22 @@ EXAMPLES = (
 
 _option = o.option_of(o.METHOD)
 
+SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves}
+AUTO = (
+    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless {coarse}, "
+    "{refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+)
+if TYPE_CHECKING:
+    MethodName: TypeAlias = str
+else:
+    MethodName = Literal[("auto", *SOLVERS)]
+
 # fmt: off
 Method = Annotated[
-    Literal["auto", "winslow", "thomas-middlecoff", "steger-sorenson", "variational", "hyperbolic"],
+    MethodName,
     _option(
-        "--method", metavar="auto|winslow|thomas-middlecoff|steger-sorenson|variational|hyperbolic",
-        show_default=True,
-        help="winslow: elliptic, without control functions. thomas-middlecoff: with control functions that "
-        "carry the spacing of the edges inside. steger-sorenson: with sources at walls that turn grid lines "
-        "to --wall-angle there. variational: minimises a functional of angles and edge lengths; better "
-        "angles, no folds. hyperbolic: marches from the wall. auto: hyperbolic around bodies with a first "
-        "cell and on C grids (with a first cell of its own), unless --coarse, --refine, --tol, --max-cycles "
-        "or --initial is given; else winslow.",
+        "--method", metavar="|".join(("auto", *SOLVERS)), show_default=True,
+        help=spelled(" ".join(f"{name}: {summary}." for name, summary in {**SOLVERS, "auto": AUTO}.items()), o.spelling),
     ),
 ]
 Tolerance = Annotated[

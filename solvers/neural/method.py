@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.inference import Answer, infer, infer_many, many_of
 from meshonet.solvers.solution import Solution
 
@@ -58,6 +59,16 @@ class Conformal:
         problems: Sequence[Boundary],
         start: Sequence[Grid] | None = None,  # noqa: ARG002 - the iteration starts from the harmonic extension
     ) -> list[Solution]:
-        """Return a solution for each of the boundaries."""
+        """Return a solution for each of the boundaries.
+
+        Raises
+        ------
+        InputError
+            a boundary that is not around a body.
+        """
+        for problem in problems:
+            if problem.topology != "o":
+                what = f"method conformal makes o grids, and this boundary is {problem.topology}"
+                raise InputError(what, "use another {method}")
         solutions = Operator("base", self.polish).solve(problems)
         return [replace(each, method=self.name, model=None) if each.model else each for each in solutions]

@@ -15,7 +15,6 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
-from meshonet.solvers.elliptic.kinks import sweep_kinks
 from meshonet.solvers.method import METHODS, Method
 from meshonet.solvers.solution import Solution
 
@@ -89,6 +88,8 @@ def solve_coarse(
     solution = solve(thinned(boundary, *counts))
     nodes = evaluate(solution.grid.nodes, boundary)
     if smooth:
+        from meshonet.solvers.elliptic.kinks import sweep_kinks
+
         winslow = solution.method == "winslow" or count_folded(nodes) > 0
         sweep_kinks(nodes, boundary, counts, only_better=not winslow)
     facts = {**solution.grid.provenance, "coarse": counts}
