@@ -257,7 +257,9 @@ def test_airfoils_are_marched_once(
 ) -> None:
     """The distance to march is known so well that no second march has to correct it."""
     marches = []
-    monkeypatch.setattr(module, "hyperbolic_march", lambda *args: (marches.append(1), hyperbolic_march(*args)))
+    monkeypatch.setattr(
+        module, "hyperbolic_march", lambda *args: (marches.append(1), hyperbolic_march(*args))
+    )
     wall = naca("2412").boundary(Sampling(ni, nj, topology, "curvature", te="wedge"))
     hyperbolic(wall, wall_spacing=height)
     assert len(marches) == 1
