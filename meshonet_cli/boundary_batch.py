@@ -17,6 +17,7 @@ from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, one_by_one, prepare
 from meshonet_cli.batch.sources import items
 from meshonet_cli.batch.timed import Timed
+from meshonet_cli.errors import with_options
 from meshonet_cli.session import Session
 
 
@@ -31,14 +32,17 @@ class Sampled(Timed):
         edges = self.boundary
         parts = [part.name for part in edges.patches]
         facts = {"ni": edges.ni, "nj": edges.nj, "topology": edges.topology, "parts": parts}
-        told = {"notes": list(edges.notes)} if edges.notes else {}
+        told = {"notes": [with_options(note) for note in edges.notes]} if edges.notes else {}
         return {**self.member_json(), **facts, **told, "seconds": self.times_json()}
 
     def line(self) -> str:
         """Return it for people."""
         size = f"{self.boundary.ni} x {self.boundary.nj} nodes, {self.boundary.topology}"
         return "\n  ".join(
-            [f"{self.item.label} -> {self.output}: {size}, {self.times()}", *self.boundary.notes]
+            [
+                f"{self.item.label} -> {self.output}: {size}, {self.times()}",
+                *map(with_options, self.boundary.notes),
+            ]
         )
 
     lines = line
