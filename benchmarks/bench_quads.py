@@ -248,8 +248,8 @@ domains. How the operator works is in [operators](../operators.md).
 - *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
   of Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the domains.
-- *gain*: the improvement over Winslow's angle as a share of the improvement that the full variational grid
-  has; in the mean angle over all domains together and as a median, and in the largest angle.
+- *gain*: how much smaller than Winslow's the angle is, divided by how much smaller that of the full
+  variational grid is. For the mean angle, the sum over all domains and the median are given.
 - *CPU ms*: processor time of one thread, while other programs used the machine.
 """
 TAIL = """

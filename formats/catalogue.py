@@ -13,15 +13,16 @@ Look here for the files that meshonet reads and writes. `meshonet convert IN OUT
 `--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
 table.
 
-*names*: names of boundary parts are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *many*:
-one file can hold several grids or boundaries.
+*names*: names of patches are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *many*: one file
+can hold several grids or boundaries. *options* are written behind a colon, for example `--to gmsh:4.1,ascii`,
+one of each group. The first of a group is the default unless the ending says otherwise.
 
 """
 _REST = """
 ## Boundaries from meshes and drawings
 
 Lines of Gmsh, SU2 and DXF files are joined to closed curves. Names of physical groups, markers and layers
-become names of boundary parts.
+become names of patches.
 
 - One curve is a four-sided domain or a body. The corners of a domain are the corners of its quadrilaterals or
   the four places where names change.
@@ -35,8 +36,10 @@ needs `pip install 'meshonet[dxf]'`.
 
 Plot3D files do not state their variant. It is found from the length of the file and the orientation of the
 cells: count of blocks, dimensions, iblank, records, byte order, precision, the index that runs in z, and text
-with repeats, commas or D exponents. `--plot3d WORDS`, or `--from plot3d:WORDS`, overrides this and chooses
-the variant to write, for example `--plot3d fortran,big,single`. iblank is reported but not kept.
+with repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3d fortran,big` overrides this; the
+same words choose the variant to write. `single` omits the count of blocks, `planes` writes the coordinates of
+one k after the other, and `span-i` repeats the grid in z along its first index. iblank is reported but not
+kept.
 
 ## Three-dimensional files
 
