@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from meshonet.solvers.neural.weights import described
+from meshonet.solvers.neural.registry import described
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])

@@ -22,8 +22,8 @@ _option = o.option_of(o.METHOD)
 
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves}
 AUTO = (
-    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless {coarse}, "
-    "{refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless "
+    "{coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
 )
 if TYPE_CHECKING:
     MethodName: TypeAlias = str
