@@ -41,6 +41,27 @@ same words choose the variant to write. `single` omits the count of blocks, `pla
 one k after the other, and `span-i` repeats the grid in z along its first index. iblank is reported but not
 kept.
 
+## HDF5
+
+Datasets hold n samples of one size; h5py writes or reads one in ten lines. Layout version 1, of what
+has one plane block:
+
+| name | what it is |
+| --- | --- |
+| attributes | `format` (`meshonet-boundary` or `meshonet-grid`), `version` 1, `topology` (`quad`, `o`, `c`) |
+| `south`, `north`, `west`, `east` | (n, ni, 2) and (n, nj, 2), the corners shared |
+| `nodes` | (n, ni, nj, 2), of grids |
+| `names`, `split`, `parts`, `provenance` | (n,) texts, where there are any; `parts` JSON lists of `[name, side, start, stop]` |
+| `parameters`, `sensors` | (n, p) with the attribute `names`; (n, m, 2) |
+
+Version 2, of grids of several blocks or of blocks in space, has `blocks/0`, `blocks/1` ... in place of edges,
+`nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of `parts` go on
+with `block, across, kind`: `across` is the range along the second direction of a side, null for all of it. The
+attribute `connections` is a JSON list of what all samples share: `[block, side, range, donor, donor_side,
+donor_range, orientation, transform]`. A range has the first and last node along each direction of the side;
+`orientation` the donor's direction that runs along each one, counted from 1, negative when reversed;
+`transform` is null, or `{"shift": [...], "turn": [[...]]}` between periodic sides.
+
 ## Three-dimensional files
 
 A file is read when it is a plane, or identical planes along any index. Other three-dimensional files are

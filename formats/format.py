@@ -99,10 +99,10 @@ class Format:
 
 def later(function: str, **settings: Any) -> Callable[..., Any]:
     """Return what loads the module of `function`, ``package.module:name``, and calls it with `settings`."""
-    return partial(_loaded, function, settings)  # which can be pickled, for several processes
+    return partial(_call, function, **settings)  # which another process can have
 
 
-def _loaded(function: str, settings: Mapping[str, Any], *args: Any) -> Any:
+def _call(function: str, /, *args: Any, **settings: Any) -> Any:
     module, _, name = function.partition(":")
     return getattr(importlib.import_module(module), name)(*args, **settings)
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from meshonet.geometry.errors import InputError
 
@@ -48,9 +48,40 @@ class Method(Protocol):
         ...
 
 
+class OneByOne:
+    """Solves one boundary after the other: base of methods that gain nothing from many."""
+
+    together: ClassVar[Topology | None] = None
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries, which may start from a grid each."""
+        starts: Sequence[Grid | None] = [None] * len(problems) if start is None else start
+        return [self.solve_one(*pair) for pair in zip(problems, starts, strict=True)]
+
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of one boundary."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class Each:
-    """A method that solves one boundary after the other.
+class Wrapper(OneByOne):
+    """Solves by calling another method, whose name it has."""
+
+    method: Method
+
+    @property
+    def name(self) -> str:
+        """That of the method."""
+        return self.method.name
+
+    def inner(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the other method's solution of one boundary."""
+        return self.method.solve([boundary], None if start is None else [start])[0]
+
+
+@dataclass(frozen=True)
+class Each(OneByOne):
+    """A function of one boundary as a method.
 
     Parameters
     ----------
@@ -68,7 +99,6 @@ class Each:
     name: str
     target: str | Callable[..., Solution]
     settings: Mapping[str, Any] = field(default_factory=dict)
-    together: None = None
 
     def __post_init__(self) -> None:
         if self.settings:
@@ -83,12 +113,10 @@ class Each:
         """Return whether the function has such a keyword."""
         return setting in inspect.signature(self.function).parameters
 
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries."""
-        if start is None or not self.takes("initial"):
-            return [self.function(problem, **self.settings) for problem in problems]
-        pairs = zip(problems, start, strict=True)
-        return [self.function(problem, **self.settings, initial=grid) for problem, grid in pairs]
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return what the function makes of a boundary, from `start` when it can start from a grid."""
+        more = {"initial": start} if start is not None and self.takes("initial") else {}
+        return self.function(boundary, **self.settings, **more)
 
     def having(self, **settings: Any) -> Each:
         """Return the method with more settings."""

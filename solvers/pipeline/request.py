@@ -199,11 +199,10 @@ class GridRequest:
         automatic = self.method in ("best", "auto") or self._operator
         full = None if self.refine or isinstance(self.coarse, int) else base
         own = full is not None and base.name in ("winslow", "steger-sorenson")
-        turning = method_named("steger-sorenson", **(self.settings if own else {}), **self._angle())
         return Layered(
             method,
             self.first_cells(),
-            turning,
+            {**(self.settings if own else {}), **self._angle()},
             full,
             marched=TOPOLOGIES if self.method == "hyperbolic" else ("o", "c") if automatic else (),
             channels=automatic,

@@ -1,38 +1,21 @@
-"""HDF5 datasets of many boundaries or grids of one size; layout version 1.
-
-::
-
-    attributes   format = "meshonet-boundary" or "meshonet-grid", version = 1, topology
-    south, north (n, ni, 2)   west, east (n, nj, 2)   float64, corners shared
-    nodes        (n, ni, nj, 2), grids only
-    names, split, parts, provenance   (n,) text, where there is any
-    parameters   (n, p), its attribute names (p,)
-    sensors      (n, m, 2), sub-sampled boundary nodes, when asked for
-
-Everything is chunked by sample, or by a few where these are small, and resizable along n; samples are
-appended one by one and written in blocks. `parts` and `provenance` are JSON; the first grid's provenance is
-repeated as attributes of the file, for reading by eye. https://docs.h5py.org
-"""
+"""Writing HDF5 datasets: samples are appended one by one and written in blocks of some MB."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import partial
-from operator import call
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, astuple
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from meshonet.formats.hdf5.check import Checked, checked
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.metadata import plain
-from meshonet.formats.mesh.recover_topology import usable
-from meshonet.formats.source import Source
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.metadata import Origin
 from meshonet.geometry.blocks.patches import Patch
@@ -41,8 +24,6 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     import h5py
 
-T = TypeVar("T")
-VERSION = 1
 BLOCK = 1 << 22
 """Bytes of samples that are held back to be written together."""
 TEXTS = ("names", "split", "parts", "provenance")
@@ -69,13 +50,13 @@ class Writer:
     def __init__(self, path: Path, kind: Kind, parameter_names: Sequence[str] = ()) -> None:
         self._made = created(path)
         self._file = self._made.__enter__()
-        self._file.attrs.update(format=kind, version=VERSION)
+        self._file.attrs.update(format=kind, version=1)
         self._data: dict[str, h5py.Dataset] = {}
         self._shapes: dict[str, tuple[int, ...]] = {}
         self._held: dict[str, list[tuple[int, Floats | str]]] = {}
         self._bytes = 0
         self._count = 0
-        self._first: tuple[int, int, str] | None = None
+        self._first: tuple[str, ...] = ()
         if parameter_names:
             self._name_parameters(parameter_names)
 
@@ -99,33 +80,17 @@ class Writer:
         parameters : (p,) numbers that made it; None for those of its origin.
         split : ``train``, ``test`` or nothing; that of its origin when empty.
         """
-        shape = (sample.ni, sample.nj, sample.topology)
-        if self._first is None:
-            self._first = shape
-            self._file.attrs["topology"] = sample.topology
-        if shape != self._first:
-            raise InputError(
-                "sample {} is {}x{} {} and the first is {}x{} {}".format(self._count, *shape, *self._first),
-                "one dataset has one size and topology: set {res} and {topology}, or write one file each",
-            )
-        arrays: dict[str, Floats]
-        if isinstance(sample, Grid):  # of any quality: its edges may be no valid boundary
-            nodes = sample.nodes
-            sides = (nodes[:, 0], nodes[-1], nodes[:, -1], nodes[0])
-            arrays = dict(zip(SIDES, sides, strict=True)) | {"nodes": nodes}
-            if self._count == 0:
-                self._facts(sample.provenance)
-        else:
-            arrays = {side: getattr(sample, side) for side in SIDES}
+        self._check_size(sample)
+        arrays = _arrays_of(sample)
+        if self._count == 0 and isinstance(sample, Grid):
+            self._facts(sample.provenance)
         if parameters is None and sample.origin.parameters:
             parameters = self._parameters(sample.origin)
         if parameters is not None:
             arrays["parameters"] = parameters
-        if isinstance(sample, Boundary) and sample.sensors is not None:
-            arrays["sensors"] = sample.sensors
         self._check(arrays)
         texts = {"names": sample.name, "split": split or sample.origin.split}
-        texts["parts"] = json.dumps([[p.name, p.side, p.start, p.stop] for p in sample.patches])
+        texts["parts"] = json.dumps([_row_of(patch, _is_of_blocks(sample)) for patch in sample.patches])
         if isinstance(sample, Grid) and sample.provenance:
             texts["provenance"] = json.dumps(sample.provenance, default=plain)
         for name, values in arrays.items():
@@ -135,6 +100,22 @@ class Writer:
         self._count += 1
         if self._bytes >= BLOCK:
             self._flush()
+
+    def _check_size(self, sample: Boundary | Grid) -> None:
+        """Raise InputError when a sample is not as the first one, of which the attributes of the file tell."""
+        several = _is_of_blocks(sample)
+        size = _size_of(sample)
+        connections = connections_text(sample.connections) if several else ""
+        if not self._first:
+            self._first = size, connections
+            more = {"version": 2, "connections": connections} if several else {"topology": sample.topology}
+            self._file.attrs.update(more)
+        if (size, connections) != self._first:
+            first = self._first[0] if size != self._first[0] else "connected otherwise"
+            raise InputError(
+                f"sample {self._count} is {size} and the first is {first}",
+                "one dataset has one size and topology: set {res} and {topology}, or write one file each",
+            )
 
     def _parameters(self, origin: Origin) -> Floats:
         """Return the numbers of a sample; the first one's names are those of the dataset."""
@@ -206,69 +187,6 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     _write(path, "meshonet-grid", grids)
 
 
-def read_shapes(source: Source) -> Iterator[Boundary]:
-    """Return an iterator over the boundaries; of a grid dataset, the grids' outer edges as they were stored.
-
-    It goes on behind a sample that is not right and raised InputError.
-    """
-    return map(call, _samples(source, _boundary))
-
-
-def read_grids(source: Source) -> Iterator[Grid]:
-    """Return an iterator over the grids; it goes on behind a sample that is not right.
-
-    Raises
-    ------
-    InputError
-        the dataset holds boundaries only, or is not right.
-    """
-    return map(call, _samples(source, _grid))
-
-
-def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
-    """Yield functions that read one sample each: what they raise does not end the generator."""
-    with checked(source) as data:
-        if read is _grid and "nodes" not in data:
-            raise InputError(
-                "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
-            )
-        for k in data.kept(source.split):
-            yield partial(read, data, k)
-
-
-def _boundary(data: Checked, k: int) -> Boundary:
-    with data.place(k):
-        south, north, west, east = (data.sample(side, k) for side in ("south", "north", "west", "east"))
-        name = data.text("names", k)
-        parts, origin = _parts(data, k), _origin(data, k)
-        return Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
-
-
-def _grid(data: Checked, k: int) -> Grid:
-    with data.place(k):
-        facts = json.loads(data.text("provenance", k) or "{}")
-        if not isinstance(facts, dict):
-            raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
-        return Grid.from_nodes(
-            usable(data.sample("nodes", k)),
-            data.topology,
-            _parts(data, k),
-            data.text("names", k),
-            facts,
-            _origin(data, k),
-        )
-
-
-def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str, ...]]:
-    """Return the names (p,), the parameters (n, p) and the split (n,) of a dataset; empty where absent."""
-    with checked(source) as data:
-        count = range(data.count)
-        if "parameters" not in data:
-            return (), np.empty((data.count, 0)), tuple(data.text("split", k) for k in count)
-        rows = np.array([data.sample("parameters", k) for k in count])
-        return data.parameter_names(), rows, tuple(data.text("split", k) for k in count)
-
-
 def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
     with Writer(path, kind) as writer:
         empty = True
@@ -279,20 +197,31 @@ def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
         raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
 
 
-def _origin(data: Checked, k: int) -> Origin:
-    if "parameters" not in data:
-        return Origin(split=data.text("split", k))
-    row = data.sample("parameters", k)
-    names = data.parameter_names() or tuple(f"parameter {m}" for m in range(len(row)))
-    pairs = tuple((name, float(value)) for name, value in zip(names, row, strict=False))
-    return Origin(pairs, data.text("split", k))
+def connections_text(connections: Iterable[Connection]) -> str:
+    """Return connections as JSON: their fields in order, the transform as an object or null."""
+    return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])
 
 
-def _parts(data: Checked, k: int) -> tuple[Patch, ...]:
-    try:
-        rows = json.loads(data.text("parts", k) or "[]")
-        return tuple(Patch(str(name), side, int(start), int(stop)) for name, side, start, stop in rows)
-    except (ValueError, TypeError, RecursionError):
-        raise InputError(
-            "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
-        ) from None
+def _is_of_blocks(sample: Boundary | Grid) -> bool:
+    return isinstance(sample, Grid) and sample.topology == "blocks"
+
+
+def _size_of(sample: Boundary | Grid) -> str:
+    if isinstance(sample, Grid) and sample.topology == "blocks":
+        return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
+    return f"{sample.ni}x{sample.nj} {sample.topology}"
+
+
+def _arrays_of(sample: Boundary | Grid) -> dict[str, Floats]:
+    if isinstance(sample, Boundary):
+        edges = {side: getattr(sample, side) for side in SIDES}
+        return edges if sample.sensors is None else edges | {"sensors": sample.sensors}
+    if sample.topology == "blocks":
+        return {f"blocks/{k}": block.nodes for k, block in enumerate(sample.blocks)}
+    # the edges are those of the nodes: a grid of any quality is written, also one that is no valid boundary
+    return {side: sample.face(0, side) for side in SIDES} | {"nodes": sample.nodes}
+
+
+def _row_of(patch: Patch, several: bool) -> list[object]:
+    row: list[object] = [patch.name, patch.side, patch.start, patch.stop]
+    return [*row, patch.block, patch.across, patch.kind] if several else row
