@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.mesh.recover_topology import LARGEST
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.formats.text.points import one_curve
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
