@@ -13,11 +13,12 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
-from meshonet.solvers.energy.local_descent import REACH, descend_windows, unfold
+from meshonet.solvers.energy.local_descent import descend_windows
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.repair import repair
+from meshonet.solvers.energy.untangle import REACH, unfold
 from meshonet.solvers.progress import heard, tell
-from solvers.variational._variational import Minimiser, Stiffness
+from solvers.variational._variational import Stiffness
 from solvers.variational._variational import newton as newton_steps
 
 HARD = 1.1
@@ -64,7 +65,7 @@ def descend(
     terms = aspect, weights.shape, weights.smoothness
     if relief is not None:
         descend_windows(nodes, aspect, weights, relief)
-    if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
+    if count_folded(nodes) and not _made_valid(nodes, weights, periodic):
         return 0, False
     moves, told = in_cells(still, nodes), teller(nodes)
     begin = most if first is None else min(first, most)
@@ -117,9 +118,9 @@ def in_cells(still: float, nodes: Floats) -> float:
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
-def _made_valid(nodes: Floats, descent: Minimiser, terms: tuple[float, float, float], periodic: bool) -> bool:
+def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
     """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
     if repair(nodes, periodic) == 0:
         return True
     small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
-    return small and unfold(np.moveaxis(nodes, -1, 0), descent, terms)
+    return small and unfold(nodes, weights)[0]

@@ -1,8 +1,8 @@
 """Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
 
-Each level starts from the minimum of the next coarser one, evaluated by splines (`meshonet.solvers.pipeline.coarse`). A start
-with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. Smooth
-moves of the descents (`descent`) follow the Hessian of the coarsest level.
+Each level starts from the minimum of the next coarser one, evaluated by splines. A start with folded cells is
+unfolded first: by local repair, else as a whole. The Hessian of the coarsest level preconditions the smooth
+moves of finer ones.
 """
 
 from __future__ import annotations
@@ -18,13 +18,12 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
 from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
-from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of
-from meshonet.solvers.energy.local_descent import REACH, unfold
+from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of, value
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
+from meshonet.solvers.energy.untangle import REACH, unfold
 from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
-from solvers.variational._variational import energy, workspace
 
 COARSEST = 17
 """A copy with this many nodes or fewer along a direction is the first one solved."""
@@ -209,19 +208,17 @@ def _descended(
     nodes = start.copy(order="K")
     if periodic or count_folded(start) == 0:
         return nodes, *descend(nodes, weights, still, most, periodic=periodic, first=first)
-    terms = aspect_of(start), weights.shape, weights.smoothness
-    ni, nj = start.shape[:2]
-    z, descent = np.moveaxis(nodes, -1, 0), minimiser(ni, nj, False, terms[0], weights)
-    value, low, iterations = np.inf, 0.0, 0
-    if unfold(z, descent, terms):
-        told = teller(nodes)
-        value, low, iterations = descent.run(z, *terms, 0.0, None, in_cells(still, start), REACH, most, told)
-    if value <= easy:
+    least, low, iterations = np.inf, 0.0, 0
+    if unfold(nodes, weights)[0]:
+        terms = aspect_of(start), weights.shape, weights.smoothness
+        descent = minimiser(start.shape[0], start.shape[1], False, terms[0], weights)
+        z, told = np.moveaxis(nodes, -1, 0), teller(nodes)
+        least, low, iterations = descent.run(z, *terms, 0.0, None, in_cells(still, start), REACH, most, told)
+    if least <= easy:
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
     more, valid = descend(repaired, weights, still, most)
-    z, room = np.moveaxis(repaired, -1, 0), np.empty(workspace(ni, nj))
-    if valid and energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
+    if valid and value(repaired, weights) < least:
         return repaired, more, True
     return nodes, iterations, low > 0
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from functional_reference import energy
 from random_quads import random_quad
 from solver_shapes import bump, hole, naca, wrench
 
 from meshonet.geometry.arrays import Floats
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.energy.functional import Weights, aspect_of, energy, relief_of
+from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
 from meshonet.solvers.energy.preconditioner import minimiser
 from solvers.variational._variational import Minimiser, Stiffness, Waves, workspace
 from solvers.variational._variational import energy as compiled
