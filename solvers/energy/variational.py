@@ -15,13 +15,13 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
 from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
 from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of, value
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.untangle import REACH, unfold
+from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
 
@@ -100,7 +100,7 @@ def solve(
     InputError
         `initial` of other node counts; `tol` or `max_cycles` not positive.
     """
-    _check(boundary, tol, max_cycles, initial)
+    check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
     weights = weights or WEIGHTS[boundary.topology]
     still = tol if tol is not None else STILL
@@ -113,7 +113,7 @@ def solve(
             found = _nested(boundary, weights, still, limits, np.inf)
         nodes, weights, iterations, valid = found
     else:
-        nodes = _inside(boundary, initial)
+        nodes = initial_nodes(boundary, initial)
         iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
@@ -228,26 +228,3 @@ def _worst_at_kink(nodes: Floats) -> bool:
     at = widest_cell(nodes)
     ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
     return ends[0] != ends[1]
-
-
-def _inside(boundary: Boundary, initial: Grid) -> Floats:
-    """Return a copy of the nodes of `initial` with the edges of `boundary`."""
-    nodes = initial.nodes.copy(order="K")
-    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    if boundary.topology == "o":
-        nodes[-1] = nodes[0]
-    else:
-        nodes[0], nodes[-1] = boundary.west, boundary.east
-    return nodes
-
-
-def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    if tol is not None and not 0 < tol < 1:
-        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5")
-    if max_cycles < 1:
-        raise InputError(f"{max_cycles} iterations are too few", "allow at least 1")
-    if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
-        had = f"{initial.ni}x{initial.nj}"
-        raise InputError(
-            f"the initial grid has {had} nodes, not {boundary.ni}x{boundary.nj}", "give equal counts"
-        )

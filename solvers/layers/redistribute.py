@@ -24,6 +24,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.spacing.laws import on_corners
 from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
 from meshonet.solvers.layers.first_cells import (
     Heights,
     arcs_in_layers,
@@ -196,9 +197,9 @@ def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
 
 def _correct(nodes: Floats, side: str, height: float) -> None:
     """Make the first cells off one edge exact, moving nodes less and less away from it."""
-    view = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
-    ends = slice(None) if side in ("south", "north") else slice(1, -1)
-    view = view[ends, ::-1] if side in ("north", "east") else view[ends]
+    view = lines_off(nodes, side)
+    if side in ("west", "east"):
+        view = view[1:-1]
     planes = np.ascontiguousarray(view[..., 0]), np.ascontiguousarray(view[..., 1])
     count = view.shape[1]
     away = np.arange(count) - 1.0
@@ -219,6 +220,4 @@ def worst_first_cell(grid: Grid) -> float:
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
     """Return the largest relative error of the first cells off one edge."""
-    view = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
-    one, two = (view[:, -1], view[:, -2]) if side in ("north", "east") else (view[:, 0], view[:, 1])
-    return float(np.abs(np.hypot(*(two - one).T) / height - 1.0).max())
+    return float(np.abs(first_heights(lines_off(nodes, side)) / height - 1.0).max())

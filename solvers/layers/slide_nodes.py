@@ -21,6 +21,7 @@ from meshonet.geometry.spacing.laws import on_corners
 from meshonet.geometry.spacing.sampling import monotone_cubic
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
+from meshonet.solvers.elliptic.wall_lines import leaning, lines_off
 
 COUNTS = 129, 49
 """Nodes to slide at the most: along and between the walls."""
@@ -146,12 +147,8 @@ def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> li
     Less and less next to ends and kinks, where lines may not be able to stand upright.
     """
     leans = []
-    for curve, arc, rows in zip(curves, arcs, ((0, 1, 2), (-1, -2, -3)), strict=True):
-        a, b, c = (nodes[:, j] for j in rows)
-        first, second = np.hypot(*(b - a).T)[:, None], np.hypot(*(c - b).T)[:, None]
-        out = (b - a) / first
-        direction = out + (out - (c - b) / second) * first / (first + second)
-        lean = (direction * curve.tangent(arc)).sum(axis=1) / np.hypot(*direction.T)
+    for curve, arc, side in zip(curves, arcs, ("south", "north"), strict=True):
+        lean = leaning(lines_off(nodes, side), curve.tangent(arc))
         fixed = np.concatenate([[0.0], _inner_corners(curve), [curve.length]])
         away = np.abs(arc[:, None] - fixed).min(axis=1)
         leans.append(lean * np.clip(away / (RAMP * curve.length), 0.0, 1.0))
