@@ -18,7 +18,7 @@ def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initi
     initial : grid to start from, None for none.
     """
     if tol is not None and not 0 < tol < 1:
-        raise InputError(f"a tolerance of {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
+        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
     if max_cycles < 1:
         raise InputError(f"{max_cycles} cycles are too few", "allow at least 1", parameter="max_cycles")
     if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
@@ -27,7 +27,7 @@ def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initi
 
 
 def initial_nodes(boundary: Boundary, initial: Grid) -> Floats:
-    """Return a planar copy of the nodes of `initial` with the edges of `boundary`; an O grid keeps its cut."""
+    """Return a planar copy of the nodes of `initial` with the edges of `boundary`, but the cut of an O."""
     nodes = initial.nodes.copy(order="K")
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
     if boundary.topology == "o":

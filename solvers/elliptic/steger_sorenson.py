@@ -7,8 +7,8 @@
                              +------- until angles are right -------+    first on few nodes, then on all
 
 The sources (`meshonet.solvers.elliptic.wall_control`) can hold first cells somewhat thinner than those of
-even rows. Thinner ones are made afterwards by `meshonet.solvers.layers.redistribute`, along lines that by then
-leave the wall at the angle.
+even rows. Thinner ones are made by `meshonet.solvers.layers.redistribute`, along lines that by then leave the
+wall at the angle.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.elliptic.wall_control import ControlledEdge
 from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
 from meshonet.solvers.iteration import check_settings
+from meshonet.solvers.pipeline.coarse import evaluate, thinned
 from meshonet.solvers.solution import Solution
 
 FEW = 129
