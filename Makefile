@@ -1,11 +1,11 @@
-# meshonet: make demo, make test, make lint, make train, make bench, make docs
+# meshonet: make demo, make test, make lint, make train, make bench, make docs, make wheel
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
-KERNELS := $(shell find geometry solvers formats include -name '*.pyx' -o -name '*_kernel.c' -o -name '*.h')
+KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs clean
+.PHONY: help demo test test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs wheel clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -17,6 +17,7 @@ help:
 	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
 	@echo 'make docs    the generated pages and pictures of docs/'
+	@echo 'make wheel   dist/meshonet-*.whl for this platform, and the source distribution'
 
 # --- environments: a stamp stands for what is installed in $(VENV)
 $(BIN)/python:
@@ -24,12 +25,12 @@ $(BIN)/python:
 
 $(VENV)/.installed: $(BIN)/python pyproject.toml setup.py constraints.txt $(KERNELS)
 	$(PIP) --editable .
-	@$(BIN)/python -m compileall -q geometry formats solvers meshonet_cli
+	@$(BIN)/python -m compileall -q kernels geometry formats solvers meshonet_cli
 	@touch $@
 
 $(VENV)/.developing: $(BIN)/python pyproject.toml setup.py constraints.txt $(KERNELS)
 	$(PIP) --editable '.[train,test,lint]'
-	@$(BIN)/python -m compileall -q geometry formats solvers meshonet_cli
+	@$(BIN)/python -m compileall -q kernels geometry formats solvers meshonet_cli
 	@touch $(VENV)/.installed $@
 
 # --- the main job
@@ -151,6 +152,11 @@ bench: $(VENV)/.developing
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py
 
+# for an index, wheels of the usual platforms: docs/wheels.md
+wheel: $(BIN)/python
+	$(PIP) build
+	$(BIN)/python -m build --outdir dist
+
 clean:
 	rm -rf build demo *.egg-info $(VENV)/.installed $(VENV)/.developing
-	find geometry solvers formats -name '_*.c' -delete -o -name '*.so' -delete
+	rm -f kernels/_native.c kernels/*.so

@@ -1,19 +1,29 @@
-"""Build of the compiled kernels: every ``_name.pyx`` is one, with ``name_kernel.c`` where that exists."""
+"""Build of the compiled kernels: all C below ``kernels``, bound by one extension, ``meshonet.kernels._native``."""
 
 import os
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from itertools import chain
 from pathlib import Path
 
 from Cython.Build import cythonize
 from setuptools import Extension, setup
+from setuptools.command.build_ext import build_ext
+
+ROOM = Path("kernels")
+FOLDERS = [str(ROOM / "include"), str(ROOM)]
+KERNELS = sorted(str(path) for path in ROOM.glob("*/*.c"))
+HEADERS = sorted(str(path) for end in ("h", "pxi", "pyx") for path in ROOM.rglob(f"*.{end}"))
+WINDOWS = sys.platform == "win32"
 
 # Contracted, reassociated arithmetic for speed; infinities and NaN keep their meaning so that a diverging
 # iteration can be seen. No -march: include/clones.h picks the instruction set when the module is loaded.
-FLAGS = (
-    []
-    if sys.platform == "win32"
+NUMERICS = (
+    ["/O2"]
+    if WINDOWS
     else [
         "-O3",
+        "-g0",
         "-fno-math-errno",
         "-fno-trapping-math",
         "-fassociative-math",
@@ -22,27 +32,49 @@ FLAGS = (
         "-ffp-contract=fast",
     ]
 )
+OTHERWISE: dict[str, list[str]] = {}  # what a kernel is compiled with after these
+GLUE = [] if WINDOWS else ["-O1", "-g0"]
+LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up
 
 
-def extension(pyx: Path) -> Extension:
-    """Return the extension module of one Cython file."""
-    kernel = pyx.with_name(pyx.stem.removeprefix("_") + "_kernel.c")
-    sources = [str(pyx), *([str(kernel)] if kernel.exists() else [])]
-    name = ".".join(pyx.with_suffix("").parts)
-    folders = ["include", str(pyx.parent)]
-    headers = [str(header) for folder in folders for header in sorted(Path(folder).glob("*.h"))]
-    return Extension(
-        name, sources, include_dirs=folders, extra_compile_args=FLAGS, libraries=["m"], depends=headers
-    )
+class BuildKernels(build_ext):
+    """Compiles each kernel with flags of its own, several at a time, before the extension of all."""
+
+    def build_extension(self, ext: Extension) -> None:
+        """Compile the kernels, then what binds them."""
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            ext.extra_objects = list(chain.from_iterable(pool.map(self._compile, KERNELS)))
+        super().build_extension(ext)
+
+    def _compile(self, source: str) -> list[str]:
+        return self.compiler.compile(
+            [source],
+            output_dir=self.build_temp,
+            include_dirs=FOLDERS,
+            extra_postargs=NUMERICS + OTHERWISE.get(source, []),
+            depends=HEADERS,
+        )
 
 
-ROOMS = ("formats", "geometry", "solvers")
-MODULES = [extension(pyx) for room in ROOMS for pyx in sorted(Path(room).rglob("_*.pyx"))]
 setup(
+    cmdclass={"build_ext": BuildKernels},
     ext_modules=cythonize(
-        MODULES,
+        Extension(
+            "meshonet.kernels._native",
+            [str(ROOM / "_native.pyx")],
+            include_dirs=FOLDERS,
+            extra_compile_args=GLUE,
+            extra_link_args=LINK,
+            libraries=[] if WINDOWS else ["m"],
+            depends=[*KERNELS, *HEADERS],
+        ),
         language_level=3,
-        compiler_directives={"boundscheck": False, "wraparound": False, "cdivision": True},
+        emit_linenums=False,
+        compiler_directives={
+            "cdivision": True,
+            "binding": False,
+            "embedsignature": False,
+            "auto_pickle": False,
+        },
     ),
-    options={"build_ext": {"parallel": os.cpu_count() or 1}},
 )

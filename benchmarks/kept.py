@@ -16,7 +16,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 
 ROOT = Path(__file__).parents[1]
-KINDS = {".py", ".pyx", ".c", ".h", ".safetensors"}
+KINDS = {".py", ".pxi", ".c", ".h", ".safetensors"}
 
 
 class Kept:
@@ -24,8 +24,8 @@ class Kept:
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder
-        self._path = folder / f"{_stamp(('geometry', 'solvers'))}.jsonl" if folder else None
-        self._goals = folder / f"goals-{_stamp(('solvers/elliptic',))}" if folder else None
+        self._path = folder / f"{_stamp(('kernels', 'geometry', 'solvers'))}.jsonl" if folder else None
+        self._goals = folder / f"goals-{_stamp(('kernels/elliptic', 'solvers/elliptic'))}" if folder else None
         self._rows: dict[str, Any] = {}
         if self._goals:
             self._goals.mkdir(parents=True, exist_ok=True)

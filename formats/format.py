@@ -70,6 +70,6 @@ def only_one(grids: Iterable[Grid], what: str) -> Grid:
     if next(given, None) is not None:
         raise InputError(
             f"{what} holds one grid and there are several",
-            "use -o 'name-{index}' with that ending, or one .h5",
+            "write one file each ({output} 'name-{{index}}'), or one .h5",
         )
     return first

@@ -126,7 +126,7 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
         return claimed[-1]
     what = f"ending {source.suffix!r} is" if source.suffix else "content is"
     raise InputError(
-        f"its {what} not of a known format", f"name it with --from; {_known()}", source=source.name
+        f"its {what} not of a known format", f"name it with {{from_format}}; {_known()}", source=source.name
     )
 
 
@@ -139,7 +139,9 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         the ending is not known, or the format cannot be written with what `kind` says.
     """
     if not path_text:
-        raise InputError("the output has no name", "name a file, or - for standard output", source="-o")
+        raise InputError(
+            "the output has no name", "name a file, or - for standard output", parameter="output"
+        )
     suffix = Path(path_text).suffix.lower()
     if fmt or path_text == "-":
         claimed: tuple[Format, ...] = (format_named(fmt or "hdf5"),)
@@ -148,7 +150,9 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         if not claimed:
             what = f"ending {suffix!r} is not known" if suffix else "name has no ending to tell the format by"
             raise InputError(
-                f"its {what}", f"choose the format with --to; {_known()}", source=printable(path_text)
+                f"its {what}",
+                f"choose the format with {{to_format}}; {_known()}",
+                source=printable(path_text),
             )
     for found in claimed:
         if getattr(found, f"write_{kind}") is not None:

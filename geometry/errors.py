@@ -33,8 +33,8 @@ class InputError(MeshonetError):
     place : where in the source, e.g. ``line 12`` or ``dataset 'south'``.
     parameter : the parameter the problem is in, by its name in Python.
 
-    Texts refer to parameters in braces, ``{far_field}``: Python's users read ``far_field``, those of the
-    command line ``--far-field`` (`spelled`).
+    Problem and remedy refer to parameters in braces, ``{far_field}``: Python's users read ``far_field``, those
+    of the command line ``--far-field`` (`spelled`).
 
     Examples
     --------
@@ -54,21 +54,22 @@ class InputError(MeshonetError):
 
     def text(self, spelling: Callable[[str], str]) -> str:
         """Return the message, the names of parameters passed through `spelling`."""
-        parameter = f"{{{self.parameter}}}" if self.parameter else ""
-        parts = (self.source, parameter, self.place, self.problem)
+        parameter = spelling(self.parameter) if self.parameter else ""
+        parts = (self.source, parameter, self.place, spelled(self.problem, spelling))
         text = ": ".join(part for part in parts if part)
-        return spelled(f"{text}; {self.remedy}" if self.remedy else text, spelling)
+        return f"{text}; {spelled(self.remedy, spelling)}" if self.remedy else text
 
 
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
-    """Return `text`, its names of parameters in braces passed through `spelling`.
+    """Return `text`, its names of parameters in braces passed through `spelling`; double braces stay single.
 
     Examples
     --------
-    >>> spelled("give {far_field} as well", lambda name: "--" + name.replace("_", "-"))
-    'give --far-field as well'
+    >>> spelled("give {far_field} as 'a-{{index}}'", lambda name: "--" + name.replace("_", "-"))
+    "give --far-field as 'a-{index}'"
     """
-    return re.sub(r"\{([a-z][a-z0-9_]*)\}", lambda match: spelling(match[1]), text)
+    name = r"[a-z][a-z0-9_]*"
+    return re.sub(rf"\{{(\{{{name}\}})\}}|\{{({name})\}}", lambda match: match[1] or spelling(match[2]), text)
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ import typer
 import typer.core
 
 from meshonet_cli.commands import COMMANDS, Command
+from meshonet_cli.options.groups import GROUPS, IO
 from meshonet_cli.stopping import install
 from meshonet_cli.version import VERSION
 
@@ -48,13 +49,27 @@ def options(
 
 
 class Plain(typer.core.TyperCommand):
-    """A command whose usage line says ``GRID...``, where typer's says ``{GRID}``."""
+    """A command whose usage line says ``GRID...``, where typer's says ``{GRID}``, and its help has groups."""
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """Return the words of the usage line; every argument of ours can be given more than once."""
         pieces = super().collect_usage_pieces(ctx)
         words = [piece.strip("{}") for piece in pieces]
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write arguments and options, these by their groups."""
+        groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], **{group: [] for group in GROUPS}}
+        for parameter in self.get_params(ctx):
+            record = parameter.get_help_record(ctx)
+            if record is not None:
+                argument = parameter.param_type_name == "argument"
+                group = "Arguments" if argument else getattr(parameter, "rich_help_panel", None) or IO
+                groups[group].append(record)
+        for title, records in groups.items():
+            if records:
+                with formatter.section(title):
+                    formatter.write_dl(records)
 
 
 def application(commands: Sequence[Command] = COMMANDS) -> Any:

@@ -97,7 +97,7 @@ class Destination:
         if place in self._taken:
             raise InputError(
                 f"would overwrite {place} of {self._taken[place]}",
-                f"put {{index}} into -o {self.text}",
+                f"put {{{{index}}}} into -o {_escaped(self.text)}",
                 source=item.label,
             )
         self._taken[place] = item.label
@@ -108,7 +108,7 @@ class Destination:
         if len(sources) > 1 and not self.holds_many:
             raise InputError(
                 f"{len(sources)} inputs and one {self.format.name} file, which holds one",
-                f"use -o '{_pattern(self.text)}' or one .h5",
+                f"use -o '{_escaped(_pattern(self.text))}' or one .h5",
                 source=self.text,
             )
 
@@ -122,7 +122,7 @@ class Destination:
         if not (item.only or self.holds_many):
             raise InputError(
                 f"holds several grids or boundaries, and a {self.format.name} file holds one",
-                f"use -o '{_pattern(self.text, 'index')}' or one .h5",
+                f"use -o '{_escaped(_pattern(self.text, 'index'))}' or one .h5",
                 source=item.source,
             )
 
@@ -131,6 +131,11 @@ class Destination:
         folder = self.format.fills_folder
         with whole_file(path, make_folder=self.each or folder, beside=folder or self.format.beside) as part:
             self._put(part, what)
+
+
+def _escaped(text: str) -> str:
+    """Return `text` for a message, where names in single braces would be those of parameters."""
+    return re.sub(r"\{(\w+)\}", r"{{\1}}", text)
 
 
 def _pattern(text: str, field: str = "stem") -> str:
@@ -147,8 +152,8 @@ def _has_fields(text: str) -> bool:
     unknown = [field for field in fields if field not in FIELDS]
     if unknown:
         raise InputError(
-            f"{text!r} has a field that is not known",
-            "use {stem}, {index} or {name}; write {{ and }} for braces",
+            f"{_escaped(repr(text))} has a field that is not known",
+            "use {{stem}}, {{index}} or {{name}}; write {{ and }} for braces",
             source="-o",
         )
     return bool(fields)

@@ -25,8 +25,8 @@ class Gate:
     Parameters
     ----------
     text : as the user wrote it.
-    metric : a metric of `meshonet.geometry.quality.metrics`, ``folded``, the count of folded cells, or a figure that the
-        command has beside them.
+    metric : a metric of `meshonet.geometry.quality.metrics`, ``folded``, the count of folded cells, or a
+        figure that the command has beside them.
     statistic : min, mean, max, p01 or p99 of the metric over all cells.
     compare : ``>``, ``>=``, ``<`` or ``<=``.
     limit : in the metric's unit.

@@ -3,61 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated
-
-import typer
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.solvers.solution import Solution
-    from meshonet_cli.options import SpacingName
-
-# fmt: off
-WallSpacing = Annotated[
-    float | None,
-    typer.Option(
-        "--wall-spacing", metavar="H", show_default=False,
-        help="Height of the first cell at every wall node. Around a body in chords: a grid for boundary "
-        "layers, marched from the wall. In a four-sided domain off south and north, in its own unit.",
-    ),
-]
-WallHeight = Annotated[
-    float | None,
-    typer.Option(
-        "--wall-spacing", metavar="H", show_default=False,
-        help="Height of the first cell at every wall node: around a body in chords, in a four-sided domain "
-        "off south and north in its own unit.",
-    ),
-]
-YPlus = Annotated[
-    float | None,
-    typer.Option(
-        "--y-plus", metavar="Y", show_default=False,
-        help="The same by its y+, estimated as on a flat plate; needs --reynolds.",
-    ),
-]
-Reynolds = Annotated[
-    float | None,
-    typer.Option(
-        "--reynolds", metavar="RE", show_default=False,
-        help="Reynolds number of the chord; of a four-sided domain, of the extent of its south side.",
-    ),
-]
-ChordFraction = Annotated[
-    float,
-    typer.Option(
-        "--chord-fraction", metavar="X", help="Where along the chord --y-plus is estimated, 0 to 1."
-    ),
-]
-Growth = Annotated[
-    float | None,
-    typer.Option(
-        "--growth", metavar="G", show_default=False,
-        help="Largest ratio of neighbouring cells away from the wall, e.g. 1.15; without --res there are as "
-        "many rows as it needs. [default: what the rows need]",
-    ),
-]
-# fmt: on
+    from meshonet_cli.options import LayerOptions, SpacingName
 
 
 @dataclass(frozen=True)
@@ -78,14 +29,7 @@ class Layers:
     note: str = ""
 
 
-def read_layers(
-    wall_spacing: float | None,
-    y_plus: float | None,
-    reynolds: float | None,
-    chord_fraction: float,
-    growth: float | None,
-    res: str | None,
-) -> Layers | None:
+def read_layers(options: LayerOptions, res: str | None) -> Layers | None:
     """Return what the options ask for, None when they do not.
 
     Raises
@@ -96,6 +40,8 @@ def read_layers(
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
 
+    wall_spacing, y_plus, reynolds = options.wall_spacing, options.y_plus, options.reynolds
+    chord_fraction, growth = options.chord_fraction, options.growth
     if wall_spacing is not None and y_plus is not None:
         raise InputError(
             "--wall-spacing and --y-plus both say how high the first cell is", "give one of them"

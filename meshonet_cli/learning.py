@@ -31,7 +31,7 @@ class Run:
     ----------
     output : model file.
     model : name in `meshonet.solvers.neural.registry.MODELS`, or None to go by what the dataset holds.
-    plan : settings of `meshonet.solvers.neural.fit.plan.Plan` that are given; None stands for the model's own.
+    plan : settings of `meshonet.solvers.neural.fit.plan.Plan` to change; None stands for the model's own.
     settings : of the model, ``name=value`` each.
     split : way or file that says which grids are trained on; None for what the dataset says.
     held_out : shapes kept out to watch the loss, None for the model's own.

@@ -1,71 +1,39 @@
-"""The reference of every command, ``docs/cli.md``: ``python -m meshonet_cli.reference > docs/cli.md``.
-
-Made from the application itself, so that it cannot say anything else than ``--help`` does.
-"""
+"""``docs/cli.md``, what every ``--help`` prints: ``python -m meshonet_cli.reference > docs/cli.md``."""
 
 from __future__ import annotations
 
+import contextlib
+import io
 from collections.abc import Iterator
-from typing import Any
 
 from meshonet_cli import app
-from meshonet_cli.commands import COMMANDS, Command
+from meshonet_cli.commands import COMMANDS
+
+WIDTH = 98
+"""Columns of the help texts."""
 
 _HEAD = """# Commands
 
 <!-- made by python -m meshonet_cli.reference; a test keeps it current -->
 
-Installed as `meshonet`; `python -m meshonet_cli` is the same program. Every command has `--help`.
+What `meshonet --help` and the `--help` of every command print; `python -m meshonet_cli` is the same program.
 """
 
 
 def reference() -> str:
-    """Return the reference of every command in Markdown."""
-    group = app.application()
-    overview = ["| command | does |", "| --- | --- |"]
-    sections = []
+    """Return the page in Markdown."""
+    lines = [_HEAD, *_block()]
     for command in COMMANDS:
-        parsed = group.commands[command.name]
-        overview.append(f"| [`{command.name}`](#{command.name}) | {_first(parsed.help)} |")
-        sections.append("\n".join(_section(command, parsed)))
-    codes = ["## Exit codes", "", *_table(app.__doc__ or "")]
-    return "\n".join([_HEAD, *overview, "", *sections, *codes, ""])
+        lines += [f"## {command.name}", "", *_block(command.name)]
+    return "\n".join([*lines, "## Exit codes", "", *_table(app.__doc__ or ""), ""])
 
 
-def _section(command: Command, parsed: Any) -> Iterator[str]:
-    yield f"## {command.name}"
-    yield ""
-    yield parsed.help.strip()
-    yield ""
-    yield "```sh"
-    yield from command.examples
-    yield "```"
-    yield ""
-    yield "| argument or option | meaning |"
-    yield "| --- | --- |"
-    for option in parsed.params:
-        yield f"| {_spelled(option)} | {_meaning(option)} |"
-    yield ""
-
-
-def _spelled(option: Any) -> str:
-    if option.param_type_name == "argument":
-        return f"`{option.metavar}`" if "..." in option.metavar else f"`{option.metavar}...`"
-    value = f" {option.metavar}" if option.metavar else ""
-    return "`" + ", ".join(option.opts).replace("|", r"\|") + value.replace("|", r"\|") + "`"
-
-
-def _meaning(option: Any) -> str:
-    meaning = str(option.help).replace("|", r"\|")
-    if getattr(option, "show_default", False) and option.default not in (None, False, ()):
-        meaning += f" [default: {option.default}]"
-    if option.required:
-        meaning += " [required]"
-    return meaning
-
-
-def _first(text: str) -> str:
-    return text.strip().splitlines()[0]
+def _block(*words: str) -> tuple[str, ...]:
+    """Return what ``--help`` prints as a block of Markdown."""
+    arguments = [*words, "--help"]
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        app.application().main(arguments, prog_name="meshonet", standalone_mode=False, terminal_width=WIDTH)
+    return "```text", printed.getvalue().rstrip(), "```", ""
 
 
 def _table(docstring: str) -> Iterator[str]:

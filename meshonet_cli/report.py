@@ -204,7 +204,11 @@ def option(parameter: str) -> str:
     >>> option("far_field")
     '--far-field'
     """
-    return "--" + parameter.replace("_", "-")
+    return _OPTIONS.get(parameter) or "--" + parameter.replace("_", "-")
+
+
+_OPTIONS = {"from_format": "--from", "to_format": "--to", "output": "-o"}
+"""Parameters whose options have other names."""
 
 
 def _after(path: tuple[str, ...]) -> str:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Annotated, TypeAlias
-
-import typer
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
@@ -14,6 +12,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.layers.first_cells import Heights
     from meshonet.solvers.solution import Solution
     from meshonet_cli.layers import Layers
+    from meshonet_cli.options import LayerOptions, SideOptions
 
 SIDES = ("south", "north", "west", "east")
 UPRIGHT = 0.3
@@ -21,51 +20,6 @@ UPRIGHT = 0.3
 LEANING = 1.0
 """Degrees by which they may lean when sources have turned them."""
 Method: TypeAlias = "Callable[..., Solution]"
-
-# fmt: off
-SpacingSouth = Annotated[
-    float | None,
-    typer.Option(
-        "--spacing-south", metavar="H", show_default=False,
-        help="Height of the first cell at every node of the south side of a four-sided domain, in its unit.",
-    ),
-]
-SpacingNorth = Annotated[
-    float | None,
-    typer.Option("--spacing-north", metavar="H", show_default=False, help="The same off the north side."),
-]
-SpacingWest = Annotated[
-    float | None,
-    typer.Option("--spacing-west", metavar="H", show_default=False, help="The same off the west side."),
-]
-SpacingEast = Annotated[
-    float | None,
-    typer.Option("--spacing-east", metavar="H", show_default=False, help="The same off the east side."),
-]
-ConstantLayers = Annotated[
-    int | None,
-    typer.Option(
-        "--constant-layers", metavar="K", min=1, show_default=False,
-        help="So many first cells are equally high; beyond, they grow. [default: 1]",
-    ),
-]
-WallAngle = Annotated[
-    float | None,
-    typer.Option(
-        "--wall-angle", metavar="DEGREES", show_default=False,
-        help="Angle at which lines leave the walls, for steger-sorenson: sides with a first cell, or else "
-        "south and north, or a body. [default: 90]",
-    ),
-]
-Slide = Annotated[
-    bool | None,
-    typer.Option(
-        "--slide/--no-slide", show_default=False,
-        help="Move the nodes of south and north along these walls of a four-sided domain to where grid lines "
-        "leave at right angles. [default: with --wall-spacing, when the nodes were sampled here]",
-    ),
-]
-# fmt: on
 
 
 @dataclass(frozen=True)
@@ -90,15 +44,14 @@ class Edges:
 
 
 def read_edges(
-    asked: Sequence[float | None],
-    constant: int | None,
-    growth: float | None,
+    sides: SideOptions | None,
+    first: LayerOptions,
     res: str | None,
     layers: Layers | None,
     slide: bool | None = None,
     angle: float | None = None,
 ) -> Edges:
-    """Return what the options ask for, `asked` off south, north, west and east.
+    """Return what the options ask for, off single `sides` where the command has them.
 
     Raises
     ------
@@ -107,7 +60,9 @@ def read_edges(
     """
     from meshonet.geometry.errors import InputError
 
-    heights = {side: height for side, height in zip(SIDES, asked, strict=False) if height is not None}
+    asked = {} if sides is None else {side: getattr(sides, f"spacing_{side}") for side in SIDES}
+    heights = {side: height for side, height in asked.items() if height is not None}
+    constant, growth = first.constant_layers, first.growth
     for side, height in heights.items():
         if not 0 < height < float("inf"):
             raise InputError(
@@ -183,8 +138,8 @@ class WithWalls:
         from time import perf_counter
 
         from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401  (loaded before the clock starts)
-        from meshonet.solvers.layers.redistribute import spread
         from meshonet.solvers.layers import slide_nodes  # noqa: F401
+        from meshonet.solvers.layers.redistribute import spread
 
         begun = perf_counter()
         solution = self._solved(boundary, heights)

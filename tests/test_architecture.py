@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from meshonet_cli.commands import COMMANDS
-from meshonet_cli.options import SpacingName, TopologyName
+from meshonet_cli.options.sampling import SpacingName, TopologyName
 from meshonet_cli.reference import reference
 from meshonet_cli.version import VERSION
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 import re
 import shlex
 import shutil
@@ -41,6 +42,20 @@ def test_curves_have_a_row_for_every_epoch_of_their_model() -> None:
         first = path.stem == "quad-first"  # the first of two runs, whose model is not kept
         epochs = len(rows) - 1 if first else described(path.stem)["recipe"]["epochs"]
         assert [row.split(",")[0] for row in rows[1:]] == [str(k + 1) for k in range(epochs)], path.name
+
+
+@pytest.mark.parametrize("command", ["tfi", "solve-pde", "infer", "train"])
+def test_the_reference_is_what_help_prints(command: str) -> None:
+    words = [sys.executable, "-m", "meshonet_cli", command, "--help"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100"}
+    printed = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=60).stdout
+    assert f"## {command}\n\n```text\n{printed.rstrip()}\n```\n" in (ROOT / "docs" / "cli.md").read_text()
+
+
+def test_the_reference_has_both_halves_of_switches() -> None:
+    page = (ROOT / "docs" / "cli.md").read_text()
+    assert page.count("--repair / --no-repair") == 3
+    assert "--slide / --no-slide" in page
 
 
 def test_the_families_page_is_current() -> None:

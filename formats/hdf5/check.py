@@ -84,7 +84,7 @@ class Checked:
         if not found:
             raise InputError(
                 f"no sample is marked {split!r}",
-                "split it when it is made: meshonet sample-boundary --family NAME --split interpolation",
+                "mark samples where they are made, by {family} and {split}",
             )
         return found
 

@@ -104,7 +104,7 @@ class Writer:
         if shape != self._first:
             raise InputError(
                 "sample {} is {}x{} {} and the first is {}x{} {}".format(self._count, *shape, *self._first),
-                "one dataset has one size and topology: set --res and --topology, or write one file each",
+                "one dataset has one size and topology: set {res} and {topology}, or write one file each",
             )
         arrays: dict[str, Floats]
         if isinstance(sample, Grid):  # of any quality: its edges may be no valid boundary

@@ -45,7 +45,7 @@ def candidates(data: bytes) -> list[Candidate]:
         near = f" (a header could be dims {', '.join(tried[:3])})" if tried else ""
         raise InputError(
             f"has {len(data)} bytes and no binary Plot3D layout fits{near}",
-            "the file is cut short, or is something else: name its format with --from",
+            "the file is cut short, or is something else: name its format with {from_format}",
         )
     return found
 

@@ -59,7 +59,7 @@ def _misfit(tried: list[Layout], found: int) -> InputError:
     if not tried:
         return InputError(
             "does not start with the dims of a Plot3D grid",
-            "start it with [count of blocks] ni nj [nk], or name another format with --from",
+            "start it with [count of blocks] ni nj [nk], or name another format with {from_format}",
         )
     near = min(
         (layout for layout in tried if not layout.iblank), key=lambda layout: abs(_length(layout) - found)
@@ -117,6 +117,6 @@ def _not_a_number(word: bytes, data: bytes) -> InputError:
     told = word[:40].decode("latin-1")
     return InputError(
         f"{told!r} is not a number",
-        "write numbers only, or name another format with --from",
+        "write numbers only, or name another format with {from_format}",
         place=f"line {line}",
     )

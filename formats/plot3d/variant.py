@@ -53,7 +53,7 @@ class Variant:
             it asks for what is only read.
         """
         if self.words & _READ_ONLY - {"whole"}:
-            raise InputError("planes are read and not written", "leave the word out", source="--plot3d")
+            raise InputError("planes are read and not written", "leave the word out", parameter="plot3d")
         return self
 
 
@@ -74,11 +74,11 @@ def parse_variant(text: str) -> Variant:
     known = [word for row in CHOICES for word in row]
     for word in words:
         if word not in known:
-            raise InputError(f"{word!r} is not known", "use " + " ".join(known), source="--plot3d")
+            raise InputError(f"{word!r} is not known", "use " + " ".join(known), parameter="plot3d")
     for row in CHOICES:
         given = [word for word in row if word in words]
         if len(given) > 1:
-            raise InputError(" and ".join(given) + " exclude each other", "give one", source="--plot3d")
+            raise InputError(" and ".join(given) + " exclude each other", "give one", parameter="plot3d")
     return Variant(frozenset(words))
 
 

@@ -8,7 +8,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from formats._rows import FLOAT_BYTES, INTEGER_BYTES, put_floats, put_integers
+from meshonet.kernels._native import FLOAT_BYTES, INTEGER_BYTES, put_rows
 
 _ROWS = 1 << 13
 """Rows turned into text at a time: their text stays in the second-level cache."""
@@ -34,10 +34,8 @@ def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
     field = "%e" if "%e" in form else "%d"
     pieces = [piece.encode("ascii") for piece in f"{form}\n".split(field)]
     text, at = b"".join(pieces), np.array([0, *accumulate(map(len, pieces))], np.intp)
-    put, dtype, width = (
-        (put_floats, np.float64, FLOAT_BYTES) if field == "%e" else (put_integers, np.int64, INTEGER_BYTES)
-    )
+    dtype, width = (np.float64, FLOAT_BYTES) if field == "%e" else (np.int64, INTEGER_BYTES)
     buffer = np.empty(min(_ROWS, len(rows)) * (rows.shape[1] * width + len(text)), np.int8)
     for start in range(0, len(rows), _ROWS):
         part = np.ascontiguousarray(rows[start : start + _ROWS], dtype)
-        stream.write(buffer[: put(buffer, part, text, at)].data)
+        stream.write(buffer[: put_rows(buffer, part, text, at)].data)

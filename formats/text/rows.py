@@ -69,7 +69,9 @@ def decode(data: bytes) -> str:
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", errors="replace")
     if b"\0" in data:
-        raise InputError("holds binary data, not text", "name its format with --from, or give a text file")
+        raise InputError(
+            "holds binary data, not text", "name its format with {from_format}, or give a text file"
+        )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:

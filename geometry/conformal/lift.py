@@ -15,7 +15,7 @@ The wall is walked counter-clockwise here: callers mirror the clockwise wall of 
 A first node that turns by more than 80 degrees is a sharp trailing edge and an end of the slit. Of other
 walls the nodes within .35 chords of the first that turn most, and more than 15 degrees, are the corners of a
 base, and the slit ends behind it; without them it ends a(1 - sqrt(1 - r/a)) off each tip, r the tip's radius,
-a the half chord: at the foci of an ellipse. The way there is lift_kernel.c.
+a the half chord: at the foci of an ellipse. The way there is kernels/conformal/lift.c.
 
 Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Motorluftschiff. 9 (1918) 111.
 """
@@ -28,11 +28,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from geometry import _lift
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.errors import InputError
+from meshonet.kernels import _native
 
-SECOND_PRONG = 0.25  # as in lift_kernel.c
+SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 
 Plane = TypeVar("Plane", complex, Complexes)
 
@@ -83,7 +83,7 @@ class Lift:
 
     def to_strip(self, z: Complexes) -> Complexes:
         """Return w for points z in walking order around and outside the body; phi is continuous along it."""
-        return _lift.to_strip(self, np.ascontiguousarray(z, complex))
+        return _native.lift_to_strip(self, np.ascontiguousarray(z, complex))
 
 
 def mirrored(nodes: Floats) -> Complexes:
@@ -114,7 +114,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     if len(wall) < 8:
         raise InputError(f"the wall has {len(wall)} nodes", "the operator needs at least 8: raise --res")
     ring = np.ascontiguousarray(wall, complex)
-    centre, quarter, removed, pole, phase, w, corners, winding = _lift.lift(ring, swap)
+    centre, quarter, removed, pole, phase, w, corners, winding = _native.lift_body(ring, swap)
     if not 0.9 < winding < 1.1:
         raise InputError(
             "the wall does not wind once around its middle", "use meshonet solve-pde for this shape"
@@ -124,12 +124,12 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:
     """Return zeta along the wall, changing root where a side of a cambered wall crosses the slit."""
-    return _lift.follow(np.ascontiguousarray(wall, complex), centre, quarter)
+    return _native.lift_follow(np.ascontiguousarray(wall, complex), centre, quarter)
 
 
 def beside(wall: Complexes, tip: int, other: complex) -> tuple[int, int, int]:
     """Return the nodes ahead of `tip`, at it and behind it, .004 of the chord to `other` away from it."""
-    ahead, behind = _lift.beside(np.ascontiguousarray(wall, complex), tip, other)
+    ahead, behind = _native.lift_beside(np.ascontiguousarray(wall, complex), tip, other)
     return ahead, tip, behind
 
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry._curve import locate, slopes, speeds, values
 from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.curves.spline import spline_slopes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
 _STEPS = 8
 """Parts of an interval in the table of arc length."""
@@ -89,8 +89,8 @@ class Curve:
     def _measure(self, intervals: int) -> None:
         """Make the table of arc length, and the slopes of its inverse."""
         inner, speed = np.empty((intervals, len(_INNER))), np.empty((intervals, len(_EDGES)))
-        speeds(self._cubic, _INNER, inner)
-        speeds(self._cubic, _EDGES, speed)
+        curve_speeds(self._cubic, _INNER, inner)
+        curve_speeds(self._cubic, _EDGES, speed)
         pieces = (inner.reshape(-1, _STEPS, 3) @ _WEIGHTS).ravel()
         self._table: Floats = np.concatenate([[0.0], np.cumsum(pieces)])
         # dt/ds in units of the piece; at most 3 keeps the inverse monotone
@@ -105,7 +105,7 @@ class Curve:
         """Return the interval and the parameter in it (0 to 1) at arc lengths s (m,)."""
         s = np.ascontiguousarray(s, dtype=np.float64)
         i, t = np.empty(s.shape, dtype=np.intp), np.empty(s.shape)
-        locate(s, self._table, self._rate_start, self._rate_stop, _STEPS, self.closed, i, t)
+        curve_locate(s, self._table, self._rate_start, self._rate_stop, _STEPS, self.closed, i, t)
         return i, t
 
     def at(self, s: Floats) -> Floats:
@@ -116,7 +116,7 @@ class Curve:
         """
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
-        values(self._cubic, i, t, self.points[0 if self.closed else -1], points)
+        curve_points(self._cubic, i, t, self.points[0 if self.closed else -1], points)
         return points
 
     def tangent(self, s: Floats) -> Floats:
@@ -126,7 +126,7 @@ class Curve:
 
     def _derivative(self, i: Indices, t: Floats) -> Floats:
         d = np.empty((len(t), 2))
-        slopes(self._cubic, i, t, d)
+        curve_slopes(self._cubic, i, t, d)
         return d
 
     def curvature(self, s: Floats) -> Floats:

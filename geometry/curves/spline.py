@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geometry._spline import solve_tridiagonal
 from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.curves.limiter import limited
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import solve_tridiagonal
 
 
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry._segments import crossing_pairs
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.kernels._native import crossing_segments
 
 _BUDGET = 50_000_000
 """Comparisons before the sweep gives way to an index tree: a quarter of a second."""
@@ -80,7 +80,7 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     other = np.roll(along, -1) if closed else along[1:]
     low, top = np.minimum(along[: len(end)], other), np.maximum(along[: len(end)], other)
     top += _ROUNDING * np.abs(along).max(initial=0.0)  # of the products
-    pairs, complete = crossing_pairs(p, closed, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
+    pairs, complete = crossing_segments(p, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
     if not complete:
         pairs = _pairs_by_tree(p, end, closed, limit)
     return [Crossing(i, j, *_shared_point(p, end, i, j)) for i, j in pairs]

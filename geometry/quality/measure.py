@@ -11,13 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry import _cells
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.connection import wake_cells
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
 from meshonet.geometry.quality.metrics import METRICS, NAMES
 from meshonet.geometry.quality.percentiles import Run, no_run, prepared
+from meshonet.kernels import _native
 
 PERCENTS = (1.0, 99.0)
 FEW = 1 << 18
@@ -67,14 +67,12 @@ def count_folded(nodes: Floats) -> int:
     >>> count_folded(square), count_folded(square[::-1])
     (0, 2)
     """
-    return int(_cells.count_folded(*_planes(nodes)))
+    return _native.count_folded(*_planes(nodes))
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
     """Return (n, 2) indices (i, j) of the folded cells of `nodes` (ni, nj, 2), in order of i, then j."""
-    x, y = _planes(nodes)
-    cells: NDArray[np.int64] = _cells.folded_cells(x, y, _cells.count_folded(x, y))
-    return cells
+    return _native.folded_cells(*_planes(nodes))
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
@@ -173,7 +171,7 @@ def _summed(
 ) -> tuple[Floats, NDArray[np.int64]]:
     """Return what `_run` does, for planes x and y; `joins` are whether they close and the cells of a wake."""
     table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
-    _cells.measure(x, y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
+    _native.measure_cells(x, y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
     return table, where
 
 

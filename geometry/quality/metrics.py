@@ -40,7 +40,7 @@ class Metric:
     short: str
 
 
-# the order of the compiled kernel (geometry/cells_kernel.h)
+# the order of the compiled kernel (kernels/geometry/cells.h)
 METRICS: tuple[Metric, ...] = (
     Metric("max_angle", "deg", "max", "greatest included angle"),
     Metric("min_angle", "deg", "min", "least included angle"),

@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geometry import _cells
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.metrics import METRICS
+from meshonet.kernels._native import measure_cells
 
 TILES, TILE = 4096, 8
 """Tiles of the sample, and their cells along each direction."""
@@ -30,7 +30,7 @@ ROOM = 0.03
 
 @dataclass(frozen=True)
 class Run:
-    """What one run over all cells needs beforehand and leaves behind, see `geometry._cells.measure`.
+    """What one run over all cells needs beforehand and leaves behind, see `kernels.measure_cells`.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def _sample(x: Floats, y: Floats) -> Floats:
     u, v = (tile.reshape(i.shape[1], -1) for tile in tiles)
     table, where, run = np.empty((n, 3)), np.empty((n, 2, 2), dtype=np.int64), no_run()
     values = np.empty((n, i.shape[1] - 1, u.shape[1] - 1))
-    _cells.measure(u, v, False, 0, table, where, 0, values, run.brackets, run.counts, run.caught)
+    measure_cells(u, v, False, 0, table, where, 0, values, run.brackets, run.counts, run.caught)
     inside = np.zeros((TILES, i.shape[1] - 1, j.shape[1]), dtype=bool)
     # the last column of a tile joins it to the next one
     inside[..., :-1] = inside_i[:, :, None] & inside_j[:, None, :]

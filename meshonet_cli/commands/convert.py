@@ -16,10 +16,14 @@ EXAMPLES = (
     "meshonet convert grid.vts grid.p3d --plot3d fortran,big,single",
     "meshonet convert --list-formats",
 )
+_option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 
 
 # fmt: off
+@o.expanded
 def convert(
+    reading: o.FileOptions,
+    printing: o.PrintOptions,
     files: Annotated[
         list[str] | None,
         typer.Argument(
@@ -29,30 +33,30 @@ def convert(
     ] = None,
     output: Annotated[
         str | None,
-        typer.Option(
-            "-o", "--output", metavar="OUT", show_default=False,
+        _output(
+            "-o", "--output", metavar="OUT",
             help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also "
             "{name}, {index}) or one .h5.",
         ),
     ] = None,
     extrude: Annotated[
         float | None,
-        typer.Option(
-            "--extrude", metavar="H", show_default=False,
+        _option(
+            "--extrude", metavar="H",
             help="Make the grid 3D: this high in z, one cell as 2D cases of 3D solvers need it.",
         ),
     ] = None,
     planes: Annotated[
         int | None,
-        typer.Option(
-            "--planes", metavar="K", min=2, max=10_000, show_default=False,
+        _option(
+            "--planes", metavar="K", min=2, max=10_000,
             help="With --extrude: planes of nodes in z, so one cell fewer. [default: 2]",
         ),
     ] = None,
     plot3d: Annotated[
         str | None,
-        typer.Option(
-            "--plot3d", metavar="WORDS", show_default=False,
+        _output(
+            "--plot3d", metavar="WORDS",
             help="Variant of the Plot3D file to write, else to read: of ascii/binary/fortran, multi/single, "
             "2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes, span-k/span-i/span-j, with "
             "commas. Reading finds out what can be found; --from plot3d:WORDS says it in any command.",
@@ -60,11 +64,11 @@ def convert(
     ] = None,
     swap: Annotated[
         bool,
-        typer.Option("--swap", help="Have xi run where eta ran (four-sided grids), still right-handed."),
+        _option("--swap", help="Have xi run where eta ran (four-sided grids), still right-handed."),
     ] = False,
     normalise: Annotated[
         bool,
-        typer.Option(
+        _option(
             "--normalise",
             help="Scale to unit chord, leading edge at (0, 0) and trailing edge at (1, 0); four-sided grids "
             "to unit length.",
@@ -72,38 +76,31 @@ def convert(
     ] = False,
     coarsen: Annotated[
         int | None,
-        typer.Option(
-            "--coarsen", metavar="K", min=2, max=10_000, show_default=False,
+        _option(
+            "--coarsen", metavar="K", min=2, max=10_000,
             help="Keep every K-th node along xi and eta; K must divide the cells.",
         ),
     ] = None,
     list_formats: Annotated[
-        bool, typer.Option("--list-formats", help="Print what can be read and written, and stop.")
+        bool, _output("--list-formats", help="Print what can be read and written, and stop.")
     ] = False,
-    from_format: o.From = None,
-    to_format: o.To = None,
-    skip_existing: o.SkipExisting = False,
-    as_json: o.AsJson = False,
-    quiet: o.Quiet = False,
-    debug: o.Debug = False,
 ) -> int:
     """Turn files from one format into another."""
     from meshonet.geometry.errors import InputError
     from meshonet_cli.converting import Change, convert_files, in_plot3d, print_formats
-    from meshonet_cli.session import Session
 
-    session = Session(quiet=quiet, as_json=as_json, debug=debug)
+    session = printing.session()
     if list_formats:
-        return print_formats(session, as_json=as_json)
+        return print_formats(session, as_json=printing.as_json)
     given = [*(files or []), *([output] if output else [])]
     if len(given) < 2:
         remedy = f"name it: meshonet convert {given[0] if given else 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
     *sources, target = given
-    from_format, to_format = in_plot3d(plot3d, target, from_format, to_format)
+    from_format, to_format = in_plot3d(plot3d, target, reading.from_format, reading.to_format)
     return convert_files(
         sources, target, session,
-        from_format=from_format, to_format=to_format, skip_existing=skip_existing,
+        from_format=from_format, to_format=to_format, skip_existing=reading.skip_existing,
         change=Change(extrude, planes, swap=swap, normalise=normalise, coarsen=coarsen or 1),
     )
 # fmt: on

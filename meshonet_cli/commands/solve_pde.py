@@ -2,11 +2,7 @@
 
 from typing import Annotated, Literal
 
-import typer
-
-from meshonet_cli import layers as layer
 from meshonet_cli import options as o
-from meshonet_cli import walls as wall
 
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
@@ -16,27 +12,30 @@ EXAMPLES = (
     "meshonet solve-pde duct.csv --res 25x13 --refine 3 -o finest.vts",
     "meshonet solve-pde duct.csv --method variational --res 129 -o best.vts",
     "meshonet solve-pde duct.csv --method steger-sorenson --spacing-south 1e-3 -o upright.vts",
-    "meshonet solve-pde duct.csv --res 200x80 --wall-spacing 1e-4 --slide -o channel.vts",
+    "meshonet solve-pde duct.csv --res 200x80 --first-cell 1e-4 --slide -o channel.vts",
     "meshonet solve-pde airfoil.dat --res 250x100 --y-plus 1 --reynolds 6e6 -o viscous.vts",
 )
+
+_option = o.option_of(o.METHOD)
 
 # fmt: off
 Method = Annotated[
     Literal["auto", "winslow", "thomas-middlecoff", "steger-sorenson", "variational", "hyperbolic"],
-    typer.Option(
+    _option(
         "--method", metavar="auto|winslow|thomas-middlecoff|steger-sorenson|variational|hyperbolic",
-        help="Equations to solve: winslow is elliptic; thomas-middlecoff too, with control functions that "
-        "carry the spacing of the edges inside; steger-sorenson has sources at walls that turn the lines "
-        "there to --wall-angle; variational minimises a functional of angles "
-        "and edge lengths: better angles, no folds; hyperbolic marches from the wall. auto: hyperbolic "
-        "around bodies when a first cell is given, and on C grids, with one of its own choice, unless "
-        "--coarse, --refine, --tol, --max-cycles or --initial is given; else winslow.",
+        show_default=True,
+        help="winslow: elliptic, without control functions. thomas-middlecoff: with control functions that "
+        "carry the spacing of the edges inside. steger-sorenson: with sources at walls that turn grid lines "
+        "to --wall-angle there. variational: minimises a functional of angles and edge lengths; better "
+        "angles, no folds. hyperbolic: marches from the wall. auto: hyperbolic around bodies with a first "
+        "cell and on C grids (with a first cell of its own), unless --coarse, --refine, --tol, --max-cycles "
+        "or --initial is given; else winslow.",
     ),
 ]
 Tolerance = Annotated[
     float | None,
-    typer.Option(
-        "--tol", metavar="T", show_default=False,
+    _option(
+        "--tol", metavar="T",
         help="Stop at this residual, relative to that of the interpolated start (variational: when no node "
         "moves further, in square roots of the area). [default: where more cycles change the grid by less "
         "than a finer one would]",
@@ -44,60 +43,59 @@ Tolerance = Annotated[
 ]
 MaxCycles = Annotated[
     int | None,
-    typer.Option(
-        "--max-cycles", metavar="N", min=1, show_default=False,
+    _option(
+        "--max-cycles", metavar="N", min=1,
         help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
     ),
 ]
 Coarse = Annotated[
     str,
-    typer.Option(
-        "--coarse", metavar="auto|off|N",
-        help="Solve on N x N nodes and evaluate at --res by splines. auto: on quads (C grids), winslow "
-        "above 512 nodes a side with 257 and variational above 257 with 129, which measures as good; in full "
-        "with --tol, --max-cycles or --initial.",
+    _option(
+        "--coarse", metavar="auto|off|N", show_default=True,
+        help="Solve on N x N nodes and interpolate to --res by splines. auto does so on large quads and C "
+        "grids, where it measures as well: winslow above 512 nodes a side with 257, variational above 257 "
+        "with 129; not with --tol, --max-cycles or --initial.",
     ),
 ]
 Refine = Annotated[
     int,
-    typer.Option(
-        "--refine", metavar="K", min=0, max=8, show_default=False,
+    _option(
+        "--refine", metavar="K", min=0, max=8,
         help="Solve at --res, halve all cells and solve again, K times: the finest grid of a family; "
         "convert --coarsen 2 makes the others of it.",
     ),
 ]
 Initial = Annotated[
-    str | None, typer.Option("--initial", metavar="GRID", show_default=False, help="Grid to start from.")
-]
-Repair = Annotated[
-    bool,
-    typer.Option(
-        "--repair/--no-repair",
-        help="Unfold folded cells; without it a grid is as its equations have it, or refused.",
-    ),
+    str | None, _option("--initial", metavar="GRID", help="Grid to start from.")
 ]
 RepairMargin = Annotated[
     int | None,
-    typer.Option(
-        "--repair-margin", metavar="CELLS", min=2, max=24, show_default=False,
-        help="Cells around folded ones that move with them when they are unfolded. 12 takes longer and "
-        "blends in better. [default: 6, more where that is not enough]",
+    o.option_of(o.CHECKS)(
+        "--repair-margin", metavar="CELLS", min=2, max=24,
+        help="Width of the band of cells around folded ones that moves when they are unfolded; 12 is slower "
+        "and smoother. [default: 6, more where that is not enough]",
     ),
 ]
 History = Annotated[
     str | None,
-    typer.Option(
-        "--history", metavar="F.csv", show_default=False,
+    o.option_of(o.IO)(
+        "--history", metavar="F.csv",
         help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
     ),
 ]
 # fmt: on
 
 
+@o.expanded
 def solve_pde(
     boundary: o.Boundaries,
     output: o.Output,
-    res: o.Resolution = None,
+    sampling: o.SamplingOptions,
+    first: o.LayerOptions,
+    sides: o.SideOptions,
+    checks: o.CheckOptions,
+    files: o.FileOptions,
+    printing: o.PrintOptions,
     method: Method = "auto",
     tol: Tolerance = None,
     max_cycles: MaxCycles = None,
@@ -105,62 +103,27 @@ def solve_pde(
     refine: Refine = 0,
     initial: Initial = None,
     history: History = None,
-    topology: o.TopologyOption = "auto",
-    spacing: o.SpacingOption = "auto",
-    le_spacing: o.LeSpacing = None,
-    te_spacing: o.TeSpacing = None,
-    wall_spacing: layer.WallSpacing = None,
-    y_plus: layer.YPlus = None,
-    reynolds: layer.Reynolds = None,
-    chord_fraction: layer.ChordFraction = 0.5,
-    growth: layer.Growth = None,
-    constant_layers: wall.ConstantLayers = None,
-    slide: wall.Slide = None,
-    wall_angle: wall.WallAngle = None,
-    spacing_south: wall.SpacingSouth = None,
-    spacing_north: wall.SpacingNorth = None,
-    spacing_west: wall.SpacingWest = None,
-    spacing_east: wall.SpacingEast = None,
-    te: o.TrailingEdge = "auto",
-    far_field: o.FarField = None,
-    wake: o.Wake = None,
-    wake_nodes: o.WakeNodes = None,
-    corners: o.Corners = "auto",
-    normalise: o.Normalise = False,
-    repair: Repair = True,
+    slide: o.Slide = None,
+    wall_angle: o.WallAngle = None,
     repair_margin: RepairMargin = None,
-    allow_invalid: o.AllowInvalid = False,
-    fail_on: o.FailOn = None,
-    from_format: o.From = None,
-    to_format: o.To = None,
-    skip_existing: o.SkipExisting = False,
     jobs: o.Jobs = 1,
-    as_json: o.AsJson = False,
-    quiet: o.Quiet = False,
-    debug: o.Debug = False,
 ) -> int:
-    """Make smooth grids by solving an elliptic equation, or grids for boundary layers by marching."""
+    """Make grids by elliptic equations, a variational method, or marching from the wall."""
     from functools import partial
 
+    from meshonet_cli import layers as layer
+    from meshonet_cli import walls as wall
     from meshonet_cli.batch import Destination
     from meshonet_cli.gates import parse_gates
     from meshonet_cli.gridding import Recipe, initial_grid, make_grids
-    from meshonet_cli.session import Session
     from meshonet_cli.solving import at_any_resolution, given, solver_of
 
-    layers = layer.read_layers(wall_spacing, y_plus, reynolds, chord_fraction, growth, res)
-    sides = (spacing_south, spacing_north, spacing_west, spacing_east)
-    edges = wall.read_edges(sides, constant_layers, growth, res, layers, slide, wall_angle)
-    lengths = {
-        "le_spacing": le_spacing, "te_spacing": te_spacing, "far_field": far_field, "te": te, "wake": wake,
-        "wake_nodes": wake_nodes, "viscous": layers is not None,
-    }  # fmt: skip
+    layers = layer.read_layers(first, sampling.res)
+    edges = wall.read_edges(sides, first, sampling.res, layers, slide, wall_angle)
     settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
     solver = partial(solver_of(method), **settings)
     recipe = Recipe(
-        o.sampling(
-            res, topology, layer.spacing_along(layers, spacing), corners, normalise=normalise, **lengths
-        ),
+        sampling.settings(spacing=layer.spacing_along(layers, sampling.spacing), viscous=layers is not None),
         wall.WithWalls(
             method,
             at_any_resolution(solver, o.coarse_nodes(coarse), refine, method),
@@ -174,15 +137,15 @@ def solve_pde(
                 "--refine": refine or None,
             },
         ),
-        allow_invalid,
-        parse_gates(fail_on),
-        repair,
+        checks.allow_invalid,
+        parse_gates(checks.fail_on),
+        checks.repair is not False,
         margin=repair_margin,
         refine=refine,
         history=history,
     )
-    session = Session(quiet=quiet, as_json=as_json, debug=debug)
-    destination = Destination(output, to_format, "grids")
+    destination = Destination(output, files.to_format, "grids")
     return make_grids(
-        boundary, recipe, destination, session, fmt=from_format, skip_existing=skip_existing, jobs=jobs
-    )
+        boundary, recipe, destination, printing.session(),
+        fmt=files.from_format, skip_existing=files.skip_existing, jobs=jobs,
+    )  # fmt: skip

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
+from meshonet.kernels._native import lift_bisect
 from meshonet.solvers.conformal.evaluate import StripGrid
-from solvers.neural._strip_rows import halve
 
 CELLS = 4.0  # reach of a nudge, in cells either way; with 3 some cells fold
 LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
@@ -52,7 +52,7 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
         moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
         shift = np.array(
             [
-                halve(lift, [(wall[c], wall[(c + 1) % n], wall[c - 1], w, s)], most)[0]
+                lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], w, s, most)
                 for c, w, s, most in zip(corners, moved, shift, limit, strict=True)
             ]
         )

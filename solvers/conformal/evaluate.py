@@ -19,10 +19,10 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
+from meshonet.kernels._native import strip_rows
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
 from meshonet.solvers.conformal.panels import NODES, panels
 from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
-from solvers.neural._strip_rows import fill
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
 
@@ -84,7 +84,7 @@ class StripGrid:
             order = np.stack([half, -half % n], axis=1).ravel()
         sums = list(self._columns(eta, len(eta) - len(far)))
         x, y = out[..., 0], out[..., 1]
-        finite = fill(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
+        finite = strip_rows(x, y, order, lift, sums, SHARPNESS, along, across, matrix, cuts, begin, axis)
         out[-1, 1:-1] = out[0, 1:-1]
         return finite
 

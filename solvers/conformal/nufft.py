@@ -21,9 +21,9 @@ from functools import lru_cache
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from solvers.neural._columns import sample
+from meshonet.kernels._native import fourier_columns
 
-TAPS = 14  # as in strip_rows_kernel.h
+TAPS = 14  # as in kernels/conformal/strip_rows.h
 LANES = 8  # as in lanes.h
 SHARPNESS = 2.30 * TAPS  # b
 FEWEST = 256  # columns
@@ -46,7 +46,7 @@ def columns(modes: Complexes) -> Floats:
     gain, unit = _transform(columns_for(modes.shape[1] // 2))
     found = np.zeros((2 * len(unit), 2, wide))
     if count:
-        sample(np.ascontiguousarray(modes), gain, unit, found)
+        fourier_columns(np.ascontiguousarray(modes), gain, unit, found)
     return found
 
 

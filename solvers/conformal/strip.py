@@ -21,9 +21,9 @@ from functools import lru_cache
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
-from solvers.neural._picard import step
+from meshonet.kernels._native import picard_step
 
-MODES = 63  # as in picard_kernel.h, like the next two
+MODES = 63  # as in kernels/conformal/picard.h, like the next two
 COLUMNS = 128  # samples along theta
 LEVELS = 40  # Chebyshev points across the strip, both walls included
 CLUSTERING = 4.0  # eta(s) = (exp(c s) - 1)/(exp(c) - 1)
@@ -152,7 +152,7 @@ def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
     matrices, eigenvalues, smooth = _kernels()
     changes: list[float] = []
     while len(changes) < steps and (not changes or np.isfinite(changes[-1])):
-        changes.append(step(parts, T, matrices, eigenvalues, smooth))
+        changes.append(picard_step(parts, T, matrices, eigenvalues, smooth))
     return parts[0] + 1j * parts[1], changes
 
 

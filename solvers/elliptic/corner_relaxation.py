@@ -12,9 +12,9 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import find_corners, turning
+from meshonet.kernels._native import MultigridLevel
 from meshonet.solvers.algebraic.tfi import Four
 from meshonet.solvers.elliptic.coarsening import Direction
-from solvers.elliptic._multigrid import Level
 
 REENTRANT = np.radians(30.0)
 """A corner whose angle inside the domain is larger than 180 degrees by this is relaxed more."""
@@ -43,11 +43,13 @@ class Patch:
     scratch : of the level.
     """
 
-    def __init__(self, level: Level, xi: Direction, eta: Direction, window: Window, scratch: Floats) -> None:
+    def __init__(
+        self, level: MultigridLevel, xi: Direction, eta: Direction, window: Window, scratch: Floats
+    ) -> None:
         self._level, self._window = level, window
         x, y = (np.array(plane[window], order="C") for plane in (level.x, level.y))
         of_xi, of_eta = _part(xi, window[0]), _part(eta, window[1])
-        self._own = Level(x, y, of_xi, of_eta, False, scratch, True)
+        self._own = MultigridLevel(x, y, of_xi, of_eta, False, scratch, True)
 
     def smooth(self, forced: bool) -> None:
         """Relax the nodes of the level in place, with its right side when `forced`."""
@@ -76,7 +78,7 @@ def reentrant(edges: Four) -> list[Corner]:
 
 
 def patches(
-    level: Level, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
+    level: MultigridLevel, xi: Direction, eta: Direction, corners: list[Corner], scratch: Floats
 ) -> list[Patch]:
     """Return the patches of `level` around `corners`, whose indices are those of the finest level."""
     if min(xi.cells, eta.cells) < LEAST:

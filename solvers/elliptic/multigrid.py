@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
+from meshonet.kernels._native import MultigridLevel, multigrid_scratch
 from meshonet.solvers.algebraic.tfi import Four, interpolate, parameters
 from meshonet.solvers.elliptic.coarsening import Direction, uniform
 from meshonet.solvers.elliptic.control import Controls
 from meshonet.solvers.elliptic.corner_relaxation import Patch, patches, reentrant
-from solvers.elliptic._multigrid import Level, scratch_size
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Multigrid:
         controls: Controls | None = None,
     ) -> None:
         self.settings = settings or Settings()
-        self.levels: list[Level] = []
+        self.levels: list[MultigridLevel] = []
         self._edges: list[Four] = []
         self._along: list[Four] = []
         self._directions: list[tuple[Direction, Direction]] = []
@@ -67,13 +67,13 @@ class Multigrid:
         along = parameters(edges, "arclength")
         xi = uniform(nodes.shape[0], periodic)
         eta = uniform(nodes.shape[1], False)
-        scratch = np.empty(scratch_size(xi.cells, eta.cells))
+        scratch = np.empty(multigrid_scratch(xi.cells, eta.cells))
         while True:
             if self.levels:
                 nodes = planar_nodes(xi.cells + 1, eta.cells + 1)
             planes = nodes[..., 0], nodes[..., 1]
             coarse = bool(self.levels)
-            level = Level(*planes, xi.differences, eta.differences, periodic, scratch, coarse)
+            level = MultigridLevel(*planes, xi.differences, eta.differences, periodic, scratch, coarse)
             self.levels.append(level)
             self._patches.append(patches(level, xi, eta, corners, scratch))
             self._edges.append(edges)

@@ -11,6 +11,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.kernels._native import Stiffness
+from meshonet.kernels._native import newton as newton_steps
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
 from meshonet.solvers.energy.local_descent import descend_windows
@@ -18,8 +20,6 @@ from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.energy.untangle import REACH, unfold
 from meshonet.solvers.progress import heard, tell
-from solvers.variational._variational import Stiffness
-from solvers.variational._variational import newton as newton_steps
 
 HARD = 1.1
 """Value of the functional around a body above which descents go on."""

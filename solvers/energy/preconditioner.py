@@ -13,14 +13,14 @@ from typing import TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.kernels._native import Modes, VariationalDescent
 from meshonet.solvers.energy.functional import Weights
-from solvers.variational._variational import Minimiser, Waves
 
 MODES = 512
 """Modes along a direction that are kept; finer ones are all divided by the same."""
 
 
-def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> Minimiser:
+def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
     """Return the descent for ni x nj nodes.
 
     On squares of steps 1, with a move (p, q) along (xi, eta) and a = 1, the second variation is about::
@@ -46,15 +46,15 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
     scale = (ni - 1) * (nj - 1) / np.stack(symbol)
     left_out = (ni - 1 if periodic else ni - 2) * (nj - 2) > scale[0].size
     rest = float(scale.min()) if left_out else 0.0
-    return Minimiser(ni, nj, periodic, rows, columns, scale - rest, rest)
+    return VariationalDescent(ni, nj, periodic, rows, columns, scale - rest, rest)
 
 
-Modes: TypeAlias = tuple[Waves, Waves]
+Halves: TypeAlias = tuple[Modes, Modes]
 """Even and odd modes about the middle, over the first half of the nodes."""
 
 
 @lru_cache(maxsize=16)
-def _sines(n: int) -> tuple[Modes, Floats]:
+def _sines(n: int) -> tuple[Halves, Floats]:
     """Return sines that vanish at the ends of n cells; minus their second differences; even ones first."""
     waves, k = np.arange(1, n)[:MODES], np.arange(1, n)
     even, odd = (np.sin(np.pi / n * (np.outer(k, half) % (2 * n))) for half in (waves[::2], waves[1::2]))
@@ -63,7 +63,7 @@ def _sines(n: int) -> tuple[Modes, Floats]:
 
 
 @lru_cache(maxsize=16)
-def _fourier(n: int) -> tuple[Modes, Floats]:
+def _fourier(n: int) -> tuple[Halves, Floats]:
     """Return `_sines` for n periodic nodes: a constant and cosines, and sines, about the middle of a cell."""
     cosines, sines = np.arange((n + 1) // 2)[: MODES // 2], np.arange(1, n // 2 + 1)[: MODES // 2]
     phase = 2.0 * np.pi / n * (np.arange(n) + 0.5)
@@ -72,9 +72,9 @@ def _fourier(n: int) -> tuple[Modes, Floats]:
     return (_folded(even, True), _folded(odd, False)), values
 
 
-def _folded(modes: Floats, even: bool) -> Waves:
+def _folded(modes: Floats, even: bool) -> Modes:
     """Return the first half of even or odd `modes` (n, m), of length 1 as they are when folded."""
     n = len(modes)
     half = modes[: (n + 1) // 2 if even else n // 2].copy()
     half[: n // 2] *= np.sqrt(2.0)
-    return Waves(half / np.sqrt((half**2).sum(axis=0)))
+    return Modes(half / np.sqrt((half**2).sum(axis=0)))

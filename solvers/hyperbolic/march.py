@@ -6,8 +6,8 @@
               ^                    |                                                     |
               +-- other distance --+<--------------- more dissipation ------------------+
 
-The equations stand in ``hyperbolic_kernel.c``. The far field is where the march ends: nearly a circle or a C,
-with the area of the far field of the boundary.
+The equations stand in ``kernels/hyperbolic/march.c``. The far field is where the march ends: nearly a circle
+or a C, with the area of the far field of the boundary.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch, redistribute
 from meshonet.solvers.hyperbolic.front import Front
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
 from meshonet.solvers.hyperbolic.march_distance import distance_to_march
@@ -36,8 +37,6 @@ from meshonet.solvers.hyperbolic.settings import (
     MarchSettings,
 )
 from meshonet.solvers.solution import Solution
-from solvers._hyperbolic import march, scratch_size
-from solvers._redistribute import redistribute
 
 FADE_ROWS = 12.0
 """Rows over which the correction of the first cell fades out."""
@@ -153,7 +152,7 @@ def _marched(
     n = len(start)
     levels = np.empty((2, cells + 1, n))
     levels[:, 0] = start.T
-    scratch = np.empty(scratch_size(n))
+    scratch = np.empty(hyperbolic_scratch(n))
     knobs = (
         settings.dissipation,
         settings.even,
@@ -168,7 +167,7 @@ def _marched(
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
+        hyperbolic_march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None

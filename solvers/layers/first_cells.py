@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
-from solvers._layers import fill_steps
+from meshonet.kernels._native import layer_steps
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
 
 def layer_ratio(cells: int, length: float, first: float, last: float, constant: int) -> float:
     """Return the largest ratio of neighbours when `cells` cells fill `length`, infinite when they cannot."""
-    return fill_steps(np.empty(cells), length, first, last, constant)
+    return layer_steps(np.empty(cells), length, first, last, constant)
 
 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
@@ -128,7 +128,7 @@ def arcs_in_layers(
     steps = np.empty(count - 1)
     begin = _arc_at(curve, 0.0, first) if first else 0.0
     end = _arc_at(curve, curve.length, last) if last else 0.0
-    ratio = fill_steps(steps, curve.length, begin, end, heights.constant)
+    ratio = layer_steps(steps, curve.length, begin, end, heights.constant)
     half = (count - 1) // 2
     arcs = np.empty(count)
     arcs[: half + 1] = np.concatenate([[0.0], np.cumsum(steps[:half])])

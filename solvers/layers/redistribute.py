@@ -4,9 +4,9 @@
 
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
-The lines that leave a wall stay the curves they are and get their nodes anew (``layers_kernel.c``), so that a
-valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their index, which
-keeps kinks of the walls on their nodes.
+The lines that leave a wall stay the curves they are, and nodes are placed anew on them
+(``kernels/layers/layers.c``): a valid grid with even rows becomes one with thin ones. Rows are moved along xi by
+one map of their index, which keeps kinks of the walls on their nodes.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.geometry.spacing.laws import on_corners
 from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.kernels._native import layer_lines, redistribute
 from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
 from meshonet.solvers.layers.first_cells import (
     Heights,
@@ -34,8 +35,6 @@ from meshonet.solvers.layers.first_cells import (
 )
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
-from solvers._layers import fill_lines
-from solvers._redistribute import redistribute
 
 FADE = 12.0
 """Nodes over which the last correction of a first cell fades out."""
@@ -119,7 +118,7 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
     planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
-    ratio = fill_lines(*planes, *ends, heights.constant, scratch)
+    ratio = layer_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.topology == "o":
         out[-1] = out[0]

@@ -195,7 +195,7 @@ def test_splits_that_cannot_be_are_refused(meshonet: Meshonet) -> None:
         assert done.code == 2
         assert told in done.err
     meshonet("sample-boundary", "--family", "arch", "--count", "2", "--res", "9", "-o", "b.h5")
-    assert "b.h5: no sample is marked 'test'; split it" in meshonet("tfi", "b.h5#test", "-o", "g.h5").err
+    assert "b.h5: no sample is marked 'test'; mark samples" in meshonet("tfi", "b.h5#test", "-o", "g.h5").err
     meshonet("tfi", "naca:0012", "--res", "40x20", "-o", "g.vts")
     told = meshonet("quality", "g.vts#test").err
     assert "g.vts: vts files do not say which samples are to test; leave #test out" in told

@@ -155,7 +155,7 @@ def test_the_same_grids_give_the_same_bytes(tmp_path: Path) -> None:
 @pytest.mark.parametrize("other", [ring(14), c_grid(), ring(13, 6)])
 def test_a_sample_of_another_size_or_topology_is_refused(other: Grid, tmp_path: Path) -> None:
     with pytest.raises(
-        InputError, match=r"sample 1 is .* and the first is 13x5 o; one dataset has one size .*--res"
+        InputError, match=r"sample 1 is .* and the first is 13x5 o; one dataset has one size .*res"
     ):
         write_grids(tmp_path / "g.h5", [ring(), other])
 

@@ -71,7 +71,7 @@ CASES = {
     "one number": (b"7\n", "does not start with the dims"),
     "airfoil": (
         b"NACA 0012\n1.0 0.0\n0.5 0.1\n",
-        "line 1: 'NACA' is not a number; .* name another format with --from",
+        "line 1: 'NACA' is not a number; .* name another format with from_format",
     ),
     "pickle": (b"\x80\x04\x95" + bytes(99), "no binary Plot3D layout fits"),
     "Fortran cut": (

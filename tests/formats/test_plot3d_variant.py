@@ -87,8 +87,8 @@ def test_iblank_that_is_read_is_told_of() -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ("huge", "--plot3d: 'huge' is not known; use ascii binary fortran multi"),
-        ("big,little", "--plot3d: little and big exclude each other; give one"),
+        ("huge", "plot3d: 'huge' is not known; use ascii binary fortran multi"),
+        ("big,little", "plot3d: little and big exclude each other; give one"),
     ],
 )
 def test_words_that_make_no_sense_are_refused(words: str, told: str) -> None:

@@ -121,7 +121,8 @@ def test_several_grids_are_kept_or_refused_with_the_remedy(name: str, tmp_path: 
         assert [g.nodes.shape for g in read_grids(str(path), name)] == [(13, 5, 2)] * 3
     else:
         with pytest.raises(
-            InputError, match=r"holds one grid and there are several; use -o 'name-\{index\}'"
+            InputError,
+            match=r"holds one grid and there are several; write one file each \(output 'name-\{index\}'\)",
         ):
             record.write_grids(path, [ring(), ring()])
 
@@ -242,8 +243,8 @@ def test_standard_output_is_hdf5_unless_said_otherwise() -> None:
         ("no.vts", "no.vts: no such file; check the path"),
         ("", "is a folder; name a file in it"),
         ("empty.vts", "empty.vts: is empty; give"),
-        ("a.q", r"a.q: its ending '.q' is not .*--from; known endings: "),
-        ("plain", "plain: its content is not of a known format; name it with --from"),
+        ("a.q", r"a.q: its ending '.q' is not .*from_format; known endings: "),
+        ("plain", "plain: its content is not of a known format; name it with from_format"),
         ("loop.vts", "loop.vts: cannot be opened .*symbolic"),
         ("a\0b", "null byte.*; check the path"),
         ("x.png", "x.png: png files can only be written; give a grid"),
@@ -266,9 +267,9 @@ def test_what_cannot_be_read_is_named_with_its_remedy(name: str, told: str, tmp_
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("a.q", r"a.q: its ending '.q' is not known; .*--to; known endings: .*\.vts"),
-        ("", "-o: the output has no name; name a file, or - for standard output"),
-        ("grid", "grid: its name has no ending to tell the format by; .*--to"),
+        ("a.q", r"a.q: its ending '.q' is not known; .*to_format; known endings: .*\.vts"),
+        ("", "output: the output has no name; name a file, or - for standard output"),
+        ("grid", "grid: its name has no ending to tell the format by; .*to_format"),
         ("a.vts", "a.vts: vts cannot hold boundaries; write one of hdf5"),
     ],
 )

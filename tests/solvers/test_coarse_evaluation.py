@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Floats
+from meshonet.kernels._native import resample, tfi_coarse
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
 from meshonet.solvers.algebraic.resample.spline import bending, places
 from meshonet.solvers.neural.quads.edges import Edges, rims
-from solvers._evaluate import begin_all, evaluate_all
 
 RNG = np.random.default_rng(5)
 
@@ -45,7 +45,7 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightene
     nodes = np.empty((2, 2, ni, nj))
     fine, _ = placed(m, n, ni, nj)
     near = acute.NEAR, acute.FAR, REACH
-    evaluate_all(coarse, edges.sides, fine, opened.reshape(2, 4), *near, nodes, straight)
+    resample(coarse, edges.sides, fine, opened.reshape(2, 4), *near, nodes, straight)
 
     left = 1.0 - (opened.reshape(2, 4, 1, 1) * acute.fading(m, n)).max(axis=1)
     left = (left * (1.0 if straight is None else 1 - straight))[:, None]
@@ -69,7 +69,7 @@ def test_it_is_the_sum_of_matrices(m: int, n: int, ni: int, nj: int, straightene
 def test_the_beginning_is_the_interpolation_of_thinned_edges(m: int, n: int, ni: int, nj: int) -> None:
     edges = Edges(*(np.ascontiguousarray(side) for side in rims(wavy(ni, nj))))
     found = np.empty((2, 2, m, n))
-    begin_all(edges.sides, placed(m, n, ni, nj)[1], found)
+    tfi_coarse(edges.sides, placed(m, n, ni, nj)[1], found)
     thin = edges.thinned(m, n)
     np.testing.assert_allclose(found, thin.interpolated(thin.laws()), rtol=0, atol=1e-14)
 
@@ -80,18 +80,18 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
     coarse, opened, nodes = wavy(5, 5), np.zeros((2, 4)), np.empty((2, 2, 9, 7))
     near, straight = (acute.NEAR, acute.FAR, REACH), np.zeros((2, 5, 4), np.uint8)
     for given, told in (
-        ((coarse[:1], edges.sides, fine, opened, *near, nodes), "another number of grids"),
-        ((coarse, edges[:1].sides, fine, opened, *near, nodes), "edges of shape"),
-        ((coarse, edges.sides, fine[::-1], opened, *near, nodes), "another number of nodes"),
+        ((coarse[:1], edges.sides, fine, opened, *near, nodes), "is needed"),
+        ((coarse, edges[:1].sides, fine, opened, *near, nodes), "is needed"),
+        ((coarse, edges.sides, fine[::-1], opened, *near, nodes), "is needed"),
         ((coarse, edges.sides, placed(8, 8, 9, 7)[0], opened, *near, nodes), "beyond the knots"),
-        ((coarse, edges.sides, fine, opened, *near, nodes, straight), "straight lines of another number"),
+        ((coarse, edges.sides, fine, opened, *near, nodes, straight), "is needed"),
     ):
         with pytest.raises(ValueError, match=told):
-            evaluate_all(*given)
+            resample(*given)
     for given, told in (
-        ((edges[:1].sides, thin, coarse), "edges of shape"),
-        ((edges.sides, fine, coarse), "another number of nodes"),
-        ((edges.sides, thin, coarse[:, :1].copy()), "another number of grids"),
+        ((edges[:1].sides, thin, coarse), "is needed"),
+        ((edges.sides, fine, coarse), "is needed"),
+        ((edges.sides, thin, coarse[:, :1].copy()), "is needed"),
     ):
         with pytest.raises(ValueError, match=told):
-            begin_all(*given)
+            tfi_coarse(*given)

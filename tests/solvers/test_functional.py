@@ -7,11 +7,11 @@ from random_quads import random_quad
 from solver_shapes import bump, hole, naca, wrench
 
 from meshonet.geometry.arrays import Floats
+from meshonet.kernels._native import Modes, Stiffness, VariationalDescent, variational_workspace
+from meshonet.kernels._native import variational_energy as compiled
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
 from meshonet.solvers.energy.preconditioner import minimiser
-from solvers.variational._variational import Minimiser, Stiffness, Waves, workspace
-from solvers.variational._variational import energy as compiled
 
 
 def planes(nodes: Floats) -> Floats:
@@ -23,7 +23,7 @@ def call(
 ) -> tuple[float, float, Floats]:
     z = planes(nodes)
     gradient = np.empty_like(z)
-    work = np.empty(workspace(*nodes.shape[:2]))
+    work = np.empty(variational_workspace(*nodes.shape[:2]))
     terms = aspect_of(nodes, periodic), weights.shape, weights.smoothness
     value, low = compiled(z, *terms, epsilon, periodic, None, gradient, work)
     return value, low, gradient
@@ -74,7 +74,10 @@ def test_around_a_body_the_cut_is_like_any_other_line(epsilon: float) -> None:
 def test_corners_at_a_sharp_edge_keep_a_share_of_their_angle_term() -> None:
     nodes = tfi(naca(33, 9)).nodes
     weights, aspect, z = Weights(), aspect_of(nodes, periodic=True), planes(nodes)
-    terms, work = (aspect, weights.shape, weights.smoothness, 0.0, True), np.empty(workspace(33, 9))
+    terms, work = (
+        (aspect, weights.shape, weights.smoothness, 0.0, True),
+        np.empty(variational_workspace(33, 9)),
+    )
     share = relief_of(nodes[:, 0])
     assert share[0] == share[-1] < 1e-3
     assert (share[1:-1] == 1).all()
@@ -139,6 +142,6 @@ def test_transforms_and_splines_of_another_size_are_refused() -> None:
     stiffness = Stiffness(square, 1.0, weights.shape, weights.smoothness)
     with pytest.raises(ValueError, match="splines of another size"):
         minimiser(9, 9, False, 1.0, weights).steer(stiffness, np.ones((7, 3)), np.ones((6, 3)))
-    half = Waves(np.ones((1, 1)))
+    half = Modes(np.ones((1, 1)))
     with pytest.raises(ValueError, match="transforms of another size"):
-        Minimiser(9, 9, False, (half, half), (half, half), np.ones((2, 2, 2)), 0.0)
+        VariationalDescent(9, 9, False, (half, half), (half, half), np.ones((2, 2, 2)), 0.0)

@@ -18,10 +18,10 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch
 from meshonet.solvers.hyperbolic import march as module
 from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.pipeline.fallback import guard
-from solvers._hyperbolic import march, scratch_size
 
 DISSIPATION, THETA, BEND = 0.5, 0.5, 0.04
 
@@ -50,7 +50,7 @@ def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int, even: f
     levels = np.empty((2, 41, n))
     levels[:, 0] = circle(n)[:-1].T
     knobs = DISSIPATION, even, np.inf, BEND, 1 + THETA, 0.16, 10, 30
-    march(levels[0], levels[1], steps, *knobs, np.empty(scratch_size(n)))
+    hyperbolic_march(levels[0], levels[1], steps, *knobs, np.empty(hyperbolic_scratch(n)))
     expected = np.multiply.outer(radii_of_levels(n, 0.5, steps), circle(n, 1.0)[:-1])
     np.testing.assert_allclose(np.moveaxis(levels, 0, -1), expected, rtol=0, atol=1e-11)
 
@@ -179,7 +179,7 @@ def test_a_march_that_is_not_finite_is_an_error(monkeypatch: pytest.MonkeyPatch)
     def spoilt(x: Floats, *rest: object) -> None:
         x[1:] = np.nan
 
-    monkeypatch.setattr(module, "march", spoilt)
+    monkeypatch.setattr(module, "hyperbolic_march", spoilt)
     with pytest.raises(SolverError, match="the march diverged from every start; use more nodes"):
         hyperbolic(ellipse(20, 20), wall_spacing=1e-2)
 
@@ -257,7 +257,9 @@ def test_airfoils_are_marched_once(
 ) -> None:
     """The distance to march is known so well that no second march has to correct it."""
     marches = []
-    monkeypatch.setattr(module, "march", lambda *args: (marches.append(1), march(*args)))
+    monkeypatch.setattr(
+        module, "hyperbolic_march", lambda *args: (marches.append(1), hyperbolic_march(*args))
+    )
     wall = naca("2412").boundary(Sampling(ni, nj, topology, "curvature", te="wedge"))
     hyperbolic(wall, wall_spacing=height)
     assert len(marches) == 1

@@ -16,13 +16,13 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.bodies import boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
+from meshonet.kernels._native import activate, upsample
 from meshonet.solvers.neural.quads.features import features
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.inside import inside
 from meshonet.solvers.neural.quads.network import Network, shapes
 from meshonet.solvers.neural.quads.picard import approach
 from meshonet.solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
-from solvers.neural.quads._network import activate, refine
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
 
@@ -72,8 +72,8 @@ def test_finer_copies_go_round_along_the_first_axis() -> None:
     rng = np.random.default_rng(0)
     x, add = rng.normal(size=(2, 6, 5, 8)), rng.normal(size=(2, 12, 9, 8))
     found, closed = np.empty_like(add), np.empty((2, 13, 9, 8))
-    refine(x, add, found, True)
-    refine(np.concatenate([x, x[:, :1]], 1), np.concatenate([add, add[:, :1]], 1), closed)
+    upsample(x, add, found, True)
+    upsample(np.concatenate([x, x[:, :1]], 1), np.concatenate([add, add[:, :1]], 1), closed)
     np.testing.assert_array_equal(found, closed[:, :-1])
 
 

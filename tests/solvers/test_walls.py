@@ -6,12 +6,12 @@ from solver_shapes import arch, bump, folded, hexagon, hole, horseshoe, l_shape,
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
+from meshonet.kernels._native import layer_lines, layer_steps
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.layers.first_cells import Heights, cells_needed, edge_in_layers, layer_ratio
 from meshonet.solvers.layers.redistribute import spread, worst_first_cell
 from meshonet.solvers.solution import Solution
-from solvers._layers import fill_lines, fill_steps
 
 
 def first_cells(nodes: Floats, side: str) -> Floats:
@@ -28,7 +28,7 @@ def test_steps_grow_by_one_ratio_from_each_end_and_fill_the_length(
     first: float, last: float, constant: int
 ) -> None:
     steps = np.empty(60)
-    largest = fill_steps(steps, 2.0, first, last, constant)
+    largest = layer_steps(steps, 2.0, first, last, constant)
     assert steps.sum() == pytest.approx(2.0, rel=1e-12)
     if first:
         np.testing.assert_allclose(steps[:constant], first, rtol=1e-14)
@@ -42,7 +42,7 @@ def test_steps_grow_by_one_ratio_from_each_end_and_fill_the_length(
 
 def test_one_end_is_a_geometric_series() -> None:
     steps = np.empty(3)
-    assert fill_steps(steps, 7.0, 1.0, 0.0, 1) == pytest.approx(2.0)
+    assert layer_steps(steps, 7.0, 1.0, 0.0, 1) == pytest.approx(2.0)
     np.testing.assert_allclose(steps, [1.0, 2.0, 4.0])
 
 
@@ -54,9 +54,9 @@ def test_what_does_not_fit_has_no_ratio() -> None:
 def test_straight_lines_get_exactly_the_law() -> None:
     x, y = np.meshgrid(np.arange(5.0), np.linspace(0, 1, 9), indexing="ij")
     out = np.empty((2, 5, 33))
-    fill_lines(x, y, out[0], out[1], 1e-6, 1e-3, 2, np.empty(10 * 9 + 33))
+    layer_lines(x, y, out[0], out[1], 1e-6, 1e-3, 2, np.empty(10 * 9 + 33))
     steps = np.empty(32)
-    fill_steps(steps, 1.0, 1e-6, 1e-3, 2)
+    layer_steps(steps, 1.0, 1e-6, 1e-3, 2)
     np.testing.assert_allclose(out[0], np.broadcast_to(np.arange(5.0)[:, None], (5, 33)), atol=1e-14)
     np.testing.assert_allclose(np.diff(out[1], axis=1), np.broadcast_to(steps, (5, 32)), rtol=1e-8)
 

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.kernels._native import add_spline_rows
 from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
-from solvers._combine import add_rows
 
 STEEP, FLAT = 1.15, 0.5
 """Slopes of the rising cubic in harmonic means of both steps, between which they are those of a spline."""
@@ -35,7 +35,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     first, weights = places(m, ni)
     straight = weights * (1.0, 1.0, 0.0, 0.0)
     shares, nodes = np.zeros((ni, nj)), planar_nodes(ni, nj)
-    add_rows(shares, first, straight, share, share, True)
+    add_spline_rows(shares, first, straight, share, share, True)
     near_south, near_north = 1.0 - shares, shares
     for _ in range(SQUARINGS):
         near_south *= near_south
@@ -44,7 +44,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     for c, values in enumerate((lines.real.copy(), lines.imag.copy())):
         plane = nodes[..., c]
         plane[:] = 0.0
-        add_rows(plane, first, weights, values, bending(m, True) @ values, True)
+        add_spline_rows(plane, first, weights, values, bending(m, True) @ values, True)
         plane += (boundary.south[:, c] - around @ values[:, 0])[:, None] * near_south
         plane += (boundary.north[:, c] - around @ values[:, -1])[:, None] * near_north
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north

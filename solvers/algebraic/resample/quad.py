@@ -4,10 +4,10 @@ With X the planes of a grid's nodes::
 
     x = S X Tᵀ + shares * (edges - S X Tᵀ there)
 
-S and T are cubic splines, less curved near acute corners (`meshonet.solvers.algebraic.resample.corner_damping`); what they miss of the edges is
-felt near these (`meshonet.solvers.algebraic.resample.edge_blending`). A cubic swings between nodes, and where spacings differ much that may
-fold cells although the coarse ones are valid. Then lines are made straight around these, as far as it takes:
-cells inside a valid coarse cell are valid between straight lines.
+S and T are cubic splines, less curved near acute corners (`corner_damping`). They do not reproduce the edges
+exactly; the mismatch is blended into the interior over two coarse cells (`edge_blending`). A cubic swings between
+nodes, and where spacings differ much that may fold cells although the coarse ones are valid. Then lines are made
+straight around these, as far as it takes: between straight lines, cells inside a valid coarse cell are valid.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded, folded_cells
+from meshonet.kernels._native import resample
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH
 from meshonet.solvers.algebraic.resample.spline import places
-from solvers._evaluate import evaluate_all
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Planes of south and north (batch, 2, ni), west and east (batch, 2, nj)."""
@@ -90,5 +90,5 @@ def _evaluated(coarse: Floats, sides: Sides, straight: Straight | None) -> Float
     opened = acute.openings(corners[:, 0] + 1j * corners[:, 1], np).reshape(-1, 4)
     nodes = np.empty((len(coarse), 2, ni, nj))
     fine = places(m, ni), places(n, nj)
-    evaluate_all(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
+    resample(coarse, sides, fine, opened, acute.NEAR, acute.FAR, REACH, nodes, straight)
     return nodes

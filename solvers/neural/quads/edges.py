@@ -9,8 +9,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.kernels._native import tfi_batch
 from meshonet.solvers.algebraic.resample.spline import between
-from solvers._tfi import fill_all
 
 Sides = tuple[Floats, Floats, Floats, Floats]
 """Of south, north, west and east."""
@@ -60,7 +60,7 @@ class Edges:
     def interpolated(self, laws: Sides) -> Floats:
         """Return the planes (batch, 2, ni, nj) of transfinite interpolation with `laws` along the edges."""
         nodes = np.empty((len(self), 2, *self.counts))
-        fill_all(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
+        tfi_batch(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
         return nodes
 
 

@@ -10,7 +10,7 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 
     ``(z - middle) * factor`` has its outline's area 1, and its mean step from west to east and, turned by a
     quarter, from south to north points along x. The eight relabellings of a domain have the same frame,
-    relabelled. Compiled for planes it is `frame_kernel.c`.
+    relabelled. Compiled for planes it is `kernels/neural/frame.c`.
 
     Parameters
     ----------

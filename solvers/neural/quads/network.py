@@ -9,7 +9,7 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
 
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
 once, the kernels are those of an ordinary convolutional network, which is compiled, most of it by fewer
-products (`winograd.h`).
+products (`kernels/neural/winograd.h`).
 `meshonet.solvers.neural.models.quad_unet` is the same in torch.
 Ronneberger et al., U-Net, MICCAI 2015.
 """
@@ -25,17 +25,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.kernels._native import LayerProgram, activate, convolve, upsample, winograd, winograd_scratch
 from meshonet.solvers.neural.quads import kernels
 from meshonet.solvers.neural.quads.features import FEATURES
 from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER, SEEN
-from solvers.neural.quads._network import (
-    Program,
-    activate,
-    convolve,
-    refine,
-    winograd,
-    winograd_scratch,
-)
 
 Reals: TypeAlias = NDArray[Any]
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
@@ -113,7 +106,7 @@ class Network:
                 if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
                     kernel = kernels.at_points(kernel)
                 self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
-        self._idle: dict[tuple[int, int], list[Program]] = {}  # of no thread at the time
+        self._idle: dict[tuple[int, int], list[LayerProgram]] = {}  # of no thread at the time
         self.heads = len(exact["project"])
 
     def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
@@ -142,7 +135,7 @@ class Network:
         idle.append(program)
         return answer.reshape(batch, m, n, self.heads, 2)
 
-    def _program(self, m: int, n: int) -> Program:
+    def _program(self, m: int, n: int) -> LayerProgram:
         """Return the layers for `CHUNK` domains or fewer, on arrays that no other program has."""
         work = _Work(self._layers, self.around)
         self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
@@ -167,7 +160,7 @@ class _Work:
     """Records layers by name in a program, on arrays of `CHUNK` domains."""
 
     def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], around: bool) -> None:
-        self.program = Program()
+        self.program = LayerProgram()
         self._layers, self._around = layers, around
         self._rooms: dict[Any, Reals] = {}
 
@@ -187,7 +180,7 @@ class _Work:
 
     def finer(self, low: Reals, skip: Reals) -> Reals:
         out = self._room("finer", skip.shape, skip.dtype)
-        refine(low, skip, out, self._around, self.program)
+        upsample(low, skip, out, self._around, self.program)
         return out
 
     def silu(self, x: Reals, pad: int = 1) -> Reals:

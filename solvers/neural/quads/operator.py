@@ -18,6 +18,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
 from meshonet.solvers.algebraic.resample import quad as evaluation
 from meshonet.solvers.algebraic.resample.spline import places
 from meshonet.solvers.neural.quads.damping import share
@@ -27,9 +28,6 @@ from meshonet.solvers.neural.quads.features import FEATURES
 from meshonet.solvers.neural.quads.model import QuadModel
 from meshonet.solvers.neural.quads.network import CHUNK, rim_factor
 from meshonet.solvers.neural.quads.picard import AFTER, nodes_after, step_all
-from solvers._evaluate import begin_all
-from solvers.neural.quads._frame import add, put_back, take_out
-from solvers.neural.quads._network import look
 
 BATCH = 64
 """Domains in memory at a time at the most."""
@@ -52,13 +50,13 @@ def coarse_grids(edges: Edges, model: QuadModel, head: int, dtype: str = "float6
         unit, factors = _unit(planes)
         near = unit.copy()
         step, seen = step_all(near), room[: len(near)]
-        look(near, step, seen)
+        grid_features(near, step, seen)
         start = near.copy()
-        add(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
+        add_answers(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
         for one, other in () if head == WINSLOW else zip(near, start, strict=True):
             if (part := share(other, one)) < 1.0:
                 one[:] = other + part * (one - other)
-        put_back(planes, near, unit, factors)
+        frame_put_back(planes, near, unit, factors)
     return _nearer(base, edges) if head == WINSLOW else base
 
 
@@ -68,7 +66,7 @@ def near_grids(edges: Edges) -> Floats:
     unit, factors = _unit(base)
     near = unit.copy()
     step_all(near)
-    put_back(base, near, unit, factors)
+    frame_put_back(base, near, unit, factors)
     return base
 
 
@@ -78,7 +76,7 @@ def _nearer(coarse: Floats, edges: Edges) -> Floats:
     unit, factors = _unit(planes)
     near = unit.copy()
     step_all(near, steps=AFTER, harmonic=False)
-    put_back(planes, near, unit, factors)
+    frame_put_back(planes, near, unit, factors)
     return planes
 
 
@@ -86,14 +84,14 @@ def _begun(edges: Edges) -> Floats:
     """Return transfinite grids as planes (batch, 2, n, n) at n = 33 nodes each."""
     base = np.empty((len(edges), 2, LATENT, LATENT))
     ni, nj = edges.counts
-    begin_all(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
+    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
     return base
 
 
 def _unit(planes: Floats) -> tuple[Floats, Floats]:
     """Return planes at unit size (`meshonet.solvers.neural.quads.frame`), and the factors (batch, 2) to it."""
     unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
-    take_out(planes, unit, factors)
+    frame_take_out(planes, unit, factors)
     return unit, factors
 
 

@@ -25,8 +25,8 @@ from typing import Any
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.kernels._native import LINE, winslow_steps
 from meshonet.solvers.neural.quads.encoding import LATENT
-from solvers.neural.quads._approach import LINE, approach_all
 
 STEPS = 4
 """After the harmonic grid. A fifth takes a tenth of what is left on average."""
@@ -96,7 +96,7 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
     last, (m, n) = np.empty_like(near), near.shape[2:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
     xi = _plain(m - 1) if around else _folded(m)
-    approach_all(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
+    winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
     return last
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.arrays import Floats
+from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out
 from meshonet.solvers.neural.quads.frame import frame
-from solvers.neural.quads._frame import add, put_back, take_out
 
 
 def grids() -> Floats:
@@ -21,7 +21,7 @@ def grids() -> Floats:
 
 def taken_out(planes: Floats) -> tuple[Floats, Floats]:
     unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
-    take_out(planes, unit, factors)
+    frame_take_out(planes, unit, factors)
     return unit, factors
 
 
@@ -39,7 +39,7 @@ def test_moves_are_put_back_at_the_own_size_and_nothing_else_changes() -> None:
     unit, factors = taken_out(planes)
     moved, found = unit.copy(), planes.copy()
     moved[:, 0, 4, 3] += 0.25
-    put_back(found, moved, unit, factors)
+    frame_put_back(found, moved, unit, factors)
     by = 0.25 / (factors[:, 0] + 1j * factors[:, 1])
     change = found - planes
     np.testing.assert_allclose(change[:, 0, 4, 3] + 1j * change[:, 1, 4, 3], by, rtol=1e-11)
@@ -52,22 +52,22 @@ def test_answers_of_a_head_are_added_times_the_rim(dtype: Any) -> None:
     planes, rng = grids(), np.random.default_rng(1)
     answers, rim = rng.normal(size=(3, 9, 6, 2, 2)).astype(dtype), rng.uniform(size=(9, 6))
     found = planes.copy()
-    add(found, answers, 1, rim)
+    add_answers(found, answers, 1, rim)
     expected = planes + np.moveaxis(answers[..., 1, :].astype(float) * rim[..., None], -1, 1)
     np.testing.assert_allclose(found, expected, rtol=1e-15)
 
 
 def test_arrays_that_do_not_fit_are_refused() -> None:
     planes, unit, factors = grids(), grids(), np.empty((3, 2))
-    with pytest.raises(ValueError, match="planes of other shapes"):
-        take_out(planes, unit[:, :, 1:].copy(), factors)
-    with pytest.raises(ValueError, match="no planes"):
-        take_out(planes[:, :1].copy(), unit[:, :1].copy(), factors)
-    with pytest.raises(ValueError, match="factors of another number"):
-        take_out(planes, unit, factors[1:])
-    with pytest.raises(ValueError, match="factors of another number"):
-        put_back(planes, unit, unit, factors[:, :1].copy())
-    with pytest.raises(ValueError, match="answers to other grids"):
-        add(planes, np.zeros((3, 9, 5, 2, 2)), 1, np.ones((9, 6)))
+    with pytest.raises(ValueError, match="is needed"):
+        frame_take_out(planes, unit[:, :, 1:].copy(), factors)
+    with pytest.raises(ValueError, match="is needed"):
+        frame_take_out(planes[:, :1].copy(), unit[:, :1].copy(), factors)
+    with pytest.raises(ValueError, match="is needed"):
+        frame_take_out(planes, unit, factors[1:])
+    with pytest.raises(ValueError, match="is needed"):
+        frame_put_back(planes, unit, unit, factors[:, :1].copy())
+    with pytest.raises(ValueError, match="is needed"):
+        add_answers(planes, np.zeros((3, 9, 5, 2, 2)), 1, np.ones((9, 6)))
     with pytest.raises(ValueError, match="no such head"):
-        add(planes, np.zeros((3, 9, 6, 2, 2)), 2, np.ones((9, 6)))
+        add_answers(planes, np.zeros((3, 9, 6, 2, 2)), 2, np.ones((9, 6)))

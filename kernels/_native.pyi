@@ -1,0 +1,161 @@
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.float64]
+Complexes: TypeAlias = NDArray[np.complex128]
+Whole: TypeAlias = NDArray[np.int64]
+Indices: TypeAlias = NDArray[np.intp]
+Reals: TypeAlias = NDArray[Any]
+Edges: TypeAlias = tuple[Floats, ...]
+Placed: TypeAlias = tuple[Indices, Floats]
+
+# geometry
+def count_folded(x: Floats, y: Floats) -> int: ...
+def folded_cells(x: Floats, y: Floats) -> Whole: ...
+def measure_cells(
+    x: Floats, y: Floats, periodic: bool, wake: int, summary: Floats, where: Whole, keep: int, kept: Floats,
+    brackets: Floats, counts: Whole, caught: Floats,
+) -> None: ...  # fmt: skip
+def curve_locate(
+    s: Floats, table: Floats, start: Floats, stop: Floats, pieces: int, closed: bool, interval: Indices,
+    place: Floats,
+) -> None: ...  # fmt: skip
+def curve_points(cubic: Floats, interval: Indices, place: Floats, end: Floats, points: Floats) -> None: ...
+def curve_slopes(cubic: Floats, interval: Indices, place: Floats, derivatives: Floats) -> None: ...
+def curve_speeds(cubic: Floats, places: Floats, lengths: Floats) -> None: ...
+def solve_tridiagonal(lower: Floats, diagonal: Floats, upper: Floats, right: Floats) -> None: ...
+def crossing_segments(
+    points: Floats, order: Indices, low: Floats, top: Floats, limit: int, budget: int
+) -> tuple[list[tuple[int, int]], bool]: ...
+
+# algebraic
+def tfi(x: Floats, y: Floats, xs: Edges, ys: Edges, parameters: Edges) -> None: ...
+def tfi_batch(nodes: Floats, sides: Edges, parameters: Edges) -> None: ...
+def tfi_coarse(sides: Edges, thin: tuple[Placed, Placed], nodes: Floats) -> None: ...
+def resample(
+    coarse: Floats, sides: Edges, fine: tuple[Placed, Placed], opened: Floats, near: float, far: float,
+    reach: float, nodes: Floats, straight: NDArray[np.uint8] | None = None,
+) -> None: ...  # fmt: skip
+def add_spline_rows(
+    x: Floats, first: Indices, weights: Floats, values: Floats, bends: Floats, rim: bool
+) -> None: ...
+
+# elliptic
+def multigrid_scratch(mi: int, mj: int) -> int: ...
+
+class MultigridLevel:
+    x: Floats
+    y: Floats
+    x0: Floats
+    y0: Floats
+    fx: Floats
+    fy: Floats
+    def __init__(
+        self, x: Floats, y: Floats, xi: Edges, eta: Edges, periodic: bool, scratch: Floats, coarse: bool
+    ) -> None: ...
+    def transfer(self, xi: Edges, eta: Edges) -> None: ...
+    def control(self, phi: Edges, psi: Edges, xi_reach: Floats, eta_reach: Floats) -> None: ...
+    def smooth(self, forced: bool, sweeps: int = 1) -> None: ...
+    def residual(self, forced: bool) -> float: ...
+    def restrict(self, coarse: MultigridLevel, forced: bool) -> float: ...
+    def correct(self, coarse: MultigridLevel) -> float: ...
+
+# energy
+def variational_workspace(ni: int, nj: int) -> int: ...
+def variational_energy(
+    z: Floats, aspect: float, shape: float, smoothness: float, epsilon: float, periodic: bool,
+    relief: Floats | None, gradient: Floats, work: Floats,
+) -> tuple[float, float]: ...  # fmt: skip
+def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int, won: float = 0.0) -> int: ...
+
+class Modes:
+    def __init__(self, matrix: Floats) -> None: ...
+
+class Stiffness:
+    usable: bool
+    def __init__(self, z: Floats, aspect: float, shape: float, smoothness: float) -> None: ...
+
+class VariationalDescent:
+    def __init__(
+        self, ni: int, nj: int, periodic: bool, rows: tuple[Modes, Modes], columns: tuple[Modes, Modes],
+        scale: Floats, rest: float,
+    ) -> None: ...  # fmt: skip
+    def steer(self, stiffness: Stiffness, along: Floats, across: Floats) -> None: ...
+    def run(
+        self, z: Floats, aspect: float, shape: float, smoothness: float, epsilon: float,
+        relief: Floats | None, still: float, reach: float, most: int,
+        told: Callable[[int, float, float], None] | None = None,
+    ) -> tuple[float, float, int]: ...  # fmt: skip
+
+# hyperbolic
+def hyperbolic_scratch(n: int) -> int: ...
+def hyperbolic_march(
+    x: Floats, y: Floats, steps: Floats, dissipation: float, even: float, tolerated: float, bend: float,
+    implicit: float, volume: float, sweeps: int, rise: int, scratch: Floats, ends: Floats | None = None,
+    widening: Floats | None = None,
+) -> None: ...  # fmt: skip
+
+# layers
+def layer_steps(steps: Floats, length: float, first: float, last: float, constant: int) -> float: ...
+def layer_lines(
+    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int, scratch: Floats
+) -> float: ...
+def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, scratch: Floats) -> None: ...
+
+# conformal: `maps` are a geometry.lift.Lift
+Removed: TypeAlias = tuple[complex, complex, complex, complex, float]
+
+def lift_body(
+    wall: Complexes, swap: bool
+) -> tuple[complex, complex, list[Removed], complex, float, Complexes, tuple[int, ...], float]: ...
+def lift_to_strip(maps: Any, z: Complexes) -> Complexes: ...
+def lift_follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes: ...
+def lift_beside(wall: Complexes, tip: int, other: complex) -> tuple[int, int]: ...
+def lift_bisect(
+    maps: Any, corner: complex, ahead: complex, behind: complex, w: complex, start: float, limit: float
+) -> float: ...
+def fourier_columns(modes: Complexes, gain: Floats, unit: Complexes, columns: Floats) -> None: ...
+def picard_step(c: Floats, height: float, matrices: Floats, eigenvalues: Floats, smooth: Floats) -> float: ...
+def strip_rows(
+    x: Floats, y: Floats, order: Indices, lift: Any, sums: Sequence[tuple[int, int, Floats]],
+    sharpness: float, along: Floats, across: Floats, matrix: Floats, cuts: Indices, begin: int,
+    axis: tuple[complex, complex] | None,
+) -> bool: ...  # fmt: skip
+
+# neural
+LINE: int
+
+def winslow_steps(
+    planes: Floats, turns: Floats, harmonic: bool, steps: int, share: float, growth: float, xi: Edges,
+    eta: Edges, around: bool, last: Floats,
+) -> None: ...  # fmt: skip
+def frame_take_out(planes: Floats, unit: Floats, factors: Floats) -> None: ...
+def frame_put_back(planes: Floats, moved: Floats, unit: Floats, factors: Floats) -> None: ...
+def add_answers(planes: Floats, answers: Reals, head: int, rim: Floats) -> None: ...
+def grid_features(planes: Floats, steps: Floats, out: Reals) -> None: ...
+
+class LayerProgram:
+    def run(self, x: Reals, out: Reals) -> None: ...
+
+def convolve(
+    x: Reals, w: Reals, bias: Reals, size: int, stride: int, add: Reals | None, out: Reals,
+    later: LayerProgram | None = None,
+) -> None: ...  # fmt: skip
+def winograd_scratch(inputs: int, wide: int, line: int) -> int: ...
+def winograd(
+    x: Reals, w: Reals, bias: Reals, add: Reals | None, scratch: Reals, out: Reals,
+    later: LayerProgram | None = None,
+) -> None: ...  # fmt: skip
+def activate(x: Reals, out: Reals, around: bool = False, later: LayerProgram | None = None) -> None: ...
+def upsample(
+    x: Reals, add: Reals, out: Reals, around: bool = False, later: LayerProgram | None = None
+) -> None: ...
+
+# formats
+INTEGER_BYTES: int
+FLOAT_BYTES: int
+
+def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...

@@ -1,0 +1,19 @@
+"""The compiled functions, a subject a file; what they compute stands in the C sources beside these."""
+
+import numpy as np
+
+from libc.stddef cimport ptrdiff_t
+from libc.stdint cimport int64_t, uint64_t, uintptr_t
+from libc.stdlib cimport calloc, free, malloc
+
+include "include/arrays.pxi"
+include "include/complex.pxi"
+include "geometry/geometry.pxi"
+include "algebraic/algebraic.pxi"
+include "elliptic/elliptic.pxi"
+include "energy/energy.pxi"
+include "hyperbolic/hyperbolic.pxi"
+include "layers/layers.pxi"
+include "conformal/conformal.pxi"
+include "neural/neural.pxi"
+include "formats/formats.pxi"

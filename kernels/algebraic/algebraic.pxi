@@ -1,0 +1,172 @@
+cdef extern from "algebraic/tfi.h":
+    ctypedef struct TfiEdges:
+        const double *south
+        const double *north
+        const double *west
+        const double *east
+    void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
+                  const TfiEdges *parameter) nogil
+
+cdef extern from "algebraic/combine.h":
+    void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
+                      const double *values, const double *bends, int rim) nogil
+
+cdef extern from "algebraic/evaluate.h":
+    ctypedef struct Places:
+        const ptrdiff_t *first
+        const double *weights
+    ctypedef struct Evaluation:
+        ptrdiff_t m, n, ni, nj
+        Places fine[2]
+        Places thin[2]
+        double near, far, reach
+    ctypedef struct Corners:
+        const double *south
+        const double *north
+        const double *west
+        const double *east
+        const double *opened
+        const unsigned char *straight
+    void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes) nogil
+    ptrdiff_t evaluate_scratch(const Evaluation *e) nogil
+    void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch,
+                       double *nodes) nogil
+
+
+cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:
+    """Return pointers into arrays for south, north, west and east."""
+    cdef TfiEdges e
+    e.south, e.north = reads(four[0], along), reads(four[1], along)
+    e.west, e.east = reads(four[2], across), reads(four[3], across)
+    return e
+
+
+def tfi(x, y, tuple xs, tuple ys, tuple parameters):
+    """Interpolate into the planes `x` and `y` (ni, nj).
+
+    `xs` and `ys` are the coordinates, `parameters` the values 0..1, of (south, north, west, east): (ni), (ni),
+    (nj), (nj).
+    """
+    cdef double *px = fills(x, y.shape)
+    cdef double *py = fills(y, x.shape)
+    cdef ptrdiff_t ni, nj
+    ni, nj = x.shape
+    cdef TfiEdges ex = four_edges(xs, (ni,), (nj,)), ey = four_edges(ys, (ni,), (nj,))
+    cdef TfiEdges parameter = four_edges(parameters, (ni,), (nj,))
+    with nogil:
+        tfi_fill(px, py, ni, nj, &ex, &ey, &parameter)
+
+
+cdef TfiEdges moved(TfiEdges e, ptrdiff_t along, ptrdiff_t across) noexcept nogil:
+    """Return edges so many numbers further on."""
+    e.south, e.north, e.west, e.east = e.south + along, e.north + along, e.west + across, e.east + across
+    return e
+
+
+def tfi_batch(nodes, tuple sides, tuple parameters):
+    """Interpolate into the planes `nodes` (batch, 2, ni, nj).
+
+    `sides` are (batch, 2, n) and `parameters` (batch, n) for south, north, west and east.
+    """
+    cdef ptrdiff_t batch = nodes.shape[0], ni = nodes.shape[2], nj = nodes.shape[3], b
+    cdef double *x = fills(nodes, (batch, 2, ni, nj))
+    cdef TfiEdges ex = four_edges(sides, (batch, 2, ni), (batch, 2, nj)), ey
+    cdef TfiEdges parameter = four_edges(parameters, (batch, ni), (batch, nj))
+    with nogil:
+        for b in range(batch):
+            ey = moved(ex, ni, nj)
+            tfi_fill(x, x + ni * nj, ni, nj, &ex, &ey, &parameter)
+            x, ex, parameter = x + 2 * ni * nj, moved(ey, ni, nj), moved(parameter, ni, nj)
+
+
+def add_spline_rows(x, first, weights, values, bends, bint rim):
+    """Add to row i of `x` (ni, nj) the rows first[i] and first[i]+1 of `values` and `bends` (m, nj).
+
+    `weights` (ni, 4) go to the two rows of values and the two of bends. The first and last column stay as
+    they are, and without `rim` the first and last row.
+    """
+    cdef ptrdiff_t ni, nj, m = len(values)
+    ni, nj = x.shape
+    cdef Places p = places((first, weights), ni, m)
+    cdef double *px = fills(x, (ni, nj))
+    cdef const double *v = reads(values, (m, nj))
+    cdef const double *c = reads(bends, (m, nj))
+    with nogil:
+        combine_rows(px, ni, nj, p.first, p.weights, v, c, rim)
+
+
+cdef Places places(tuple given, ptrdiff_t count, ptrdiff_t knots) except *:
+    """Return pointers into an answer of `spline.places`."""
+    cdef Places p
+    cdef ptrdiff_t k
+    p.first, p.weights = reads_indices(given[0], (count,)), reads(given[1], (count, 4))
+    for k in range(count):
+        if p.first[k] < 0 or p.first[k] > knots - 2:
+            raise ValueError("a place beyond the knots")
+    return p
+
+
+cdef Corners corners_of(tuple sides, ptrdiff_t batch, ptrdiff_t ni, ptrdiff_t nj) except *:
+    cdef Corners c
+    c.south, c.north = reads(sides[0], (batch, 2, ni)), reads(sides[1], (batch, 2, ni))
+    c.west, c.east = reads(sides[2], (batch, 2, nj)), reads(sides[3], (batch, 2, nj))
+    c.opened, c.straight = NULL, NULL
+    return c
+
+
+cdef void next_grid(const Evaluation *e, Corners *c) noexcept nogil:
+    """Go on to the edges of the next grid of a batch."""
+    c.south, c.north, c.west, c.east = c.south + 2 * e.ni, c.north + 2 * e.ni, c.west + 2 * e.nj, c.east + 2 * e.nj
+
+
+def tfi_coarse(tuple sides, tuple thin, nodes):
+    """Fill the planes `nodes` (batch, 2, m, n) by transfinite interpolation of edges, by their own arc lengths.
+
+    `sides` are south, north (batch, 2, ni), west and east (batch, 2, nj), `thin` the `places` of m nodes in ni and of
+    n in nj.
+    """
+    cdef ptrdiff_t batch = len(nodes), b
+    cdef Evaluation e
+    e.m, e.n, e.ni, e.nj = nodes.shape[2], nodes.shape[3], sides[0].shape[2], sides[2].shape[2]
+    cdef Corners edges = corners_of(sides, batch, e.ni, e.nj)
+    e.thin[0], e.thin[1] = places(thin[0], e.m, e.ni), places(thin[1], e.n, e.nj)
+    cdef double *to = fills(nodes, (batch, 2, e.m, e.n))
+    scratch = np.empty(6 * (e.m + e.n))
+    cdef double *room = fills(scratch, scratch.shape)
+    with nogil:
+        for b in range(batch):
+            evaluate_begin(&e, &edges, room, to)
+            next_grid(&e, &edges)
+            to += 2 * e.m * e.n
+
+
+def resample(coarse, tuple sides, tuple fine, opened, double near, double far, double reach, nodes, straight=None):
+    """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n).
+
+    `sides` are south, north (batch, 2, ni), west and east (batch, 2, nj); `fine` the `places` of ni nodes in m and of
+    nj in n. `opened` (batch, 4) is the share that is taken out of second derivatives at corners, up to `near` coarse
+    cells from them and none from `far` on; `straight` (batch, m, n) where all is. What is missed of an edge is felt
+    along `reach` of its steps.
+    """
+    cdef ptrdiff_t batch = len(nodes), b
+    cdef Evaluation e
+    e.m, e.n, e.ni, e.nj = coarse.shape[2], coarse.shape[3], nodes.shape[2], nodes.shape[3]
+    e.near, e.far, e.reach = near, far, reach
+    cdef Corners edges = corners_of(sides, batch, e.ni, e.nj)
+    edges.opened = reads(opened, (batch, 4))
+    if straight is not None:
+        edges.straight = <const unsigned char *>numbers(straight, b"B", 1, (batch, e.m, e.n), False)
+    e.fine[0], e.fine[1] = places(fine[0], e.ni, e.m), places(fine[1], e.nj, e.n)
+    cdef const double *given = reads(coarse, (batch, 2, e.m, e.n))
+    cdef double *to = fills(nodes, (batch, 2, e.ni, e.nj))
+    scratch = np.empty(evaluate_scratch(&e))
+    cdef double *room = fills(scratch, scratch.shape)
+    with nogil:
+        for b in range(batch):
+            evaluate_grid(&e, given, &edges, room, to)
+            next_grid(&e, &edges)
+            edges.opened += 4
+            if edges.straight != NULL:
+                edges.straight += e.m * e.n
+            given += 2 * e.m * e.n
+            to += 2 * e.ni * e.nj

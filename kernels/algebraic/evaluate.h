@@ -1,0 +1,38 @@
+/* A grid on few nodes evaluated on many; see evaluate.c. */
+#ifndef MESHONET_EVALUATE_H
+#define MESHONET_EVALUATE_H
+#include <stddef.h>
+
+/* For each of some uniform places the knot before it and the weights (4) of the values there and at the next, and of
+   the second derivatives at both: `places` of spline.py. */
+typedef struct {
+    const ptrdiff_t *first;
+    const double *weights;
+} Places;
+
+/* Grids (m, n) and (ni, nj), the places of each axis of the second in the first, and the other way round; shares of
+   second derivatives are taken out up to `near` coarse cells from a corner, none from `far` on. What is missed of an
+   edge is felt along `reach` of its steps. */
+typedef struct {
+    ptrdiff_t m, n, ni, nj;
+    Places fine[2], thin[2];
+    double near, far, reach;
+} Evaluation;
+
+/* Edges of one grid, planes (2, ni) and (2, nj); the share (4) taken out at its corners, those of west first, of each
+   that of south first; and the coarse nodes (m, n) around which lines are straight, or NULL. */
+typedef struct {
+    const double *south, *north, *west, *east, *opened;
+    const unsigned char *straight;
+} Corners;
+
+/* Fill the planes nodes (2, m, n) by transfinite interpolation of edges with ni and nj nodes, of which `thin` are the
+   places; scratch of 6 (m + n). */
+void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes);
+
+/* How many numbers evaluate_grid needs as scratch. */
+ptrdiff_t evaluate_scratch(const Evaluation *e);
+
+/* Fill the planes nodes (2, ni, nj) from the planes coarse (2, m, n). */
+void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes);
+#endif

@@ -1,0 +1,14 @@
+#ifndef MESHONET_TFI_H
+#define MESHONET_TFI_H
+#include <stddef.h>
+
+/* One coordinate of the four edges. */
+typedef struct {
+    const double *south, *north; /* (ni) */
+    const double *west, *east;   /* (nj) */
+} TfiEdges;
+
+/* Fill rows first <= i < last of the planes x and y (ni, nj); see tfi.c. */
+void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
+              const TfiEdges *parameter);
+#endif

@@ -1,0 +1,165 @@
+/* One row after another, so that its points stay in the first-level cache from the strip to the plane.
+
+   A row's points are sums over the columns around it (waves.py), go through the maps (lift_maps.h), and are then
+   levels themselves or the points of a panel, whose levels are a product with a matrix (panels.py). BLAS is slow
+   at both products: one side is 14 or 16 long, and a grid's rows lie far apart. */
+
+/* Argument reduction in the maps lives on the order of its operations. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-associative-math")
+#endif
+
+#include "strip_rows.h"
+
+#include "clones.h"
+#include "lanes.h"
+#include "lift_maps.h"
+
+#define ROWS 4
+
+/* The points of a row: psi and phi, then x and y; room for LANES more than there are. */
+typedef struct { double *x, *y; } Row;
+
+/* Whole lanes: what is added behind the last of m points is zero. */
+MESHONET_INLINE void gather(double *restrict out, const double *const *taken, const double *weights, ptrdiff_t m)
+{
+    ptrdiff_t l = 0;
+    for (; l + 4 * LANES <= m; l += 4 * LANES) {
+        Lanes a = LOAD(out + l), b = LOAD(out + l + LANES), c = LOAD(out + l + 2 * LANES), d = LOAD(out + l + 3 * LANES);
+        for (int t = 0; t < TAPS; t++) {
+            const double w = weights[t], *column = taken[t] + l;
+            ADD_PRODUCT(a, w, LOAD(column));
+            ADD_PRODUCT(b, w, LOAD(column + LANES));
+            ADD_PRODUCT(c, w, LOAD(column + 2 * LANES));
+            ADD_PRODUCT(d, w, LOAD(column + 3 * LANES));
+        }
+        STORE(out + l, a);
+        STORE(out + l + LANES, b);
+        STORE(out + l + 2 * LANES, c);
+        STORE(out + l + 3 * LANES, d);
+    }
+    for (; l < m; l += LANES) {
+        Lanes a = LOAD(out + l);
+        for (int t = 0; t < TAPS; t++) ADD_PRODUCT(a, weights[t], LOAD(taken[t] + l));
+        STORE(out + l, a);
+    }
+}
+
+/* Add the sum at node i of n to its points; waves.py has the window. */
+MESHONET_INLINE void add_sum(const WindowSum *s, double sharpness, ptrdiff_t i, ptrdiff_t n, Row row)
+{
+    const double place = (double)i * (double)s->count / (double)n, first = ceil(place - 0.5 * TAPS);
+    const double *re[TAPS], *im[TAPS];
+    double weights[TAPS];
+    for (int t = 0; t < TAPS; t++) {
+        const double u = (first + t - place) / (0.5 * TAPS), inside = 1.0 - u * u;
+        weights[t] = fast_exp(sharpness * (sqrt(inside > 0.0 ? inside : 0.0) - 1.0));
+        re[t] = s->columns + (((ptrdiff_t)first + t) & (s->count - 1)) * 2 * s->width;
+        im[t] = re[t] + s->width;
+    }
+    gather(row.x + s->from, re, weights, s->m);
+    gather(row.y + s->from, im, weights, s->m);
+}
+
+MESHONET_INLINE void make_row(const StripRows *s, ptrdiff_t i, Row row)
+{
+    const double theta = 6.283185307179586476925 / (double)s->n * (double)i;
+    for (ptrdiff_t l = 0; l < s->m; l++) row.x[l] = 0.0, row.y[l] = theta;
+    for (ptrdiff_t k = 0; k < s->n_sums; k++) add_sum(&s->sums[k], s->sharpness, i, s->n, row);
+    for (ptrdiff_t k = 0; k < s->n_nudges; k++) {
+        const double along = s->along[k * s->n + i];
+        if (along != 0.0)
+            for (ptrdiff_t l = 0; l < s->m; l++) row.y[l] += along * s->across[k * s->m + l];
+    }
+    for (ptrdiff_t l = 0; l < s->m; l += CHUNK)
+        lift_to_plane(row.x + l, row.y + l, s->m - l < CHUNK ? s->m - l : CHUNK, &s->lift);
+}
+
+/* a and b become the means of each with the mirror image of the other. */
+MESHONET_INLINE void make_symmetric(const StripRows *s, Row a, Row b)
+{
+    const Cplx o = s->on_axis, t = s->turned;
+    for (ptrdiff_t l = 0; l < s->m; l++) {
+        const double ax = a.x[l] - o.re, ay = a.y[l] - o.im, bx = b.x[l] - o.re, by = b.y[l] - o.im;
+        const double px = t.re * bx + t.im * by, py = t.im * bx - t.re * by; /* t conj(b) */
+        const double mx = 0.5 * (ax + px), my = 0.5 * (ay + py);
+        a.x[l] = o.re + mx, a.y[l] = o.im + my;
+        b.x[l] = o.re + t.re * mx + t.im * my, b.y[l] = o.im + t.im * mx - t.re * my;
+    }
+}
+
+/* `count` rows of one coordinate on one panel, levels [from, to); c[r] are the values at its points */
+MESHONET_INLINE void lay(double *const *out, int count, double (*c)[PANEL_NODES],
+                         const double *restrict matrix, ptrdiff_t width, ptrdiff_t from, ptrdiff_t to)
+{
+    ptrdiff_t j = from;
+    if (count == ROWS)
+        for (; j + LANES <= to; j += LANES) {
+            Lanes r0 = {0}, r1 = {0}, r2 = {0}, r3 = {0};
+            for (int k = 0; k < PANEL_NODES; k++) {
+                const Lanes basis = LOAD(matrix + k * width + j);
+                ADD_PRODUCT(r0, c[0][k], basis);
+                ADD_PRODUCT(r1, c[1][k], basis);
+                ADD_PRODUCT(r2, c[2][k], basis);
+                ADD_PRODUCT(r3, c[3][k], basis);
+            }
+            STORE(out[0] + j, r0);
+            STORE(out[1] + j, r1);
+            STORE(out[2] + j, r2);
+            STORE(out[3] + j, r3);
+        }
+    for (; j < to; j++)
+        for (int r = 0; r < count; r++) {
+            double sum = 0.0;
+            for (int k = 0; k < PANEL_NODES; k++) sum += c[r][k] * matrix[k * width + j];
+            out[r][j] = sum;
+        }
+}
+
+/* One coordinate of the points of `count` rows to their levels. */
+MESHONET_INLINE void write_levels(const StripRows *s, double *const *points, int count, double *const *out,
+                                  ptrdiff_t nj)
+{
+    const ptrdiff_t near = s->begin - 1, last = near + PANEL_NODES * s->panels, width = s->cuts[s->panels];
+    double *levels[ROWS];
+    for (int r = 0; r < count; r++) {
+        for (ptrdiff_t l = 0; l < near; l++) out[r][1 + l] = points[r][l];
+        for (ptrdiff_t l = last; l < s->m; l++) out[r][nj - 1 - s->m + l] = points[r][l];
+        levels[r] = out[r] + s->begin;
+    }
+    for (ptrdiff_t p = 0; p < s->panels; p++) {
+        double c[ROWS][PANEL_NODES];
+        for (int r = 0; r < count; r++)
+            for (int k = 0; k < PANEL_NODES; k++) c[r][k] = points[r][near + PANEL_NODES * p + k];
+        lay(levels, count, c, s->matrix, width, s->cuts[p], s->cuts[p + 1]);
+    }
+}
+
+MESHONET_INLINE double some_rows(const StripRows *s, const ptrdiff_t *order, int count, double *x, double *y,
+                                 ptrdiff_t nj, double *const *px, double *const *py)
+{
+    double *to_x[ROWS], *to_y[ROWS], sum = 0.0;
+    for (int r = 0; r < count; r++) {
+        make_row(s, order[r], (Row){px[r], py[r]});
+        to_x[r] = x + order[r] * nj, to_y[r] = y + order[r] * nj;
+    }
+    if (s->symmetric)
+        for (int r = 0; r + 1 < count; r += 2) make_symmetric(s, (Row){px[r], py[r]}, (Row){px[r + 1], py[r + 1]});
+    write_levels(s, px, count, to_x, nj);
+    write_levels(s, py, count, to_y, nj);
+    for (int r = 0; r < count; r++)
+        for (ptrdiff_t l = 0; l < s->m; l++) sum += px[r][l] + py[r][l];
+    return sum;
+}
+
+MESHONET_CLONES
+double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
+                  double *scratch)
+{
+    double *px[ROWS], *py[ROWS], sum = 0.0;
+    for (int r = 0; r < ROWS; r++) px[r] = scratch + 2 * r * (s->m + LANES), py[r] = px[r] + s->m + LANES;
+    ptrdiff_t i = 0;
+    for (; i + ROWS <= count; i += ROWS) sum += some_rows(s, order + i, ROWS, x, y, nj, px, py);
+    for (; i < count; i += 2) sum += some_rows(s, order + i, count - i < 2 ? 1 : 2, x, y, nj, px, py);
+    return sum;
+}

@@ -1,0 +1,67 @@
+/* The stencil of Winslow's operator with control functions at one node; see multigrid.c for the equations. */
+#ifndef MESHONET_STENCIL_H
+#define MESHONET_STENCIL_H
+#include "clones.h"
+#include "multigrid.h"
+
+/* What a kernel has to do beside L: a right side, control functions. Constants where it is inlined. */
+enum { FORCED = 1, CONTROLLED = 2 };
+
+MESHONET_INLINE int mode_of(const Level *g, int forced)
+{
+    return (forced ? FORCED : 0) | (g->phi.terms + g->psi.terms > 0 ? CONTROLLED : 0);
+}
+
+/* Rows i-1, i and i+1 of both coordinates. */
+typedef struct {
+    const double *restrict xw, *restrict xc, *restrict xe;
+    const double *restrict yw, *restrict yc, *restrict ye;
+} Rows;
+
+/* Stencil of L at one node: weights of the four neighbours and the cross terms 2β x_ξη, 2β y_ξη. */
+typedef struct {
+    double east, west, north, south, cross_x, cross_y;
+} Stencil;
+
+MESHONET_INLINE Stencil stencil(const Rows *r, ptrdiff_t j, double forward, double backward, double centred,
+                                const Differences *eta, double phi, double psi, int mode)
+{
+    const double ej = eta->centred[j];
+    const double x_xi = centred * (r->xe[j] - r->xw[j]), x_eta = ej * (r->xc[j + 1] - r->xc[j - 1]);
+    const double y_xi = centred * (r->ye[j] - r->yw[j]), y_eta = ej * (r->yc[j + 1] - r->yc[j - 1]);
+    const double alpha = x_eta * x_eta + y_eta * y_eta;
+    const double beta = x_xi * x_eta + y_xi * y_eta;
+    const double gamma = x_xi * x_xi + y_xi * y_xi;
+    const double twice = 2.0 * beta * centred * ej;
+    Stencil s;
+    if (mode & CONTROLLED) {
+        s.east = (forward + centred * phi) * alpha;
+        s.west = (backward - centred * phi) * alpha;
+        s.north = (eta->forward[j] + ej * psi) * gamma;
+        s.south = (eta->backward[j] - ej * psi) * gamma;
+    } else {
+        s.east = forward * alpha;
+        s.west = backward * alpha;
+        s.north = eta->forward[j] * gamma;
+        s.south = eta->backward[j] * gamma;
+    }
+    s.cross_x = twice * (r->xe[j + 1] - r->xe[j - 1] - r->xw[j + 1] + r->xw[j - 1]);
+    s.cross_y = twice * (r->ye[j + 1] - r->ye[j - 1] - r->yw[j + 1] + r->yw[j - 1]);
+    return s;
+}
+
+MESHONET_INLINE Rows rows_at(const Level *g, ptrdiff_t i)
+{
+    const ptrdiff_t ld = g->mj + 1, west = i > 0 ? i - 1 : g->mi - 1, east = i + 1;
+    const Rows r = {g->x + west * ld, g->x + i * ld, g->x + east * ld,
+                    g->y + west * ld, g->y + i * ld, g->y + east * ld};
+    return r;
+}
+
+/* Doubles kept for a row of n + 1 nodes, so that rows of scratch begin on cache lines. */
+static ptrdiff_t padded(ptrdiff_t n)
+{
+    return (n + 8) / 8 * 8 + 8;
+}
+
+#endif

@@ -1,0 +1,224 @@
+/* The functional, with u and v the edges along xi and eta that meet at a cell's corner, g = |u|², h = |v|²,
+   J = u × v, χ = J (or (J + √(J² + ε²)) / 2 when regularised):
+
+       E = mean over cells of ( mean over corners + 2 at the centre ) / 3 of
+               (1-w) (a g + h/a) / (2χ) + w (g h / χ²)²
+         + β mean over cells of the squares of (ni-1) Δ_i log l and (nj-1) Δ_j log l, l the edge lengths
+
+   At the centre u and v are the means of opposite edges. Δ_i and Δ_j are the differences to the next edge of the
+   same family in either direction; those along the rim count half. Where the rim itself turns so far that no angle there can be good, corners keep a
+   share of their angle terms only. One row of cells, or of edges, at a time: first
+   the forces of each into row buffers, which vectorises, then onto the nodes. */
+#ifndef MESHONET_FUNCTIONAL_H
+#define MESHONET_FUNCTIONAL_H
+#include "clones.h"
+#include "variational.h"
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+typedef struct {
+    double du_x, du_y, dv_x, dv_y, energy, jacobian;
+} Corner;
+
+typedef struct {
+    double along, across, angle, eps2; /* (1-w) a / 2, (1-w) / (2a) and w, times the weight of the place; ε² */
+} Factors;
+
+MESHONET_INLINE Corner corner(double ux, double uy, double vx, double vy, const Factors *f, int regular)
+{
+    Corner c;
+    const double g = ux * ux + uy * uy, h = vx * vx + vy * vy;
+    c.jacobian = ux * vy - uy * vx;
+    const double root = regular ? sqrt(c.jacobian * c.jacobian + f->eps2) : c.jacobian;
+    const double inverse = regular ? 2.0 / (c.jacobian + root) : 1.0 / c.jacobian;
+    const double chain = regular ? 0.5 * (1.0 + c.jacobian / root) : 1.0; /* dχ/dJ */
+    const double harmonic = (f->along * g + f->across * h) * inverse;
+    const double squares = inverse * inverse, ratio = g * h * squares, angle = f->angle * ratio * ratio;
+    const double by_angle = 2.0 * f->angle * ratio * squares;
+    const double by_g = 2.0 * (f->along * inverse + by_angle * h), by_h = 2.0 * (f->across * inverse + by_angle * g);
+    const double by_j = -(harmonic + 4.0 * angle) * inverse * chain;
+    c.energy = harmonic + angle;
+    c.du_x = by_g * ux + by_j * vy, c.du_y = by_g * uy - by_j * vx;
+    c.dv_x = by_h * vx - by_j * uy, c.dv_y = by_h * vy + by_j * ux;
+    return c;
+}
+
+/* Forces on the four edges of each cell of a row, in x and y, and its smallest Jacobian. */
+typedef struct {
+    double *sx, *sy, *nx, *ny, *wx, *wy, *ex, *ey, *least;
+} CellRow;
+
+MESHONET_INLINE double cell_row(const double *restrict xa, const double *restrict ya, const double *restrict xb,
+                                const double *restrict yb, ptrdiff_t cells, const Factors *at_corner,
+                                const Factors *at_centre, int regular, const CellRow *row)
+{
+    double *restrict sx = row->sx, *restrict sy = row->sy, *restrict nx = row->nx, *restrict ny = row->ny;
+    double *restrict wx = row->wx, *restrict wy = row->wy, *restrict ex = row->ex, *restrict ey = row->ey;
+    double *restrict least = row->least;
+    const Factors f = *at_corner, fm = *at_centre;
+    double energy = 0.0;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < cells; j++) {
+        const double south_x = xb[j] - xa[j], south_y = yb[j] - ya[j];
+        const double north_x = xb[j + 1] - xa[j + 1], north_y = yb[j + 1] - ya[j + 1];
+        const double west_x = xa[j + 1] - xa[j], west_y = ya[j + 1] - ya[j];
+        const double east_x = xb[j + 1] - xb[j], east_y = yb[j + 1] - yb[j];
+        const Corner a = corner(south_x, south_y, west_x, west_y, &f, regular);
+        const Corner b = corner(south_x, south_y, east_x, east_y, &f, regular);
+        const Corner c = corner(north_x, north_y, east_x, east_y, &f, regular);
+        const Corner d = corner(north_x, north_y, west_x, west_y, &f, regular);
+        const Corner m = corner(south_x + north_x, south_y + north_y, west_x + east_x, west_y + east_y, &fm, regular);
+        energy += ((a.energy + b.energy) + (c.energy + d.energy)) + m.energy;
+        const double south = a.jacobian < b.jacobian ? a.jacobian : b.jacobian;
+        const double north = c.jacobian < d.jacobian ? c.jacobian : d.jacobian;
+        least[j] = south < north ? south : north;
+        sx[j] = a.du_x + b.du_x + m.du_x, sy[j] = a.du_y + b.du_y + m.du_y;
+        nx[j] = c.du_x + d.du_x + m.du_x, ny[j] = c.du_y + d.du_y + m.du_y;
+        wx[j] = a.dv_x + d.dv_x + m.dv_x, wy[j] = a.dv_y + d.dv_y + m.dv_y;
+        ex[j] = b.dv_x + c.dv_x + m.dv_x, ey[j] = b.dv_y + c.dv_y + m.dv_y;
+    }
+    return energy;
+}
+
+/* An edge force pushes its end node and pulls its start node; one coordinate of one row of cells. */
+MESHONET_INLINE void scatter(const double *restrict s, const double *restrict n, const double *restrict w,
+                             const double *restrict e, double *restrict ga, double *restrict gb, ptrdiff_t cells)
+{
+    ga[0] -= s[0] + w[0], gb[0] += s[0] - e[0];
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 1; j < cells; j++) {
+        ga[j] += (w[j - 1] - n[j - 1]) - (s[j] + w[j]);
+        gb[j] += (n[j - 1] + e[j - 1]) + (s[j] - e[j]);
+    }
+    ga[cells] += w[cells - 1] - n[cells - 1], gb[cells] += n[cells - 1] + e[cells - 1];
+}
+
+/* Natural logarithm of a positive normal number, to 2 units of the last place, and its inverse, without a branch and
+   with one division: x = 2^k m with m in [√½, √2), log m = 2 artanh s, s = (m - 1) / (m + 1). */
+MESHONET_INLINE double logarithm(double x, double *inverse)
+{
+    uint64_t bits, power;
+    double m, k;
+    memcpy(&bits, &x, sizeof bits);
+    power = (bits - 0x3fe6a09e667f3bcdULL + 0x3ff0000000000000ULL) >> 52; /* k + 1023 */
+    bits -= (power << 52) - 0x3ff0000000000000ULL;
+    memcpy(&m, &bits, sizeof m);
+    power |= 0x4330000000000000ULL; /* 2^52 + k + 1023 as a double */
+    memcpy(&k, &power, sizeof k);
+    k -= 4503599627371519.0;
+    const double both = 1.0 / (x * (m + 1.0)), s = (m - 1.0) * x * both, q = s * s;
+    *inverse = (m + 1.0) * both;
+    double tail = 1.0 / 19.0;
+    tail = tail * q + 1.0 / 17.0, tail = tail * q + 1.0 / 15.0, tail = tail * q + 1.0 / 13.0;
+    tail = tail * q + 1.0 / 11.0, tail = tail * q + 1.0 / 9.0, tail = tail * q + 1.0 / 7.0;
+    tail = tail * q + 1.0 / 5.0, tail = tail * q + 1.0 / 3.0;
+    return k * 0.69314718055994530942 + 2.0 * s * (1.0 + q * tail);
+}
+
+/* Half the logarithm of |edge|² and its inverse, for one row of edges; `next` is the offset of an edge's end. */
+MESHONET_INLINE void measure_row(const double *restrict x, const double *restrict y, ptrdiff_t next, ptrdiff_t n,
+                                 double *restrict length, double *restrict inverse)
+{
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < n; j++) {
+        const double dx = x[j + next] - x[j], dy = y[j + next] - y[j];
+        length[j] = 0.5 * logarithm(dx * dx + dy * dy, inverse + j);
+    }
+}
+
+/* Push the two nodes of each edge of a row by its force over l², times the edge; `force` has room for 3 n. */
+MESHONET_INLINE void push_row(const double *restrict x, const double *restrict y, ptrdiff_t next, ptrdiff_t n,
+                              double *restrict force, const double *restrict inverse, double *restrict gx,
+                              double *restrict gy)
+{
+    double *restrict fx = force + n, *restrict fy = force + 2 * n;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < n; j++) {
+        const double f = force[j] * inverse[j];
+        fx[j] = f * (x[j + next] - x[j]), fy[j] = f * (y[j + next] - y[j]);
+    }
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < n; j++)
+        gx[j] -= fx[j], gy[j] -= fy[j];
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t j = 0; j < n; j++)
+        gx[j + next] += fx[j], gy[j + next] += fy[j];
+}
+
+/* The edge length term of one family of edges, (rows, n) of them; those along xi (`next` > 1) wrap around when
+   periodic. `length` and `inverse` hold rows * n doubles, `force` 3 n. */
+MESHONET_INLINE double family(const double *x, const double *y, ptrdiff_t nj, ptrdiff_t rows, ptrdiff_t n,
+                              ptrdiff_t next, int periodic, double by_i, double by_j, double *gx, double *gy,
+                              double *length, double *inverse, double *restrict force)
+{
+    const int along_i = next > 1;
+    double energy = 0.0;
+    for (ptrdiff_t i = 0; i < rows; i++)
+        measure_row(x + i * nj, y + i * nj, next, n, length + i * n, inverse + i * n);
+    for (ptrdiff_t i = 0; i < rows; i++) {
+        const double *restrict l = length + i * n;
+        const double *restrict west = i > 0 ? l - n : along_i && periodic ? length + (rows - 1) * n : l;
+        const double *restrict east = i < rows - 1 ? l + n : along_i && periodic ? length : l;
+        const double on_rim = !along_i && (i == 0 || i == rows - 1) ? 0.5 * by_j : by_j;
+        double sum_i = 0.0, sum_j = 0.0;
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t j = 0; j < n; j++) {
+            const double d = east[j] - l[j];
+            sum_i += d * d;
+            force[j] = 2.0 * by_i * ((l[j] - west[j]) - d);
+        }
+        if (along_i) {
+            const double first = east[0] - l[0], last = east[n - 1] - l[n - 1];
+            sum_i -= 0.5 * (first * first + last * last);
+        }
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t j = 0; j < n - 1; j++) {
+            const double d = l[j + 1] - l[j];
+            sum_j += d * d;
+        }
+        MESHONET_INDEPENDENT
+        for (ptrdiff_t j = 1; j < n - 1; j++)
+            force[j] += 2.0 * on_rim * (2.0 * l[j] - l[j - 1] - l[j + 1]);
+        if (n > 1) {
+            force[0] -= 2.0 * on_rim * (l[1] - l[0]);
+            force[n - 1] += 2.0 * on_rim * (l[n - 1] - l[n - 2]);
+        }
+        energy += by_i * sum_i + on_rim * sum_j;
+        push_row(x + i * nj, y + i * nj, next, n, force, inverse + i * n, gx + i * nj, gy + i * nj);
+    }
+    return energy;
+}
+
+/* Take away from the energy what the corners at nodes (i, 0) do not keep of their angle terms, w over the number of
+   corners each; the only free node that it moves is (i, 1). */
+MESHONET_INLINE double relieve(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights,
+                               double angle, double *gx, double *gy)
+{
+    double energy = 0.0;
+    for (ptrdiff_t i = weights->periodic ? 0 : 1; i < ni - 1; i++) {
+        if (!(weights->relief[i] < 1.0))
+            continue;
+        const Factors f = {0.0, 0.0, angle * (1.0 - weights->relief[i]), 0.0};
+        const ptrdiff_t k = i * nj, east = k + nj, west = i > 0 ? k - nj : (ni - 2) * nj;
+        const double vx = x[k + 1] - x[k], vy = y[k + 1] - y[k];
+        const Corner a = corner(x[east] - x[k], y[east] - y[k], vx, vy, &f, 0);
+        const Corner b = corner(x[k] - x[west], y[k] - y[west], vx, vy, &f, 0);
+        energy += a.energy + b.energy;
+        gx[k + 1] -= a.dv_x + b.dv_x, gy[k + 1] -= a.dv_y + b.dv_y;
+    }
+    return energy;
+}
+
+/* Zero at fixed nodes; with periodic rows the last row is the first. */
+MESHONET_INLINE void clear_rim(double *g, ptrdiff_t ni, ptrdiff_t nj, int periodic)
+{
+    double *last = g + (ni - 1) * nj;
+    for (ptrdiff_t j = 0; j < nj; j++) {
+        g[j] = periodic ? g[j] + last[j] : 0.0;
+        last[j] = 0.0;
+    }
+    for (ptrdiff_t i = 0; i < ni; i++)
+        g[i * nj] = g[i * nj + nj - 1] = 0.0;
+}
+#endif

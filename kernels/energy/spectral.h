@@ -1,0 +1,164 @@
+/* The inverse of the functional's Hessian on a uniform grid, in the frame of each node.
+
+   Moves of the nodes, as complex numbers, are c w with c the step along xi at the node, so that w is free of the size
+   and the turn of cells. For w the Hessian is about that of a grid of unit squares, which transforms along both
+   directions make diagonal: d = c Q_i (scale · (Q_iᵀ (conj(c) g) Q_j)) Q_jᵀ, with scales of their own along xi and
+   eta. Modes that the transforms leave out are divided by `rest`.
+
+   Every mode is even or odd about the middle of its direction. So values are folded first, v(k) and its mirror image
+   into (v(k) + v(-k)) / √2 and (v(k) - v(-k)) / √2, and each half has its own modes: half the work. Single precision
+   is enough here. */
+#ifndef MESHONET_SPECTRAL_H
+#define MESHONET_SPECTRAL_H
+#include "clones.h"
+#include "variational.h"
+#include <string.h>
+
+#define PANEL 32 /* columns of a product at a time: two vectors of 512 bits */
+
+#if defined(__GNUC__)
+typedef float Lanes __attribute__((vector_size(64), aligned(4)));
+#define LANES 16
+#else
+typedef float Lanes;
+#define LANES 1
+#endif
+#define VECTORS (PANEL / LANES)
+#define ROWS 12   /* of a product at a time: as many sums as registers hold */
+#define DEPTH 192 /* terms of a sum at a time: their panel stays in the first cache */
+#define FOLDED 0.70710678f
+
+/* `rows` (ROWS at the most) rows of c = a b, or of c += a b with `add`, one panel; b packed (k, PANEL), c with room for
+   whole panels. */
+MESHONET_INLINE void product_rows(const float *restrict a, ptrdiff_t stride, const float *restrict b, ptrdiff_t k,
+                                  float *restrict c, ptrdiff_t c_stride, const int rows, int add)
+{
+    Lanes sum[ROWS][VECTORS];
+    memset(sum, 0, sizeof sum);
+    if (add)
+        for (int r = 0; r < rows; r++)
+            memcpy(sum[r], c + r * c_stride, sizeof sum[r]);
+    for (ptrdiff_t l = 0; l < k; l++) {
+        const Lanes *line = (const Lanes *)(b + l * PANEL);
+        for (int r = 0; r < rows; r++)
+            for (int v = 0; v < VECTORS; v++)
+                sum[r][v] += a[r * stride + l] * line[v];
+    }
+    for (int r = 0; r < rows; r++)
+        memcpy(c + r * c_stride, sum[r], sizeof sum[r]);
+}
+
+/* One panel of `product`. */
+MESHONET_CLONES
+void spectral_panel(const float *a, ptrdiff_t a_stride, const float *packed, float *c,
+                                   ptrdiff_t c_stride, ptrdiff_t m, ptrdiff_t k, int add)
+{
+    ptrdiff_t i = 0;
+    for (; i + ROWS <= m; i += ROWS)
+        product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride, c_stride, ROWS, add);
+    for (; i + 3 <= m; i += 3)
+        product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride, c_stride, 3, add);
+    for (; i < m; i++)
+        product_rows(a + i * a_stride, a_stride, packed, k, c + i * c_stride, c_stride, 1, add);
+}
+
+/* c (m, n) = a (m, k) b (k, n), rows of n rounded up to whole panels; `packed` holds DEPTH PANEL floats. */
+static void product(const float *a, ptrdiff_t a_stride, const float *b, ptrdiff_t b_stride, float *c,
+                             ptrdiff_t c_stride, ptrdiff_t m, ptrdiff_t k, ptrdiff_t n, float *packed)
+{
+    for (ptrdiff_t j = 0; j < n; j += PANEL)
+        for (ptrdiff_t start = 0; start == 0 || start < k; start += DEPTH) {
+            const ptrdiff_t depth = k - start < DEPTH ? k - start : DEPTH;
+            for (ptrdiff_t l = 0; l < depth; l++)
+                memcpy(packed + l * PANEL, b + (start + l) * b_stride + j, PANEL * sizeof(float));
+            spectral_panel(a + start, a_stride, packed, c + j, c_stride, m, depth, start > 0);
+        }
+}
+
+MESHONET_INLINE ptrdiff_t padded(ptrdiff_t n) { return (n + PANEL - 1) / PANEL * PANEL; }
+
+/* A folded row of values, or of modes: the even half and the odd one, each in whole panels. */
+MESHONET_INLINE ptrdiff_t values_of(const Transform *t) { return padded(t->even.nodes) + padded(t->odd.nodes); }
+MESHONET_INLINE ptrdiff_t modes_of(const Transform *t) { return padded(t->even.modes) + padded(t->odd.modes); }
+
+/* The row v of n values, folded. */
+MESHONET_INLINE void fold(const float *restrict v, const Transform *t, float *restrict folded)
+{
+    const ptrdiff_t n = t->even.nodes + t->odd.nodes, half = t->odd.nodes, start = padded(t->even.nodes);
+    float *restrict odd = folded + start;
+    for (ptrdiff_t k = 0; k < half; k++) {
+        folded[k] = FOLDED * (v[k] + v[n - 1 - k]);
+        odd[k] = FOLDED * (v[k] - v[n - 1 - k]);
+    }
+    if (t->even.nodes > half)
+        folded[half] = v[half];
+    for (ptrdiff_t k = t->even.nodes; k < start; k++)
+        folded[k] = 0.0f;
+    for (ptrdiff_t k = half; k < padded(half); k++)
+        odd[k] = 0.0f;
+}
+
+MESHONET_INLINE void unfold(const float *restrict folded, const Transform *t, float *restrict v)
+{
+    const ptrdiff_t n = t->even.nodes + t->odd.nodes, half = t->odd.nodes;
+    const float *restrict odd = folded + padded(t->even.nodes);
+    for (ptrdiff_t k = 0; k < half; k++) {
+        v[k] = FOLDED * (folded[k] + odd[k]);
+        v[n - 1 - k] = FOLDED * (folded[k] - odd[k]);
+    }
+    if (t->even.nodes > half)
+        v[half] = folded[half];
+}
+
+/* Of two rows the sum and the difference over √2, in place. */
+MESHONET_INLINE void mix(float *restrict a, float *restrict b, ptrdiff_t n)
+{
+    for (ptrdiff_t k = 0; k < n; k++) {
+        const float sum = FOLDED * (a[k] + b[k]), difference = FOLDED * (a[k] - b[k]);
+        a[k] = sum, b[k] = difference;
+    }
+}
+
+/* Rows times the modes of both halves, or back. */
+static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t rows, int back, float *packed)
+{
+    const Half *e = &t->even, *o = &t->odd;
+    const ptrdiff_t nodes = values_of(t), modes = modes_of(t);
+    if (back) {
+        product(w, modes, e->q_t, padded(e->nodes), to, nodes, rows, e->modes, e->nodes, packed);
+        product(w + padded(e->modes), modes, o->q_t, padded(o->nodes), to + padded(e->nodes), nodes, rows, o->modes,
+                o->nodes, packed);
+    } else {
+        product(w, nodes, e->q, padded(e->modes), to, modes, rows, e->nodes, e->modes, packed);
+        product(w + padded(e->nodes), nodes, o->q, padded(o->modes), to + padded(e->modes), modes, rows, o->nodes,
+                o->modes, packed);
+    }
+}
+
+/* Replace the folded planes w (2, mi, values of eta) by what they are divided by the symbol. */
+MESHONET_INLINE void divide(const Spectrum *s, float *restrict w, float *restrict spare, float *packed)
+{
+    const ptrdiff_t mi = s->mi, width = modes_of(&s->eta), nodes = values_of(&s->eta);
+    float *restrict right = spare, *restrict both = spare + 2 * mi * (width > nodes ? width : nodes);
+    const float *scale = s->scale;
+    along_rows(w, &s->eta, right, 2 * mi, 0, packed);
+    for (int c = 0; c < 2; c++) {
+        float *restrict rows = right + c * mi * width;
+        for (int odd = 0; odd < 2; odd++) {
+            const Half *h = odd ? &s->xi.odd : &s->xi.even;
+            product(h->q_t, padded(h->nodes), rows, width, both, width, h->modes, h->nodes, width, packed);
+            for (ptrdiff_t k = 0; k < h->modes * width; k++)
+                both[k] *= scale[k];
+            product(h->q, padded(h->modes), both, width, rows, width, h->nodes, h->modes, width, packed);
+            scale += h->modes * width, rows += h->nodes * width;
+        }
+    }
+    if (s->rest > 0.0f) { /* some modes are left out: rest (w - Q Qᵀ w), the second part in the scale already */
+        along_rows(right, &s->eta, both, 2 * mi, 1, packed);
+        for (ptrdiff_t k = 0; k < 2 * mi * nodes; k++)
+            w[k] = s->rest * w[k] + both[k];
+    } else {
+        along_rows(right, &s->eta, w, 2 * mi, 1, packed);
+    }
+}
+#endif

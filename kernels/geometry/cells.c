@@ -1,0 +1,346 @@
+#include "cells.h"
+
+#include "clones.h"
+
+/* A cell and its edges; i runs along e0, j against e3:
+
+       d --e2-- c        a = (i, j)    b = (i+1, j)    c = (i+1, j+1)    d = (i, j+1)
+       |        |
+      e3        e1       the Jacobian at a corner is the cross product of the two edges that meet there:
+       |        |        at b  e0 x e1,  at c  e1 x e2,  at d  e2 x e3,  at a  e3 x e0
+       a --e0-- b
+
+   Cells of one row are contiguous in j, so every loop below runs over j and the compiler vectorises it. */
+
+#define LARGE 1e30 /* what Verdict puts in place of infinity */
+#define SMALL 1e-300 /* keeps a cell without area or edges from a division by 0 */
+#define DEGREES 57.295779513082320876798154814105170332
+#define LANES 16
+#define BLOCK 128
+
+/* The sign of a corner Jacobian decides what is folded, so it must not depend on the processor: no fused
+   multiply-add, whose one rounding less gives three nodes in a line a Jacobian that is not 0. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define SAME_EVERYWHERE __attribute__((optimize("fp-contract=off", "no-associative-math")))
+#else
+#define SAME_EVERYWHERE
+#pragma STDC FP_CONTRACT OFF
+#endif
+
+MESHONET_INLINE double magnitude(double value) { return value < 0 ? -value : value; }
+MESHONET_INLINE double larger(double a, double b) { return a > b ? a : b; }
+MESHONET_INLINE double smaller(double a, double b) { return a < b ? a : b; }
+
+/* asin(s)/s as a polynomial in z = s*s on [0, 1/4]: Chebyshev interpolation of degree 12, relative error 3e-17. */
+MESHONET_INLINE double asin_over_s(double z)
+{
+    static const double c[13] = {1.0,
+                                 0.16666666666664945,
+                                 0.07500000000384784,
+                                 0.044642856806216,
+                                 0.030381959691850167,
+                                 0.02237174983251582,
+                                 0.017359778450540774,
+                                 0.013884853387846141,
+                                 0.012170069419059097,
+                                 0.006529622403221694,
+                                 0.01951249342600702,
+                                 -0.016185667777976222,
+                                 0.03187828814012674};
+    double p = c[12];
+    p = p * z + c[11];
+    p = p * z + c[10];
+    p = p * z + c[9];
+    p = p * z + c[8];
+    p = p * z + c[7];
+    p = p * z + c[6];
+    p = p * z + c[5];
+    p = p * z + c[4];
+    p = p * z + c[3];
+    p = p * z + c[2];
+    p = p * z + c[1];
+    return p * z + c[0];
+}
+
+/* Angle in degrees of a cosine. acos in the C library is a call, which would stop vectorisation. */
+MESHONET_INLINE double angle(double cosine)
+{
+    double u = smaller(magnitude(cosine), 1.0);
+    double z = smaller(0.5 * (1.0 - u), u * u); /* half-angle formula beyond 1/2, where the series would be slow */
+    double s = __builtin_sqrt(z);
+    double inner = s * asin_over_s(z) * DEGREES;
+    double acute = u > 0.5 ? 2.0 * inner : 90.0 - inner; /* acos(|cosine|) */
+    return cosine < 0 ? 180.0 - acute : acute;
+}
+
+/* Folded cells of one row of cells: any corner Jacobian <= 0, or not a number. x, y point at node (i, 0). */
+MESHONET_CLONES SAME_EVERYWHERE
+static ptrdiff_t cells_folded_in_row(const double *restrict x, const double *restrict y, ptrdiff_t nj, ptrdiff_t cells)
+{
+    const double *restrict xb = x + nj, *restrict yb = y + nj;
+    int64_t good = 0;
+    for (ptrdiff_t j = 0; j < cells; ++j) {
+        double e0x = xb[j] - x[j], e0y = yb[j] - y[j];
+        double e1x = xb[j + 1] - xb[j], e1y = yb[j + 1] - yb[j];
+        double e2x = x[j + 1] - xb[j + 1], e2y = y[j + 1] - yb[j + 1];
+        double e3x = x[j] - x[j + 1], e3y = y[j] - y[j + 1];
+        double ja = e3x * e0y - e3y * e0x, jb = e0x * e1y - e0y * e1x;
+        double jc = e1x * e2y - e1y * e2x, jd = e2x * e3y - e2y * e3x;
+        good += (ja > 0) & (jb > 0) & (jc > 0) & (jd > 0);
+    }
+    return cells - (ptrdiff_t)good;
+}
+
+/* Indices (i, j) of the folded cells into pairs, `room` pairs at most; returns how many there are. */
+ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
+{
+    ptrdiff_t found = 0;
+    for (ptrdiff_t i = 0; i + 1 < ni; ++i) {
+        const double *xi = x + i * nj, *yi = y + i * nj;
+        ptrdiff_t left = cells_folded_in_row(xi, yi, nj, nj - 1);
+        for (ptrdiff_t j = 0; left > 0 && j + 1 < nj; ++j) {
+            if (!cells_folded_in_row(xi + j, yi + j, nj, 1))
+                continue;
+            if (found < room) {
+                pairs[2 * found] = i;
+                pairs[2 * found + 1] = j;
+            }
+            ++found;
+            --left;
+        }
+    }
+    return found;
+}
+
+/* Magnitudes of the areas of one row of cells into area[1 ... nj-1]; area[0] and area[nj] repeat their neighbours. */
+MESHONET_CLONES
+static void cells_areas(const double *restrict x, const double *restrict y, ptrdiff_t nj, double *restrict area)
+{
+    const double *restrict xb = x + nj, *restrict yb = y + nj;
+    for (ptrdiff_t j = 0; j < nj - 1; ++j)
+        area[j + 1] = 0.5 * magnitude((xb[j + 1] - x[j]) * (y[j + 1] - yb[j]) - (yb[j + 1] - y[j]) * (x[j + 1] - xb[j]));
+    area[0] = area[1];
+    area[nj] = area[nj - 1];
+}
+
+/* What the corners of one cell say; a block of cells goes through it and through the angles in turn, since one
+   loop with everything in it is more than the compiler vectorises. */
+struct corners {
+    double inner[BLOCK], outer[BLOCK], cross[BLOCK], jacobian[BLOCK], product[BLOCK];
+};
+
+/* Corners of `cells` cells: cosines of the least angle and of the turn at the greatest, of the crossing of the
+   grid lines, the least Jacobian, and the metrics that need no angle. */
+MESHONET_INLINE void corners(const double *restrict x, const double *restrict y, const double *restrict xb,
+                             const double *restrict yb, ptrdiff_t cells, struct corners *restrict at,
+                             double *restrict scaled, double *restrict aspect)
+{
+    for (ptrdiff_t j = 0; j < cells; ++j) {
+        double e0x = xb[j] - x[j], e0y = yb[j] - y[j];
+        double e1x = xb[j + 1] - xb[j], e1y = yb[j + 1] - yb[j];
+        double e2x = x[j + 1] - xb[j + 1], e2y = y[j + 1] - yb[j + 1];
+        double e3x = x[j] - x[j + 1], e3y = y[j] - y[j + 1];
+
+        double ja = e3x * e0y - e3y * e0x, jb = e0x * e1y - e0y * e1x;
+        double jc = e1x * e2y - e1y * e2x, jd = e2x * e3y - e2y * e3x;
+        double l0 = __builtin_sqrt(e0x * e0x + e0y * e0y), l1 = __builtin_sqrt(e1x * e1x + e1y * e1y);
+        double l2 = __builtin_sqrt(e2x * e2x + e2y * e2y), l3 = __builtin_sqrt(e3x * e3x + e3y * e3y);
+
+        /* one division for all four corners, whose products of lengths share these two */
+        double la = l3 * l0, lc = l1 * l2, lb = l0 * l1, ld = l2 * l3;
+        double product = la * lc, r = 1.0 / larger(product, SMALL);
+        double ra = lc * r, rb = ld * r, rc = la * r, rd = lb * r;
+        double ca = (e3x * e0x + e3y * e0y) * ra, cb = (e0x * e1x + e0y * e1y) * rb;
+        double cc = (e1x * e2x + e1y * e2y) * rc, cd = (e2x * e3x + e2y * e3y) * rd;
+        at->inner[j] = -smaller(smaller(ca, cb), smaller(cc, cd));
+        at->outer[j] = larger(larger(ca, cb), larger(cc, cd));
+        at->product[j] = product;
+        at->jacobian[j] = smaller(smaller(ja, jb), smaller(jc, jd));
+        scaled[j] = smaller(smaller(ja * ra, jb * rb), smaller(jc * rc, jd * rd));
+
+        double four_areas = 2.0 * magnitude(jb + jd);
+        double longest = larger(larger(l0, l1), larger(l2, l3));
+        aspect[j] = smaller(longest * (l0 + l1 + l2 + l3) / larger(four_areas, SMALL), LARGE);
+
+        /* principal axes: twice the lines that join the middles of opposite edges */
+        double ux = e0x - e2x, uy = e0y - e2y, vx = e1x - e3x, vy = e1y - e3y;
+        double uv = __builtin_sqrt((ux * ux + uy * uy) * (vx * vx + vy * vy));
+        at->cross[j] = magnitude(ux * vx + uy * vy) / larger(uv, SMALL);
+    }
+}
+
+/* All metrics of one row of cells into out[metric * (nj-1) + j].
+
+   before, here, after: areas of this row of cells and of its neighbours, from cells_areas. An edge of no length
+   has no direction: such a cell has angles of 0 and 180 degrees and a scaled Jacobian of 0. */
+MESHONET_CLONES
+static void cells_row(const double *restrict x, const double *restrict y, ptrdiff_t nj, const double *restrict before,
+               const double *restrict here, const double *restrict after, double *restrict out)
+{
+    struct corners at;
+    const ptrdiff_t cells = nj - 1;
+    for (ptrdiff_t start = 0; start < cells; start += BLOCK) {
+        const ptrdiff_t count = cells - start < BLOCK ? cells - start : BLOCK;
+        double *restrict max_angle = out + MAX_ANGLE * cells + start, *restrict min_angle = out + MIN_ANGLE * cells + start;
+        double *restrict skewness = out + SKEWNESS * cells + start;
+        double *restrict orthogonality = out + ORTHOGONALITY * cells + start;
+        corners(x + start, y + start, x + nj + start, y + nj + start, count, &at,
+                out + SCALED_JACOBIAN * cells + start, out + ASPECT_RATIO * cells + start);
+        for (ptrdiff_t j = 0; j < count; ++j)
+            min_angle[j] = angle(at.inner[j]);
+        for (ptrdiff_t j = 0; j < count; ++j)
+            orthogonality[j] = angle(at.cross[j]);
+        for (ptrdiff_t j = 0; j < count; ++j)
+            at.outer[j] = angle(at.outer[j]);
+        for (ptrdiff_t j = 0; j < count; ++j) {
+            double turn = at.product[j] > 0 ? at.outer[j] : 0.0;
+            max_angle[j] = at.jacobian[j] < 0 ? 180.0 + turn : 180.0 - turn;
+            min_angle[j] = at.product[j] > 0 ? min_angle[j] : 0.0;
+            skewness[j] = larger(max_angle[j] - 90.0, 90.0 - min_angle[j]) * (1.0 / 90.0);
+        }
+    }
+    double *restrict ratio = out + AREA_RATIO * cells;
+    for (ptrdiff_t j = 0; j < cells; ++j) {
+        double area = here[j + 1];
+        double big = larger(larger(larger(before[j + 1], after[j + 1]), larger(here[j], here[j + 2])), area);
+        double small = smaller(smaller(smaller(before[j + 1], after[j + 1]), smaller(here[j], here[j + 2])), area);
+        ratio[j] = smaller(larger(big / larger(area, SMALL), area / larger(small, SMALL)), LARGE);
+    }
+}
+
+/* Least, greatest and sum of one metric over a row. */
+MESHONET_CLONES
+static void cells_reduce(const double *restrict row, ptrdiff_t cells, double *low, double *high, double *sum)
+{
+    double lows[LANES], highs[LANES], sums[LANES];
+    ptrdiff_t j = 0;
+    for (int lane = 0; lane < LANES; ++lane) {
+        lows[lane] = highs[lane] = row[0];
+        sums[lane] = 0;
+    }
+    for (; j + LANES <= cells; j += LANES)
+        for (int lane = 0; lane < LANES; ++lane) {
+            double value = row[j + lane];
+            lows[lane] = smaller(value, lows[lane]);
+            highs[lane] = larger(value, highs[lane]);
+            sums[lane] += value;
+        }
+    for (; j < cells; ++j) {
+        lows[0] = smaller(row[j], lows[0]);
+        highs[0] = larger(row[j], highs[0]);
+        sums[0] += row[j];
+    }
+    for (int lane = 1; lane < LANES; ++lane) {
+        lows[0] = smaller(lows[lane], lows[0]);
+        highs[0] = larger(highs[lane], highs[0]);
+        sums[0] += sums[lane];
+    }
+    *low = lows[0];
+    *high = highs[0];
+    *sum = sums[0];
+}
+
+/* Rank the values of a row against two of them: adds to counts how many are < from, <= from, < to, <= to, and
+   puts those between (neither end) into caught, `room` at the most; returns how many there are. */
+MESHONET_CLONES
+static ptrdiff_t cells_catch(const double *restrict row, ptrdiff_t cells, double from, double to, int64_t counts[4],
+                      double *restrict caught, ptrdiff_t room)
+{
+    ptrdiff_t found = 0;
+    for (ptrdiff_t start = 0; start < cells; start += BLOCK) {
+        const ptrdiff_t count = cells - start < BLOCK ? cells - start : BLOCK;
+        int64_t a = 0, b = 0, c = 0, d = 0;
+        for (ptrdiff_t j = start; j < start + count; ++j) {
+            a += row[j] < from;
+            b += row[j] <= from;
+            c += row[j] < to;
+            d += row[j] <= to;
+        }
+        counts[0] += a;
+        counts[1] += b;
+        counts[2] += c;
+        counts[3] += d;
+        for (ptrdiff_t j = start; c > b && j < start + count; ++j)
+            if (row[j] > from && row[j] < to) {
+                if (found < room)
+                    caught[found] = row[j];
+                ++found;
+            }
+    }
+    return found;
+}
+
+/* Store where in row i `value` stands first. */
+static void first_place(const double *row, ptrdiff_t cells, double value, ptrdiff_t i, int64_t *where)
+{
+    ptrdiff_t j = 0;
+    while (j < cells - 1 && row[j] != value)
+        ++j;
+    where[0] = i;
+    where[1] = j;
+}
+
+/* Take the metrics of row i of cells into what is known of those before. */
+static void take_row(const CellRun *run, const double *rows, ptrdiff_t i, ptrdiff_t cells)
+{
+    double low, high, sum;
+    for (ptrdiff_t k = 0; k < METRICS; ++k) {
+        const double *row = rows + k * cells;
+        double *summary = run->summary + 3 * k;
+        cells_reduce(row, cells, &low, &high, &sum);
+        if (i == 0 || low < summary[0]) {
+            summary[0] = low;
+            first_place(row, cells, low, i, run->where + 4 * k);
+        }
+        if (i == 0 || high > summary[2]) {
+            summary[2] = high;
+            first_place(row, cells, high, i, run->where + 4 * k + 2);
+        }
+        summary[1] = i == 0 ? sum : summary[1] + sum;
+        for (ptrdiff_t m = k * run->n_brackets; m < (k + 1) * run->n_brackets; ++m) {
+            int64_t *counts = run->counts + 4 * m, had = counts[2] - counts[1];
+            const ptrdiff_t kept = had < run->room ? (ptrdiff_t)had : run->room;
+            cells_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts,
+                        run->caught + m * run->room + kept, run->room - kept);
+        }
+    }
+}
+
+void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, double *scratch)
+{
+    const ptrdiff_t cells = nj - 1, width = nj + 1;
+    /* areas of the rows of cells i-1, i, i+1 take turns in buffers 0 to 2; buffer 3 is the row across the seam */
+    double *seam = scratch + 3 * width, *rows = seam + width, *before = run->periodic ? seam : scratch;
+    cells_areas(x, y, nj, scratch);
+    cells_areas(x + (ni - 2) * nj, y + (ni - 2) * nj, nj, seam);
+    for (ptrdiff_t i = 0; i < ni - 1; ++i) {
+        double *here = scratch + i % 3 * width, *after = here;
+        if (i < ni - 2) {
+            after = scratch + (i + 1) % 3 * width;
+            cells_areas(x + (i + 1) * nj, y + (i + 1) * nj, nj, after);
+        } else if (run->periodic) {
+            after = seam;
+            cells_areas(x, y, nj, after);
+        }
+        if (i < run->wake || i >= ni - 1 - run->wake) { /* cell a is the one on the other side of the wake */
+            const double *xa = x + (ni - 2 - i) * nj, *ya = y + (ni - 2 - i) * nj, *xb = xa + nj, *yb = ya + nj;
+            here[0] = 0.5 * magnitude((xb[1] - xa[0]) * (ya[1] - yb[0]) - (yb[1] - ya[0]) * (xa[1] - xb[0]));
+        }
+        cells_row(x + i * nj, y + i * nj, nj, before, here, after, rows);
+        before = here;
+        take_row(run, rows, i, cells);
+        for (ptrdiff_t k = 0; k < run->n_kept; ++k)
+            for (ptrdiff_t j = 0; j < cells; ++j)
+                run->kept[(k * (ni - 1) + i) * cells + j] = rows[(run->keep + k) * cells + j];
+    }
+    for (ptrdiff_t k = 0; k < METRICS; ++k)
+        run->summary[3 * k + 1] /= (double)((ni - 1) * cells);
+}
+
+ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj)
+{
+    ptrdiff_t folded = 0;
+    for (ptrdiff_t i = 0; i + 1 < ni; ++i)
+        folded += cells_folded_in_row(x + i * nj, y + i * nj, nj, nj - 1);
+    return folded;
+}

@@ -1,0 +1,140 @@
+cdef extern from "geometry/cells.h":
+    int METRICS
+    ctypedef struct CellRun:
+        int periodic
+        ptrdiff_t wake
+        double *summary
+        int64_t *where
+        ptrdiff_t keep, n_kept
+        double *kept
+        ptrdiff_t n_brackets, room
+        const double *brackets
+        int64_t *counts
+        double *caught
+    ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj) nogil
+    ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs,
+                                ptrdiff_t room) nogil
+    void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run,
+                   double *scratch) nogil
+
+cdef extern from "geometry/curve.h":
+    ctypedef struct ArcLengths:
+        const double *table
+        const double *start
+        const double *stop
+        ptrdiff_t n, pieces
+        int closed
+    void c_curve_locate "curve_locate"(const ArcLengths *curve, const double *s, ptrdiff_t m, ptrdiff_t *interval,
+                                       double *place) nogil
+    void c_curve_points "curve_points"(const double *cubic, ptrdiff_t n, const ptrdiff_t *interval,
+                                       const double *place, ptrdiff_t m, const double *end, double *points) nogil
+    void c_curve_slopes "curve_slopes"(const double *cubic, ptrdiff_t n, const ptrdiff_t *interval,
+                                       const double *place, ptrdiff_t m, double *derivatives) nogil
+    void c_curve_speeds "curve_speeds"(const double *cubic, ptrdiff_t n, const double *places, ptrdiff_t m,
+                                       double *lengths) nogil
+    void c_tridiagonal_solve "tridiagonal_solve"(const double *lower, const double *diagonal, const double *upper,
+                                                 double *right, ptrdiff_t n, ptrdiff_t k, double *ratio) nogil
+
+cdef extern from "geometry/segments.h":
+    ptrdiff_t c_crossing_segments "crossing_segments"(
+        const double *points, ptrdiff_t n, const ptrdiff_t *order, ptrdiff_t m, const double *low, const double *top,
+        ptrdiff_t limit, long long *budget, ptrdiff_t *pairs) nogil
+
+
+def count_folded(x, y):
+    """Return how many cells of the planes x, y (ni, nj) have a corner Jacobian that is not positive."""
+    cdef const double *px = reads(x, y.shape)
+    cdef const double *py = reads(y, x.shape)
+    cdef ptrdiff_t ni, nj, count
+    ni, nj = x.shape
+    with nogil:
+        count = cells_count_folded(px, py, ni, nj)
+    return count
+
+
+def folded_cells(x, y):
+    """Return (n, 2) indices of the folded cells of the planes x, y (ni, nj) in order of (i, j)."""
+    cdef ptrdiff_t room = count_folded(x, y), ni, nj
+    cdef const double *px = reads(x, y.shape)
+    cdef const double *py = reads(y, x.shape)
+    ni, nj = x.shape
+    pairs = np.empty((room, 2), dtype=np.int64)
+    cdef int64_t *to = <int64_t *>numbers(pairs, b"i", 8, (room, 2), True)
+    with nogil:
+        cells_list_folded(px, py, ni, nj, to, room)
+    return pairs
+
+
+def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t keep, kept, brackets, counts, caught):
+    """Run over all cells once; the arguments are those of CellRun in ``geometry/cells.h``."""
+    cdef CellRun run
+    cdef ptrdiff_t ni, nj
+    cdef const double *px = reads(x, y.shape)
+    cdef const double *py = reads(y, x.shape)
+    ni, nj = x.shape
+    if ni < 2 or nj < 2 or not 0 <= keep <= METRICS - len(kept):
+        raise ValueError("no cells, or metrics beyond the last")
+    run.periodic, run.wake, run.keep, run.n_kept = periodic, wake, keep, len(kept)
+    run.n_brackets, run.room = brackets.shape[1], caught.shape[2]
+    run.summary = fills(summary, (METRICS, 3))
+    run.where = <int64_t *>numbers(where, b"i", 8, (METRICS, 2, 2), True)
+    run.kept = fills(kept, (run.n_kept, ni - 1, nj - 1))
+    run.brackets = reads(brackets, (METRICS, run.n_brackets, 2))
+    run.counts = <int64_t *>numbers(counts, b"i", 8, (METRICS, run.n_brackets, 4), True)
+    run.caught = fills(caught, (METRICS, run.n_brackets, run.room))
+    scratch = np.empty(4 * (nj + 1) + METRICS * (nj - 1))
+    cdef double *room = fills(scratch, scratch.shape)
+    with nogil:
+        cells_run(px, py, ni, nj, &run, room)
+
+
+def curve_locate(s, table, start, stop, ptrdiff_t pieces, bint closed, interval, place):
+    """Fill `interval` and `place` (m,), 0 to 1 in it, of arc lengths `s` (m,); see ``geometry/curve.h``."""
+    cdef ArcLengths curve
+    cdef ptrdiff_t m = len(s), count = len(table) - 1
+    curve.table, curve.start, curve.stop = reads(table, (count + 1,)), reads(start, (count,)), reads(stop, (count,))
+    curve.n, curve.pieces, curve.closed = count // pieces, pieces, closed
+    c_curve_locate(&curve, reads(s, (m,)), m, <ptrdiff_t *>numbers(interval, b"i", sizeof(ptrdiff_t), (m,), True),
+                   fills(place, (m,)))
+
+
+def curve_points(cubic, interval, place, end, points):
+    """Fill `points` (m, 2) with the cubics (4, n, 2) at the places; at place 1 it is `end` (2,), bit for bit."""
+    cdef ptrdiff_t n = cubic.shape[1], m = len(place)
+    c_curve_points(reads(cubic, (4, n, 2)), n, reads_indices(interval, (m,)), reads(place, (m,)), m, reads(end, (2,)),
+                   fills(points, (m, 2)))
+
+
+def curve_slopes(cubic, interval, place, derivatives):
+    """Fill `derivatives` (m, 2) by t at the places."""
+    cdef ptrdiff_t n = cubic.shape[1], m = len(place)
+    c_curve_slopes(reads(cubic, (4, n, 2)), n, reads_indices(interval, (m,)), reads(place, (m,)), m,
+                   fills(derivatives, (m, 2)))
+
+
+def curve_speeds(cubic, places, lengths):
+    """Fill `lengths` (n, m) of the derivatives at the same `places` (m,) of every interval."""
+    cdef ptrdiff_t n = cubic.shape[1], m = len(places)
+    c_curve_speeds(reads(cubic, (4, n, 2)), n, reads(places, (m,)), m, fills(lengths, (n, m)))
+
+
+def solve_tridiagonal(lower, diagonal, upper, right):
+    """Solve a tridiagonal system of n rows in place of `right` (n, k); the first `lower` and last `upper` are not read."""
+    cdef ptrdiff_t n = len(diagonal), k = right.shape[1]
+    ratio = np.empty(n)
+    c_tridiagonal_solve(reads(lower, (n,)), reads(diagonal, (n,)), reads(upper, (n,)), fills(right, (n, k)), n, k,
+                        fills(ratio, (n,)))
+
+
+def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget):
+    """Return pairs (k, 2) of segments of a polygon that meet, `limit` at the most, and whether all were compared."""
+    cdef ptrdiff_t n = len(points), m = len(order), count
+    cdef const double *p = reads(points, (n, 2))
+    cdef const ptrdiff_t *sorted_by = reads_indices(order, (m,))
+    cdef const double *first = reads(low, (m,))
+    cdef const double *last = reads(top, (m,))
+    pairs = np.empty((limit, 2), np.intp)
+    cdef ptrdiff_t *to = <ptrdiff_t *>numbers(pairs, b"i", sizeof(ptrdiff_t), (limit, 2), True)
+    with nogil:
+        count = c_crossing_segments(p, n, sorted_by, m, first, last, limit, &budget, to)
+    return pairs[:count].tolist(), budget >= 0

@@ -1,0 +1,42 @@
+cdef extern from "hyperbolic/march.h":
+    ctypedef struct MarchSettings:
+        double dissipation, even, tolerated, bend, implicit, volume
+        ptrdiff_t sweeps, rise
+    ctypedef struct MarchEnds:
+        double first_x, first_y, last_x, last_y
+    size_t c_hyperbolic_scratch "hyperbolic_scratch"(ptrdiff_t n) nogil
+    void c_hyperbolic_march "hyperbolic_march"(
+        double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
+        const MarchEnds *ends, const MarchSettings *settings, double *scratch) nogil
+
+
+def hyperbolic_scratch(ptrdiff_t n):
+    """Return the doubles of scratch that a march over n nodes a level needs."""
+    return c_hyperbolic_scratch(n)
+
+
+def hyperbolic_march(x, y, steps, double dissipation, double even, double tolerated, double bend, double implicit,
+                     double volume, ptrdiff_t sweeps, ptrdiff_t rise, scratch, ends=None, widening=None):
+    """Fill levels 1 on of `x` and `y` (levels + 1, n) from level 0, n >= 3 nodes with the grid to their left.
+
+    `steps` (levels) are the distances between levels; the others are those of ``march.h``. Level 0 closes, unless
+    `ends` are two unit directions (2, 2) along which its ends move; then `widening` (n) multiplies the steps next
+    to it.
+    """
+    cdef ptrdiff_t n = x.shape[1], levels = len(x) - 1
+    cdef MarchSettings settings = MarchSettings(dissipation, even, tolerated, bend, implicit, volume, sweeps, rise)
+    cdef MarchEnds directions
+    cdef MarchEnds *given = NULL
+    if n < 3 or levels < 1:
+        raise ValueError("too few nodes or levels")
+    cdef double *px = fills(x, (levels + 1, n))
+    cdef double *py = fills(y, (levels + 1, n))
+    cdef const double *apart = reads(steps, (levels,))
+    cdef const double *wide = apart
+    cdef double *room = fills_room(scratch, c_hyperbolic_scratch(n))
+    if ends is not None:
+        wide = reads(widening, (n,))
+        directions = MarchEnds(ends[0][0], ends[0][1], ends[1][0], ends[1][1])
+        given = &directions
+    with nogil:
+        c_hyperbolic_march(px, py, n, levels, apart, wide, given, &settings, room)

@@ -1,0 +1,46 @@
+# Pointers to the numbers of arrays, once it is certain that there are as many as a kernel reads or writes.
+
+from cpython.buffer cimport PyBUF_C_CONTIGUOUS, PyBUF_FORMAT, PyBUF_WRITABLE, PyBuffer_Release, PyObject_GetBuffer
+
+
+cdef void *numbers(array, char kind, ptrdiff_t size, shape, bint written) except NULL:
+    """Return the start of a contiguous array of this shape, whose numbers are of a kind (as the struct module says, i for
+    whole ones) and `size` bytes each. The caller keeps the array alive."""
+    cdef Py_buffer view
+    cdef char given
+    PyObject_GetBuffer(array, &view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT | (PyBUF_WRITABLE if written else 0))
+    given = view.format[0]
+    if given in b"lqn":
+        given = b"i"
+    cdef bint fits = given == kind and view.itemsize == size
+    PyBuffer_Release(&view)  # the array stays where it is
+    if not fits:
+        raise ValueError(f"numbers of type {array.dtype}")
+    if array.shape != shape:
+        raise ValueError(f"an array of shape {array.shape} where {shape} is needed")
+    return view.buf
+
+
+cdef const double *reads(array, tuple shape) except NULL:
+    """Return the doubles of an array that is read."""
+    return <const double *>numbers(array, b"d", 8, shape, False)
+
+
+cdef double *fills(array, tuple shape) except NULL:
+    """Return the doubles of an array that is written."""
+    return <double *>numbers(array, b"d", 8, shape, True)
+
+
+cdef const float *reads_single(array, tuple shape) except NULL:
+    return <const float *>numbers(array, b"f", 4, shape, False)
+
+
+cdef const ptrdiff_t *reads_indices(array, tuple shape) except NULL:
+    return <const ptrdiff_t *>numbers(array, b"i", sizeof(ptrdiff_t), shape, False)
+
+
+cdef double *fills_room(array, ptrdiff_t least) except NULL:
+    """Return the doubles of scratch of one direction, of which there are at least so many."""
+    if len(array) < least:
+        raise ValueError("too little scratch")
+    return fills(array, array.shape)

@@ -1,0 +1,141 @@
+/* Nodes moved along grid lines into layers.
+
+   The steps d_k, k = 0 .. m-1, of a line grow by one ratio from each end that asks for a height:
+
+       ln d_k = (1 - w_k) ln first + w_k ln last + l min(k - a, b - k)     a < k < b,  w_k = (k - a)/(b - a)
+
+   with the first steps 0 .. a and the last b .. m-1 constant. l is found such that the steps add up to the length of
+   the line. With one end only  ln d_k = ln first + l (k - a). */
+#include "layers.h"
+#include "gridline.h"
+
+/* One law: where its constant parts end, and the slopes of ln d in between, without and with l. */
+typedef struct {
+    ptrdiff_t a, b, cells;
+    double first, last, drift;
+} Law;
+
+static Law law_of(const Layers *layers, double first, double last, ptrdiff_t cells)
+{
+    Law w = {0, cells - 1, cells, first, last, 0.0};
+    if (first > 0.0)
+        w.a = layers->constant - 1;
+    if (last > 0.0)
+        w.b = cells - layers->constant;
+    if (first > 0.0 && last > 0.0)
+        w.drift = w.b > w.a ? (log(last) - log(first)) / (double)(w.b - w.a) : 0.0;
+    return w;
+}
+
+/* Fill steps for l; return their sum and its derivative by l. */
+static double fill(const Law *w, double l, double *steps, double *slope)
+{
+    double sum = 0.0, rise = 0.0;
+    if (w->first > 0.0 && w->last > 0.0) {
+        const ptrdiff_t middle = (w->a + w->b) / 2;
+        const double up = exp(w->drift + l), down = exp(l - w->drift);
+        double d = w->first;
+        for (ptrdiff_t k = 0; k <= middle && k < w->cells; k++) {
+            const ptrdiff_t t = k > w->a ? k - w->a : 0;
+            if (t > 0)
+                d *= up;
+            steps[k] = d, sum += d, rise += (double)t * d;
+        }
+        d = w->last;
+        for (ptrdiff_t k = w->cells - 1; k > middle; k--) {
+            const ptrdiff_t t = k < w->b ? w->b - k : 0;
+            if (t > 0)
+                d *= down;
+            steps[k] = d, sum += d, rise += (double)t * d;
+        }
+    } else {
+        const int south = w->first > 0.0;
+        const double ratio = exp(l);
+        const ptrdiff_t constant = south ? w->a + 1 : w->cells - w->b;
+        double d = south ? w->first : w->last;
+        for (ptrdiff_t k = 0; k < w->cells; k++) {
+            if (k >= constant)
+                d *= ratio;
+            steps[south ? k : w->cells - 1 - k] = d, sum += d;
+            rise += k >= constant ? (double)(k - constant + 1) * d : 0.0;
+        }
+    }
+    *slope = rise;
+    return sum;
+}
+
+static double solve_law(const Law *w, double length, double *steps, double *log_ratio)
+{
+    double l = *log_ratio, low = -3.0, high = 3.0, slope;
+    if (!(l > low && l < high))
+        l = 0.0;
+    for (int pass = 0; pass < 100; pass++) {
+        const double sum = fill(w, l, steps, &slope), miss = log(sum / length);
+        if (fabs(miss) < 4e-16 * (double)w->cells || high - low < 1e-15)
+            break;
+        if (miss > 0.0 || !(sum < 1e300))
+            high = l;
+        else
+            low = l;
+        const double next = l - miss * sum / slope;
+        l = next > low && next < high ? next : 0.5 * (low + high);
+    }
+    *log_ratio = l;
+    const double reach = fabs(l) + fabs(w->drift), sum = fill(w, l, steps, &slope);
+    if (!(fabs(sum / length - 1.0) < 1e-9))
+        return INFINITY;
+    return exp(reach);
+}
+
+double layer_steps(double *steps, ptrdiff_t cells, double length, const Layers *layers, double *log_ratio)
+{
+    const Law w = law_of(layers, layers->first, layers->last, cells);
+    return solve_law(&w, length, steps, log_ratio);
+}
+
+/* The line run through the other way round. */
+static void reverse(const Line *line, const Line *back, ptrdiff_t nj)
+{
+    const double length = line->arc[nj - 1];
+    for (ptrdiff_t j = 0, k = nj - 1; j < nj; j++, k--) {
+        back->arc[j] = length - line->arc[k];
+        back->px[j] = line->px[k], back->py[j] = line->py[k];
+        back->dx[j] = -line->dx[k], back->dy[j] = -line->dy[k];
+    }
+}
+
+MESHONET_CLONES
+double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X, double *Y, ptrdiff_t NJ,
+                   const Layers *layers, double *scratch)
+{
+    const Line line = {scratch, scratch + nj, scratch + 2 * nj, scratch + 3 * nj, scratch + 4 * nj};
+    double *s = scratch + 5 * nj, *steps = scratch + 10 * nj, log_ratio = 0.0, largest = 1.0;
+    const Line back = {s, s + nj, s + 2 * nj, s + 3 * nj, s + 4 * nj};
+    for (ptrdiff_t i = 0; i < ni; i++, x += nj, y += nj, X += NJ, Y += NJ) {
+        measure_line(&line, x, y, nj);
+        measure_end(&line, nj);
+        reverse(&line, &back, nj);
+        const double first = layers->first > 0.0 ? place_of_first(&line, layers->first, nj) : 0.0;
+        const double last = layers->last > 0.0 ? place_of_first(&back, layers->last, nj) : 0.0;
+        const Law w = law_of(layers, first, last, NJ - 1);
+        const double ratio = solve_law(&w, line.arc[nj - 1], steps, &log_ratio);
+        largest = ratio > largest ? ratio : largest;
+        const ptrdiff_t middle = NJ / 2;
+        X[0] = x[0], Y[0] = y[0], X[NJ - 1] = x[nj - 1], Y[NJ - 1] = y[nj - 1];
+        double t = 0.0, dx, dy;
+        for (ptrdiff_t j = 1, k = 0; j < middle; j++) {
+            t += steps[j - 1];
+            k = piece(&line, k, t, nj);
+            displacement(&line, k, t, &dx, &dy);
+            X[j] = line.px[k] + dx, Y[j] = line.py[k] + dy;
+        }
+        t = 0.0;
+        for (ptrdiff_t j = NJ - 2, k = 0; j >= middle && j > 0; j--) {
+            t += steps[j];
+            k = piece(&back, k, t, nj);
+            displacement(&back, k, t, &dx, &dy);
+            X[j] = back.px[k] + dx, Y[j] = back.py[k] + dy;
+        }
+    }
+    return largest;
+}

@@ -1,0 +1,20 @@
+/* Nodes moved along grid lines into layers of given heights at one end or both. */
+#ifndef MESHONET_LAYERS_H
+#define MESHONET_LAYERS_H
+#include <stddef.h>
+
+/* Heights asked for: of the `constant` first and last cells, 0 where an end asks for none. */
+typedef struct {
+    double first, last;
+    ptrdiff_t constant;
+} Layers;
+
+/* steps[0 .. cells-1] add up to `length`. `log_ratio` is the guess and the result. Returns the largest ratio of
+   neighbouring steps, infinite when there is none that fits. */
+double layer_steps(double *steps, ptrdiff_t cells, double length, const Layers *layers, double *log_ratio);
+
+/* Lines i of x, y (ni, nj >= 3) sampled anew with nodes into X, Y (ni, NJ). Returns the largest ratio; ends are kept.
+   `scratch` has 10 nj + NJ doubles. */
+double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X, double *Y, ptrdiff_t NJ,
+                   const Layers *layers, double *scratch);
+#endif

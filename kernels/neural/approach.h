@@ -1,0 +1,36 @@
+/* Picard steps towards Winslow's grids; see approach.c. */
+#ifndef MESHONET_APPROACH_H
+#define MESHONET_APPROACH_H
+#include <stddef.h>
+
+#define APPROACH_LINE 16 /* numbers that lines of tables are rounded up to a multiple of */
+
+/* The transform of `count` values along an axis, its own inverse, and minus the eigenvalues of second differences.
+   Plain: `to` and `back` (count, line) are one table, `values` (count).
+   `folded`: the sums of values and their mirror images make every other wave, the first among them, by the first
+   half = count - count / 2 rows of `to` (count, line); their differences make the rest by the other rows. `back` has
+   the transposes of both, `values` (2, line) are of both. A value in the middle is its own image, and has half its
+   share in the tables. */
+typedef struct {
+    int folded;
+    ptrdiff_t count, line;
+    const double *to, *back, *values;
+} Waves;
+
+/* Planes of (m, n) nodes, the unknown ones off the rim; `around`, m rows that go round, unknown but at both ends.
+   Waves along `xi` are plain when `around`, all others folded. Before the steps comes Laplace's solution when
+   `harmonic`; else the steps after the first are extrapolated. */
+typedef struct {
+    ptrdiff_t m, n;
+    int around, harmonic, steps;
+    double share, growth;
+    Waves xi, eta;
+} Approach;
+
+/* How many numbers approach_grid needs as scratch, zeros before its first grid. */
+ptrdiff_t approach_scratch(const Approach *a);
+
+/* Move the planes p (2, m, n) in place; step (2, m, n) is the last step. `turn` (2, n) is added from one round to the
+   next. */
+void approach_grid(const Approach *a, double *p, const double *turn, double *scratch, double *step);
+#endif

@@ -1,0 +1,174 @@
+/* Argument reduction in the exponentials lives on the order of its operations. Minima and maxima are single
+   instructions when NaN need not come out of them; it comes out of what they are in. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("no-associative-math", "finite-math-only")
+#endif
+
+#include "network.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "clones.h"
+#include "exponential.h"
+
+/* glibc's vector versions of them; elsewhere they stay scalar calls */
+#if defined(__GLIBC__) && defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
+    (__GLIBC__ > 2 || __GLIBC_MINOR__ >= 35)
+extern double log(double) __attribute__((simd("notinbranch")));
+extern float logf(float) __attribute__((simd("notinbranch")));
+#endif
+
+/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n. 2 ulp, for
+   |x| up to EXP_MOST, beyond which 1/(1 + exp) is told from its limits no more. */
+#define EXP_MOST_double 700.0
+#define EXP_MOST_float 80.0f
+
+MESHONET_INLINE double exp_double(double x)
+{
+    union { double real; unsigned long long bits; } shifted, scale;
+    shifted.real = x * 1.4426950408889634 + 6755399441055744.0;
+    const double n = shifted.real - 6755399441055744.0;
+    const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
+    scale.bits = (shifted.bits + 1023) << 52;
+    return exp_reduced(r) * scale.real;
+}
+
+/* The polynomial of degree 5 has the least relative error, 8e-8. */
+MESHONET_INLINE float exp_float(float x)
+{
+    union { float real; unsigned int bits; } shifted, scale;
+    shifted.real = x * 1.44269504f + 12582912.0f;
+    const float n = shifted.real - 12582912.0f;
+    const float r = (x - n * 0.693145752f) - n * 1.42860677e-6f;
+    float p = 0.008297619f;
+    p = p * r + 0.04191563f;
+    p = p * r + 0.16667576f;
+    p = p * r + 0.4999889f;
+    p = p * r + 0.9999997f;
+    p = p * r + 1.0000001f;
+    scale.bits = (shifted.bits + 127) << 23;
+    return p * scale.real;
+}
+
+/* log(x) = n log 2 + 2 artanh s, s = (m - 1) / (m + 1), x = 2^n m with m from √½ to √2; x is positive and normal. The
+   first term that is left out, s^10 / 11, is less than 2e-9. */
+MESHONET_INLINE float log_float(float x)
+{
+    union { float real; int bits; } m = {x};
+    const int n = (m.bits - 0x3f3504f3) >> 23; /* bits of √½ */
+    m.bits -= n * (1 << 23);
+    const float s = (m.real - 1.0f) / (m.real + 1.0f), z = s * s;
+    return (float)n * 0.69314718f + s * (2.0f + z * (2.0f / 3 + z * (2.0f / 5 + z * (2.0f / 7 + z * (2.0f / 9)))));
+}
+
+#define T float
+#define SUFFIX _float
+#define LOG log_float
+#define ROOT sqrtf
+#include "look.h"
+#undef T
+#undef SUFFIX
+#undef LOG
+#undef ROOT
+#define T double
+#define SUFFIX _double
+#define LOG log
+#define ROOT sqrt
+#include "look.h"
+#undef T
+#undef SUFFIX
+#undef LOG
+#undef ROOT
+
+/* Vectors of 256 bits everywhere, and where the processor has them, of 512. */
+#define VECTOR 32
+#define KERNEL MESHONET_CLONES
+#define T float
+#define SUFFIX _float
+#define EXP exp_float
+#define MOST EXP_MOST_float
+#include "pointwise.h"
+#include "convolve.h"
+#include "winograd.h"
+#undef T
+#undef SUFFIX
+#undef EXP
+#undef MOST
+#define T double
+#define SUFFIX _double
+#define EXP exp_double
+#define MOST EXP_MOST_double
+#include "pointwise.h"
+#include "convolve.h"
+#include "winograd.h"
+#undef T
+#undef SUFFIX
+#undef EXP
+#undef MOST
+#undef VECTOR
+#undef KERNEL
+
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && __GNUC__ >= 12
+#define MESHONET_WIDE 1
+#define VECTOR 64
+#define KERNEL __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
+#define T float
+#define SUFFIX _wide_float
+#define EXP exp_float
+#define MOST EXP_MOST_float
+#include "pointwise.h"
+#include "convolve.h"
+#include "winograd.h"
+#undef T
+#undef SUFFIX
+#undef EXP
+#undef MOST
+#define T double
+#define SUFFIX _wide_double
+#define EXP exp_double
+#define MOST EXP_MOST_double
+#include "pointwise.h"
+#include "convolve.h"
+#include "winograd.h"
+#undef T
+#undef SUFFIX
+#undef EXP
+#undef MOST
+#undef VECTOR
+#undef KERNEL
+#endif
+
+#define LAYER(T, SUFFIX)                                                                                              \
+    static void layer##SUFFIX(const Layer *l)                                                                         \
+    {                                                                                                                 \
+        const Convolution *c = &l->c;                                                                                 \
+        const T *x = l->x, *w = l->w, *bias = l->bias, *add = l->add;                                                 \
+        T *scratch = l->scratch, *out = l->out;                                                                       \
+        if (l->kind == CONVOLVE)                                                                                      \
+            convolve##SUFFIX(x, c, w, bias, add, out);                                                                \
+        else if (l->kind == WINOGRAD)                                                                                 \
+            winograd##SUFFIX(x, c, w, bias, add, scratch, out);                                                       \
+        else if (l->kind == ACTIVATE)                                                                                 \
+            activate##SUFFIX(x, c->batch, c->m, c->n, c->inputs, l->around, c->size, out);                            \
+        else                                                                                                          \
+            refine##SUFFIX(x, c->batch, c->m, c->n, c->inputs, l->around, add, out);                                  \
+    }
+
+LAYER(float, _float)
+LAYER(double, _double)
+#ifdef MESHONET_WIDE
+LAYER(float, _wide_float)
+LAYER(double, _wide_double)
+#endif
+
+void network_layer(const Layer *l)
+{
+#ifdef MESHONET_WIDE /* a tile in the innermost function is slow when the processor lacks its vectors */
+    if (__builtin_cpu_supports("x86-64-v4")) {
+        (l->single ? layer_wide_float : layer_wide_double)(l);
+        return;
+    }
+#endif
+    (l->single ? layer_float : layer_double)(l);
+}

@@ -1,0 +1,45 @@
+/* Layers of a convolutional network in single and double precision; see network.c. */
+#ifndef MESHONET_NETWORK_H
+#define MESHONET_NETWORK_H
+#include <stddef.h>
+
+/* A batch of m x n images with `inputs` channels, any padding included, to `outputs` by size x size taps. */
+typedef struct {
+    ptrdiff_t batch, m, n, inputs, outputs;
+    int size, stride;
+} Convolution;
+
+/* One layer of a network on arrays of T, float when `single` and else double.
+
+   CONVOLVE: x (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or
+   as out (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs).
+   WINOGRAD: the same for 3 x 3 taps one pixel apart, at least 16 inputs and outputs and images of 5 x 5 or more, by
+   fewer products: w is (WINOGRAD_VALUES inputs, outputs rounded up), scratch WINOGRAD_SCRATCH numbers.
+   ACTIVATE, REFINE: pointwise.h; c.size is the padding. */
+enum { CONVOLVE, WINOGRAD, ACTIVATE, REFINE };
+typedef struct {
+    int kind, single, around;
+    Convolution c;
+    const void *x, *w, *bias, *add;
+    void *scratch, *out;
+} Layer;
+
+void network_layer(const Layer *layer);
+
+#define WINOGRAD_VALUES 25
+#define WINOGRAD_TILES 36 /* that go together */
+#define WINOGRAD_PLANE(channels, line) (WINOGRAD_TILES * (channels) + (line)) /* lines apart, lest they share a set */
+#define WINOGRAD_SCRATCH(inputs, wide, line) \
+    (WINOGRAD_VALUES * (WINOGRAD_PLANE(inputs, line) + WINOGRAD_PLANE(wide, line)))
+
+#define LOOK_FEATURES 20 /* of features.py, as are the numbers below */
+#define LOOK_FLOOR 1e-2
+#define LOOK_TINY 1e-6
+#define LOOK_STILL 1e-3
+#define LOOK_STRETCH 30.0
+#define LOOK_MOST 129 /* nodes along an axis at the most */
+
+/* out (batch, n, n, LOOK_FEATURES) of grids and their last steps, both (batch, 2, n, n). */
+void network_look_float(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, float *out);
+void network_look_double(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, double *out);
+#endif

@@ -1,0 +1,307 @@
+cdef extern from "neural/approach.h":
+    enum: APPROACH_LINE
+    ctypedef struct Waves:
+        int folded
+        ptrdiff_t count, line
+        const double *to
+        const double *back
+        const double *values
+    ctypedef struct Approach:
+        ptrdiff_t m, n
+        int around, harmonic, steps
+        double share, growth
+        Waves xi, eta
+    ptrdiff_t approach_scratch(const Approach *a) nogil
+    void approach_grid(const Approach *a, double *p, const double *turn, double *scratch, double *step) nogil
+
+cdef extern from "neural/frame.h":
+    void c_frame_take_out "frame_take_out"(const double *planes, ptrdiff_t m, ptrdiff_t n, double *factor,
+                                           double *out) nogil
+    void c_frame_put_back "frame_put_back"(double *planes, const double *moved, const double *unit, ptrdiff_t m,
+                                           ptrdiff_t n, const double *factor) nogil
+    void frame_add_float(double *planes, const float *answers, ptrdiff_t numbers, const double *rim, ptrdiff_t m,
+                         ptrdiff_t n) nogil
+    void frame_add_double(double *planes, const double *answers, ptrdiff_t numbers, const double *rim, ptrdiff_t m,
+                          ptrdiff_t n) nogil
+
+cdef extern from "neural/network.h":
+    enum: CONVOLVE, WINOGRAD, ACTIVATE, REFINE
+    ctypedef struct Convolution:
+        ptrdiff_t batch, m, n, inputs, outputs
+        int size, stride
+    ctypedef struct Layer:
+        int kind, single, around
+        Convolution c
+        const void *x
+        const void *w
+        const void *bias
+        const void *add
+        void *scratch
+        void *out
+    void network_layer(const Layer *layer) nogil
+    ptrdiff_t WINOGRAD_SCRATCH(ptrdiff_t inputs, ptrdiff_t wide, ptrdiff_t line) nogil
+    int WINOGRAD_VALUES
+    void network_look_float(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, float *out) nogil
+    void network_look_double(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n,
+                             double *out) nogil
+    int LOOK_FEATURES
+    int LOOK_MOST
+
+cdef enum:
+    MOST_LAYERS = 256
+
+LINE = APPROACH_LINE
+"""Numbers that lines of tables of waves are rounded up to a multiple of."""
+
+
+cdef Waves waves(tuple tables, ptrdiff_t count, bint folded) except *:
+    """Return pointers into tables of `approach`."""
+    cdef Waves w
+    w.folded, w.count, w.line = folded, count, tables[0].shape[1]
+    if w.line < (count - count // 2 if folded else count) or (folded and w.line % APPROACH_LINE):
+        raise ValueError("tables of a wrong shape")
+    w.to, w.back = reads(tables[0], (count, w.line)), reads(tables[1], (count, w.line))
+    w.values = reads(tables[2], (1 + folded, w.line))
+    return w
+
+
+def winslow_steps(planes, turns, bint harmonic, int steps, double share, double growth, tuple xi, tuple eta,
+                  bint around, last):
+    """Take Picard steps towards Winslow's grid: move the `planes` (batch, 2, m, n), fill `last` with the last steps.
+
+    `xi` and `eta` are tables of `approach`; `turns` (batch, 2, n) what is added from one round to the next. The steps
+    go out from Laplace's solution when `harmonic`.
+    """
+    cdef ptrdiff_t batch = len(planes), b
+    cdef Approach a
+    a.m, a.n, a.around, a.harmonic, a.steps = planes.shape[2], planes.shape[3], around, harmonic, steps
+    a.share, a.growth = share, growth
+    if a.m < 6 or a.n < 6:
+        raise ValueError("planes that are too small")
+    cdef double *p = fills(planes, (batch, 2, a.m, a.n))
+    cdef double *step = fills(last, (batch, 2, a.m, a.n))
+    cdef const double *turn = reads(turns, (batch, 2, a.n))
+    a.xi, a.eta = waves(xi, a.m - (1 if around else 2), not around), waves(eta, a.n - 2, True)
+    scratch = np.zeros(approach_scratch(&a) + 8)
+    cdef double *room = fills(scratch, scratch.shape)
+    room += -(<uintptr_t>room // sizeof(double)) & 7  # from a line of the cache on
+    with nogil:
+        for b in range(batch):
+            approach_grid(&a, p + 2 * b * a.m * a.n, turn + 2 * b * a.n, room, step + 2 * b * a.m * a.n)
+
+
+def frame_take_out(planes, unit, factors):
+    """Fill `unit` with grids `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) with what that takes."""
+    cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b
+    cdef const double *p = reads(planes, (batch, 2, m, n))
+    cdef double *to = fills(unit, (batch, 2, m, n))
+    cdef double *f = fills(factors, (batch, 2))
+    if m < 2 or n < 2:
+        raise ValueError("planes without cells")
+    with nogil:
+        for b in range(batch):
+            c_frame_take_out(p + 2 * b * m * n, m, n, f + 2 * b, to + 2 * b * m * n)
+
+
+def frame_put_back(planes, moved, unit, factors):
+    """Add to `planes` by what grids have `moved` from where `frame_take_out` left them, at their own sizes."""
+    cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
+    cdef double *p = fills(planes, (batch, 2, m, n))
+    cdef const double *to = reads(moved, (batch, 2, m, n))
+    cdef const double *start = reads(unit, (batch, 2, m, n))
+    cdef const double *f = reads(factors, (batch, 2))
+    with nogil:
+        for b in range(batch):
+            at = 2 * b * m * n
+            c_frame_put_back(p + at, to + at, start + at, m, n, f + 2 * b)
+
+
+def add_answers(planes, answers, ptrdiff_t head, rim):
+    """Add to `planes` (batch, 2, m, n) the answers (batch, m, n, heads, 2) of one head times `rim` (m, n)."""
+    cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
+    cdef ptrdiff_t per_node = 2 * answers.shape[3]
+    cdef bint single = is_single(answers)
+    cdef double *p = fills(planes, (batch, 2, m, n))
+    cdef const double *share = reads(rim, (m, n))
+    cdef const void *a = reads_real(answers, single, (batch, m, n, answers.shape[3], 2))
+    if not 0 <= 2 * head < per_node:
+        raise ValueError("no such head")
+    with nogil:
+        for b in range(batch):
+            at = b * m * n * per_node + 2 * head
+            if single:
+                frame_add_float(p + 2 * b * m * n, <const float *>a + at, per_node, share, m, n)
+            else:
+                frame_add_double(p + 2 * b * m * n, <const double *>a + at, per_node, share, m, n)
+
+
+cdef bint is_single(array):
+    return array.dtype.itemsize == 4
+
+
+cdef void *reads_real(array, bint single, shape) except NULL:
+    """Return the numbers of an array of single or double precision."""
+    return numbers(array, b"f" if single else b"d", 4 if single else 8, shape, False)
+
+
+cdef void *fills_real(array, bint single, shape) except NULL:
+    return numbers(array, b"f" if single else b"d", 4 if single else 8, shape, True)
+
+
+cdef class LayerProgram:
+    """Layers on arrays of its own, one after another in one call that holds no lock."""
+
+    cdef Layer layers[MOST_LAYERS]
+    cdef int count
+    cdef list held
+    cdef tuple first, last
+
+    def __cinit__(self):
+        self.count, self.held = 0, []
+
+    def run(self, x, out):
+        """Fill `out` with the last layer's output for the first layer's input `x`, or the first few of a batch.
+
+        Both are of the dtype and, but for the batch, of the shape that the layers were recorded with.
+        """
+        if self.count == 0 or (x.dtype, *x.shape[1:]) != self.first or (out.dtype, *out.shape[1:]) != self.last:
+            raise ValueError("arrays of other shapes than the layers'")
+        cdef ptrdiff_t batch = len(x)
+        if len(out) != batch or batch > self.layers[0].c.batch:
+            raise ValueError("a batch of another size")
+        if batch == 0:
+            return
+        cdef const void *begin = reads_real(x, is_single(x), x.shape)
+        cdef void *end = fills_real(out, is_single(out), out.shape)
+        cdef Layer layer
+        cdef int k
+        with nogil:
+            for k in range(self.count):
+                layer = self.layers[k]
+                layer.c.batch = batch
+                if k == 0:
+                    layer.x = begin
+                if k == self.count - 1:
+                    layer.out = end
+                network_layer(&layer)
+
+
+cdef int take(Layer *layer, LayerProgram later, tuple arrays) except -1:
+    """Compute a layer, or record it; of its arrays the first goes in and the last comes out."""
+    if later is None:
+        if layer.c.batch * layer.c.m * layer.c.n * layer.c.inputs > 0:
+            with nogil:
+                network_layer(layer)
+        return 0
+    if later.count == MOST_LAYERS:
+        raise ValueError("too many layers")
+    later.layers[later.count] = layer[0]
+    later.count += 1
+    later.held.append(arrays)
+    x, *_, out = arrays
+    if later.count == 1:
+        later.first = (x.dtype, *x.shape[1:])
+    later.last = (out.dtype, *out.shape[1:])
+    return 0
+
+
+cdef int begin(Layer *layer, int kind, x, out, shape) except -1:
+    """Let a layer go from `x` (batch, m, n, inputs) to `out`, of that shape; no weights or summand yet."""
+    layer.kind, layer.single, layer.around = kind, is_single(x), False
+    layer.c.batch, layer.c.m, layer.c.n, layer.c.inputs = x.shape
+    layer.c.outputs, layer.c.size, layer.c.stride = shape[3], 0, 1
+    layer.x, layer.out = reads_real(x, layer.single, x.shape), fills_real(out, layer.single, shape)
+    layer.w = layer.bias = layer.add = layer.scratch = NULL
+    return 0
+
+
+cdef int weigh(Layer *layer, ptrdiff_t taps, w, bias, add, shape) except -1:
+    """Give a layer its weights, for outputs rounded up to 64 bytes, and what is added."""
+    cdef ptrdiff_t per = 16 if layer.single else 8, wide = (layer.c.outputs + per - 1) // per * per
+    layer.w = reads_real(w, layer.single, (taps * layer.c.inputs, wide))
+    layer.bias = reads_real(bias, layer.single, (wide,))
+    if add is not None:
+        layer.add = reads_real(add, layer.single, shape)
+    return 0
+
+
+def convolve(x, w, bias, int size, int stride, add, out, LayerProgram later=None):
+    """Fill `out` (batch, p, q, outputs) with the convolution of `x` (batch, m, n, inputs), which holds its own padding.
+
+    `w` is (size² inputs, outputs rounded up to 64 bytes), taps along xi slowest; `bias` has as many. `add`, of
+    the shape of `out`, is added when it is not None. Like every layer it is recorded in the program `later` when
+    there is one, instead.
+    """
+    cdef Layer layer
+    if size < 1 or stride < 1 or x.shape[1] < size or x.shape[2] < size or out.shape[3] < 1 or x.shape[3] < 1:
+        raise ValueError("images that are smaller than the kernel")
+    shape = (x.shape[0], (x.shape[1] - size) // stride + 1, (x.shape[2] - size) // stride + 1, out.shape[3])
+    begin(&layer, CONVOLVE, x, out, shape)
+    layer.c.size, layer.c.stride = size, stride
+    weigh(&layer, size * size, w, bias, add, shape)
+    take(&layer, later, (x, w, bias, add, out))
+
+
+def winograd_scratch(ptrdiff_t inputs, ptrdiff_t wide, ptrdiff_t line):
+    """Return how many numbers `winograd` needs as scratch, with `line` of them in 64 bytes."""
+    return WINOGRAD_SCRATCH(inputs, wide, line)
+
+
+def winograd(x, w, bias, add, scratch, out, LayerProgram later=None):
+    """Do what `convolve` does with size 3 and stride 1, in fewer products.
+
+    `w` is (25 inputs, outputs rounded up to 64 bytes), the kernels at pairs of the points; there are at least 16
+    inputs and outputs, 5 x 5 pixels in `x` and `winograd_scratch` numbers in `scratch`.
+    """
+    cdef Layer layer
+    if x.shape[1] < 5 or x.shape[2] < 5 or out.shape[3] < 16 or x.shape[3] < 16:
+        raise ValueError("images or channels that are too few")
+    shape = (x.shape[0], x.shape[1] - 2, x.shape[2] - 2, out.shape[3])
+    begin(&layer, WINOGRAD, x, out, shape)
+    layer.c.size = 3
+    weigh(&layer, WINOGRAD_VALUES, w, bias, add, shape)
+    if len(scratch) < WINOGRAD_SCRATCH(layer.c.inputs, w.shape[1], 16 if layer.single else 8):
+        raise ValueError("scratch that is too small")
+    layer.scratch = fills_real(scratch, layer.single, scratch.shape)
+    take(&layer, later, (x, w, bias, add, scratch, out))
+
+
+def activate(x, out, bint around=False, LayerProgram later=None):
+    """Fill `out` (batch, m + 2, n + 2, channels) with x / (1 + exp(-x)) of `x` (batch, m, n, channels), zeros around.
+
+    With `around` the first and the last of its m + 2 rows are the last and the first of the m. An `out` of the shape
+    of `x` has nothing around.
+    """
+    cdef Layer layer
+    cdef int pad = out.shape[1] > x.shape[1]
+    begin(&layer, ACTIVATE, x, out, (x.shape[0], x.shape[1] + 2 * pad, x.shape[2] + 2 * pad, x.shape[3]))
+    layer.c.size, layer.around = pad, around
+    take(&layer, later, (x, out))
+
+
+def upsample(x, add, out, bint around=False, LayerProgram later=None):
+    """Fill `out` (batch, 2 m - 1, 2 n - 1, channels) with `add` + `x` (batch, m, n, channels) linear between its nodes.
+
+    With `around` it has 2 m rows, the last of them between the last and the first of `x`.
+    """
+    cdef Layer layer
+    shape = (x.shape[0], 2 * x.shape[1] - (0 if around else 1), 2 * x.shape[2] - 1, x.shape[3])
+    begin(&layer, REFINE, x, out, shape)
+    layer.around, layer.add = around, reads_real(add, layer.single, shape)
+    take(&layer, later, (x, add, out))
+
+
+def grid_features(planes, steps, out):
+    """Fill `out` (batch, n, n, features) for grids `planes` and their last `steps`, both (batch, 2, n, n)."""
+    cdef ptrdiff_t batch = len(planes), n = planes.shape[2]
+    cdef bint single = is_single(out)
+    cdef const double *p = reads(planes, (batch, 2, n, n))
+    cdef const double *s = reads(steps, (batch, 2, n, n))
+    cdef void *to = fills_real(out, single, (batch, n, n, LOOK_FEATURES))
+    if n < 3 or n > LOOK_MOST:
+        raise ValueError("grids that are too small or too large")
+    with nogil:
+        if single:
+            network_look_float(p, s, batch, n, <float *>to)
+        else:
+            network_look_double(p, s, batch, n, <double *>to)

@@ -1,0 +1,85 @@
+"""Options that say what is read, what is written and what is printed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from meshonet_cli.options.groups import IO, option_of
+
+if TYPE_CHECKING:
+    from meshonet_cli.session import Session
+
+_option = option_of(IO)
+
+Boundaries = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="BOUNDARY",
+        show_default=False,
+        help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
+    ),
+]
+Grids = Annotated[
+    list[str], typer.Argument(metavar="GRID", show_default=False, help="Grid file, or - for standard input.")
+]
+Output = Annotated[
+    str,
+    _option(
+        "-o",
+        "--output",
+        metavar="FILE",
+        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
+        "{index}) or one .h5.",
+    ),
+]
+From = Annotated[
+    str | None,
+    _option(
+        "--from", metavar="FORMAT", help="Format of the input, when neither its ending nor its content says."
+    ),
+]
+To = Annotated[
+    str | None,
+    _option(
+        "--to",
+        metavar="FORMAT",
+        help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
+    ),
+]
+SkipExisting = Annotated[
+    bool, _option("--skip-existing", help="Skip inputs whose output file exists already.")
+]
+Jobs = Annotated[
+    int,
+    _option("--jobs", metavar="N", min=1, max=1024, help="Processes for a batch.", show_default=True),
+]
+AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
+Quiet = Annotated[bool, _option("-q", "--quiet", help="Print warnings and errors only.")]
+Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
+
+
+@dataclass(frozen=True)
+class FileOptions:
+    """Formats of a command that turns files into files."""
+
+    from_format: From = None
+    to_format: To = None
+    skip_existing: SkipExisting = False
+
+
+@dataclass(frozen=True)
+class PrintOptions:
+    """What is printed."""
+
+    as_json: AsJson = False
+    quiet: Quiet = False
+    debug: Debug = False
+
+    def session(self) -> Session:
+        """Return the session that prints so."""
+        from meshonet_cli.session import Session
+
+        return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)

@@ -1,6 +1,0 @@
-from meshonet.geometry.arrays import Floats
-
-def fill_steps(steps: Floats, length: float, first: float, last: float, constant: int) -> float: ...
-def fill_lines(
-    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int, scratch: Floats
-) -> float: ...

@@ -1,3 +1,0 @@
-from meshonet.geometry.arrays import Floats
-
-def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, scratch: Floats) -> None: ...

@@ -1,6 +1,0 @@
-from meshonet.geometry.arrays import Floats
-
-Edges = tuple[Floats, Floats, Floats, Floats]
-
-def fill(x: Floats, y: Floats, xs: Edges, ys: Edges, parameters: Edges) -> None: ...
-def fill_all(nodes: Floats, sides: tuple[Floats, ...], parameters: tuple[Floats, ...]) -> None: ...

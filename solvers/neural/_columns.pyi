@@ -1,3 +1,0 @@
-from meshonet.geometry.arrays import Complexes, Floats
-
-def sample(modes: Complexes, gain: Floats, unit: Complexes, columns: Floats) -> None: ...

@@ -1,3 +1,0 @@
-from meshonet.geometry.arrays import Floats
-
-def step(c: Floats, height: float, matrices: Floats, eigenvalues: Floats, smooth: Floats) -> float: ...

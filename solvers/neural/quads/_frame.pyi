@@ -1,9 +1,0 @@
-from typing import Any
-
-from numpy.typing import NDArray
-
-from meshonet.geometry.arrays import Floats
-
-def take_out(planes: Floats, unit: Floats, factors: Floats) -> None: ...
-def put_back(planes: Floats, moved: Floats, unit: Floats, factors: Floats) -> None: ...
-def add(planes: Floats, answers: NDArray[Any], head: int, rim: Floats) -> None: ...
