@@ -12,8 +12,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.energy.clusters import windows
 from meshonet.solvers.energy.functional import Weights
-from meshonet.solvers.energy.preconditioner import minimiser
-from meshonet.solvers.energy.untangle import REACH, STILL, unfold
+from meshonet.solvers.energy.preconditioner import Descent
+from meshonet.solvers.energy.untangle import STILL, unfold
 
 SKEWED = 1.5
 """1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it."""
@@ -41,7 +41,6 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
         poor = np.argwhere(skewed == np.inf)
     if len(poor) == 0:
         return
-    terms = aspect, weights.shape, weights.smoothness
     for window in windows(poor, MARGIN_CELLS, nodes.shape[:2], True, LARGEST_CELLS):
         patch = window.cut(nodes, True)
         m, n = patch.shape[:2]
@@ -50,8 +49,8 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
         if count_folded(patch) and not unfold(patch, weights, aspect=aspect)[0]:
             continue
         eased = relief[window.rows(len(nodes), True)] if window.j0 == 0 else None
-        descent, still = minimiser(m, n, False, aspect, weights), STILL * float(np.sqrt((m - 1) * (n - 1)))
-        descent.run(np.moveaxis(patch, -1, 0), *terms, 0.0, eased, still, REACH, ITERATIONS)
+        still = STILL * float(np.sqrt((m - 1) * (n - 1)))
+        Descent(patch, weights, aspect=aspect).run(still, ITERATIONS, relief=eased)
         window.put(nodes, True, patch)
 
 

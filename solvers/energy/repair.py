@@ -19,9 +19,9 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.quality.measure import count_folded, folded_cells, per_cell
 from meshonet.solvers.energy.clusters import windows
-from meshonet.solvers.energy.functional import Weights, aspect_of
-from meshonet.solvers.energy.preconditioner import minimiser
-from meshonet.solvers.energy.untangle import REACH, unfold
+from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.preconditioner import Descent
+from meshonet.solvers.energy.untangle import unfold
 
 UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0), 200)
 """Weights, and iterations with one regularisation, tried in turn while cells stay folded.
@@ -144,13 +144,8 @@ def untangle(patch: Floats, periodic: bool, patience: Patience) -> int:
 
 def _smooth(patch: Floats, periodic: bool = False) -> None:
     """Open the corners of planar `patch` (m, n, 2) in place, where it is valid."""
-    ni, nj = patch.shape[:2]
-    if min(ni, nj) < 3 or count_folded(patch):
-        return
-    aspect, w = aspect_of(patch, periodic), SMOOTHING
-    descent, z = minimiser(ni, nj, periodic, aspect, w), np.moveaxis(patch, -1, 0)
-    limits = SMOOTHING_STILL, REACH, SMOOTHING_ITERATIONS
-    descent.run(z, aspect, w.shape, w.smoothness, 0.0, None, *limits)
+    if min(patch.shape[:2]) > 2 and count_folded(patch) == 0:
+        Descent(patch, SMOOTHING, periodic).run(SMOOTHING_STILL, SMOOTHING_ITERATIONS)
 
 
 def _repair_nested(nodes: Floats, periodic: bool, patience: Patience) -> int:

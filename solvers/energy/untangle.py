@@ -6,11 +6,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import polygon_area
-from meshonet.solvers.energy.functional import Weights, aspect_of
-from meshonet.solvers.energy.preconditioner import minimiser
-
-REACH = 0.25
-"""Cells that a node moves at the most in the first iteration of a descent."""
+from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.preconditioner import Descent
 
 STILL = 1e-3
 """Move of a node, in its own cells, below which minimising with one regularisation stops."""
@@ -42,15 +39,12 @@ def unfold(
     aspect : a of the functional; None is that of `nodes`.
     iterations : with one regularisation, at the most.
     """
-    ni, nj = nodes.shape[:2]
-    aspect = aspect or aspect_of(nodes, periodic)
-    descent = minimiser(ni, nj, periodic, aspect, weights)
-    z, terms = np.moveaxis(nodes, -1, 0), (aspect, weights.shape, weights.smoothness)
+    descent = Descent(nodes, weights, periodic, aspect)
     rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]
-    cell = abs(polygon_area(np.concatenate(rim))) / ((ni - 1) * (nj - 1))
+    cell = abs(polygon_area(np.concatenate(rim))) / ((nodes.shape[0] - 1) * (nodes.shape[1] - 1))
     epsilon, best, idle, spent = cell, -np.inf, 0, 0
     for _ in range(REGULARISATIONS):
-        _, smallest, done = descent.run(z, *terms, epsilon, None, STILL, REACH, iterations)
+        _, smallest, done = descent.run(STILL, iterations, epsilon=epsilon)
         spent += done
         if smallest > 0:
             return True, spent

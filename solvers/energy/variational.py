@@ -16,11 +16,11 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
-from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
-from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of, value
-from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.descent import descend, in_cells, listener_of, stiffness_of
+from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, value
+from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.start import winslow_start
-from meshonet.solvers.energy.untangle import REACH, unfold
+from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
@@ -210,10 +210,8 @@ def _descended(
         return nodes, *descend(nodes, weights, still, most, periodic=periodic, first=first)
     least, low, iterations = np.inf, 0.0, 0
     if unfold(nodes, weights)[0]:
-        terms = aspect_of(start), weights.shape, weights.smoothness
-        descent = minimiser(start.shape[0], start.shape[1], False, terms[0], weights)
-        z, told = np.moveaxis(nodes, -1, 0), teller(nodes)
-        least, low, iterations = descent.run(z, *terms, 0.0, None, in_cells(still, start), REACH, most, told)
+        descent, moves = Descent(nodes, weights), in_cells(still, start)
+        least, low, iterations = descent.run(moves, most, listener=listener_of(nodes))
     if least <= easy:
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")

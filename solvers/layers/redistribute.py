@@ -5,8 +5,8 @@
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
 The lines that leave a wall stay the curves they are, and nodes are placed anew on them
-(``kernels/layers/layers.c``): a valid grid with even rows becomes one with thin ones. Rows are moved along xi by
-one map of their index, which keeps kinks of the walls on their nodes.
+(``kernels/layers/layers.c``): a valid grid with even rows becomes one with thin ones. Rows are moved along xi
+by one map of their index, which keeps kinks of the walls on their nodes.
 """
 
 from __future__ import annotations
