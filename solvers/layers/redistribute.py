@@ -1,4 +1,4 @@
-"""Any grid, its lines kept, with layers of given heights at its walls.
+"""Layers of given heights at the walls of any grid, its lines kept.
 
 ::
 
@@ -36,7 +36,7 @@ from meshonet.solvers.layers.first_cells import (
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
-FADE = 12.0
+FADE_NODES = 12.0
 """Nodes over which the last correction of a first cell fades out."""
 
 EXACT = 1e-10
@@ -88,7 +88,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     )
     asked = {f"spacing_{side}": height for side in SIDES if (height := getattr(heights, side))}
     facts = {**grid.provenance, **asked}
-    note = f"first cells {heights.told()}, at every node there"
+    note = f"first cells {heights}, at every node there"
     note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""
     return replace(
         solution,
@@ -114,10 +114,10 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     if heights.free_rows:
         count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1
     out = planar_nodes(ni, count)
-    given = as_planar(nodes)
+    planar = as_planar(nodes)
     scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
-    planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
+    planes = planar[..., 0], planar[..., 1], out[..., 0], out[..., 1]
     ratio = layer_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.topology == "o":
@@ -181,16 +181,15 @@ def _between_rows(nodes: Floats, at: Floats) -> Floats:
 
 def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
     """Correct first cells in place, off one edge after the other until all are exact."""
-    asked = [
-        (side, height) for side in ("west", "east", "south", "north") if (height := getattr(heights, side))
-    ]
+    order = ("west", "east", "south", "north")
+    sides = [(side, height) for side in order if (height := getattr(heights, side))]
     for _ in range(PASSES):
-        wrong = [(side, height) for side, height in asked if first_cell_error(nodes, side, height) > EXACT]
-        for side, height in wrong:
+        inexact = [(side, height) for side, height in sides if first_cell_error(nodes, side, height) > EXACT]
+        for side, height in inexact:
             _correct(nodes, side, height)
         if periodic:
             nodes[-1] = nodes[0]
-        if not wrong:
+        if not inexact:
             return
 
 
@@ -205,7 +204,7 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
     if first_cell_error(nodes, side, height) < SLIGHT:
         fade = (away == 0.0).astype(np.float64)
     else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
-        fade = np.exp(-np.maximum(away, 0.0) / FADE) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
+        fade = np.exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
     redistribute(*planes, np.full(len(view), height), fade, np.empty(5 * count))
     view[..., 0], view[..., 1] = planes
 
