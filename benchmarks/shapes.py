@@ -18,7 +18,8 @@ from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.families.family import family
 from meshonet.geometry.families.split import split as divided
-from meshonet.geometry.spacing.sampling import Sampling, Spacing
+from meshonet.geometry.spacing.laws import Spacing
+from meshonet.geometry.spacing.sampling import Sampling
 
 SEED = 20_000_003
 FIRST = 1000

@@ -13,11 +13,14 @@ Floats: TypeAlias = NDArray[np.float64]
 Complexes: TypeAlias = NDArray[np.complex128]
 """complex128 array, a point x + iy each."""
 
-Topology: TypeAlias = Literal["quad", "o", "c"]
-Side: TypeAlias = Literal["south", "east", "north", "west"]
+Topology: TypeAlias = Literal["quad", "o", "c", "blocks"]
+"""Name of what the connections of a grid make of it; ``blocks`` is whatever the others are not."""
+Side: TypeAlias = Literal["south", "east", "north", "west", "bottom", "top"]
 
 TOPOLOGIES: tuple[Topology, ...] = ("quad", "o", "c")
+"""The topologies of a single block."""
 SIDES: tuple[Side, ...] = ("south", "east", "north", "west")
+"""The sides of a block of two directions, counter-clockwise."""
 
 
 AnyArray = TypeVar("AnyArray", bound=NDArray[Any])
@@ -27,6 +30,12 @@ def distinct(values: AnyArray) -> AnyArray:
     """Return the sorted distinct values of a one-dimensional array. np.unique loads numpy.ma: 25 ms."""
     ordered = np.sort(values)
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
+
+
+def read_only(values: AnyArray) -> AnyArray:
+    """Return `values`, from now on protected against writing."""
+    values.flags.writeable = False
+    return values
 
 
 def planar_nodes(ni: int, nj: int) -> Floats:
@@ -39,6 +48,7 @@ def planar_nodes(ni: int, nj: int) -> Floats:
 
 
 def as_planar(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2) as float64 in planar layout, copied only when it is not so already."""
-    planes = np.ascontiguousarray(np.asarray(nodes, dtype=np.float64).transpose(2, 0, 1))
-    return planes.transpose(1, 2, 0)
+    """Return `nodes` (ni, nj, ..., d) as float64 in planar layout, copied only when it is not so already."""
+    last = nodes.ndim - 1
+    planes = np.asarray(nodes, dtype=np.float64).transpose(last, *range(last))
+    return np.ascontiguousarray(planes).transpose(*range(1, last + 1), 0)

@@ -5,8 +5,7 @@
     MeshonetError                 exit 2 unless said otherwise
     ├── InputError                bad file, bad geometry, bad option value      exit 2
     ├── NoValidGridError          every way to a grid ended in folded cells     exit 3
-    ├── SolverError               an iteration diverged and its retries too     exit 3
-    └── GateError                 a quality gate the user asked for was not met exit 1
+    └── SolverError               an iteration diverged and its retries too     exit 3
 """
 
 from __future__ import annotations
@@ -98,17 +97,16 @@ class NoValidGridError(MeshonetError):
         self.problem, self.worst = problem, tuple(worst)
 
     def __str__(self) -> str:
+        return self.text(str)
+
+    def text(self, spelling: Callable[[str], str]) -> str:
+        """Return the message, the names of parameters in braces passed through `spelling`."""
         cells = ", ".join(f"(i={c.i}, j={c.j}, x={c.x:.6g}, y={c.y:.6g})" for c in self.worst[:10])
-        return f"{self.problem}; worst cells: {cells}" if cells else self.problem
+        problem = spelled(self.problem, spelling)
+        return f"{problem}; worst cells: {cells}" if cells else problem
 
 
 class SolverError(MeshonetError):
     """An iteration diverged or stalled, and its retries too."""
 
     exit_code = 3
-
-
-class GateError(MeshonetError):
-    """A quality gate asked for with ``--fail-on`` was not met."""
-
-    exit_code = 1

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import c_patches, wake_nodes
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 
 LARGEST = 1e150
 """Coordinates must be below this, so that areas and their sums are finite."""
@@ -64,10 +65,8 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
         return Grid.from_nodes(nodes, "o", name=name)
     turned = nodes
     for _ in range(4):
-        wake = wake_nodes(turned[:, 0])
-        if wake > 1:
-            ni, nj = turned.shape[:2]
-            return Grid.from_nodes(turned, "c", c_patches(ni, nj, wake), name)
+        if wake_nodes(turned[:, 0]) > 1:
+            return Grid.from_nodes(turned, "c", name=name)
         turned = _quarter_turn(turned)
     return Grid.from_nodes(nodes, "quad", name=name)
 

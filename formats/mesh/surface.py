@@ -17,9 +17,10 @@ from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.named_edges import Labelled, runs
 from meshonet.geometry.shapes.outline import Outline

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from meshonet.formats.mesh.boundary_patches import patches
 from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import wake_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
 
@@ -76,11 +76,9 @@ def node_numbers(grid: Grid) -> Indices:
     """Return a number (ni, nj) for every node, i fastest, the same for nodes that are one."""
     ni, nj = grid.ni, grid.nj
     number = np.arange(ni * nj, dtype=np.int64).reshape((ni, nj), order="F")
-    if grid.topology == "o":
-        number[-1] = number[0]
-    elif grid.topology == "c":
-        wake = wake_nodes(grid.nodes[:, 0])
-        number[ni - wake :, 0] = number[:wake, 0][::-1]
+    for connection in grid.connections:
+        own, donor = connection.nodes(lambda _block, side: face_of(number[..., None], side))
+        donor[...] = own
     return number
 
 

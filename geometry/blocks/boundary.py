@@ -1,4 +1,4 @@
-"""A boundary: four edges of nodes that meet, and the curves they were sampled from.
+"""The boundary of a block: four edges of nodes that meet, and the curves they were sampled from.
 
 ::
 
@@ -15,32 +15,44 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Topology
+from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Side, Topology, read_only
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connected, Connection, connections_of
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
-from meshonet.geometry.blocks.patches import Patch, check_patches, known_patches, wake_nodes
-from meshonet.geometry.curves.curve import Curve, resample_like
+from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
+from meshonet.geometry.blocks.resample import resample_edges, resample_patches
+from meshonet.geometry.blocks.validate import check_edges
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.geometry.spacing.sampling import Sampling
 
+_CORNERS = (
+    ("south", 0, "west", 0),
+    ("south", -1, "east", 0),
+    ("north", 0, "west", -1),
+    ("north", -1, "east", -1),
+)
+
 
 @dataclass(frozen=True, eq=False)
-class Boundary:
+class Boundary(Connected):
     """Four edges of nodes; validates itself.
 
     Parameters
     ----------
     south, north : (ni, 2) nodes along xi.
     west, east : (nj, 2) nodes along eta.
-    topology : ``quad``, ``o`` or ``c``.
-    patches : named stretches of the sides; empty means the defaults.
+    topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where south lies on itself.
+    patches : named stretches of the sides; empty means those of `default_patches`.
     name : what the input called this shape.
     wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
         body between the nodes.
@@ -56,7 +68,7 @@ class Boundary:
     ------
     InputError
         an edge of the wrong shape, with a node that is not finite or repeated, edges that do not
-        meet, a left-handed outline.
+        meet, a left-handed outline, a ``c`` without a wake.
     """
 
     south: Floats
@@ -72,28 +84,28 @@ class Boundary:
     notes: tuple[str, ...] = ()
     origin: Origin = UNKNOWN
     sampled: bool = False
+    connections: tuple[Connection, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
         if self.topology not in TOPOLOGIES:
             raise InputError(f"topology {self.topology!r} is not known", "use " + "/".join(TOPOLOGIES))
         for side in SIDES:
             object.__setattr__(self, side, _edge(side, getattr(self, side)))
-        for one, other in (("south", "north"), ("west", "east")):
-            n, m = len(getattr(self, one)), len(getattr(self, other))
+        for side, opposite in (("south", "north"), ("west", "east")):
+            n, m = len(getattr(self, side)), len(getattr(self, opposite))
             if n != m:
                 raise InputError(
-                    f"{one} has {n} nodes and {other} has {m}", "opposite edges need equal counts"
+                    f"{side} has {n} nodes and {opposite} has {m}", "opposite edges need equal counts"
                 )
+        self._check_corners()
+        object.__setattr__(self, "connections", connections_of(self.topology, self.south, self.nj))
         if not self.chord:
-            behind = max(wake_nodes(self.south) - 1, 0) if self.topology == "c" else 0
-            body = self.south[behind : self.ni - behind]
+            body = self.south[self.wake : self.ni - self.wake]
             farthest = np.hypot(*(body - body[0]).T).max()
             object.__setattr__(self, "chord", float(farthest))
-        self._check_corners()
-        object.__setattr__(
-            self, "patches", tuple(self.patches) or known_patches(self.topology, self.south, self.nj)
-        )
-        check_patches(self.patches, self.ni, self.nj)
+        patches = tuple(self.patches) or default_patches(self.topology, self.ni, self.nj, self.wake)
+        object.__setattr__(self, "patches", patches)
+        check_patches(self.patches, [(self.ni, self.nj)])
         self._check_orientation()
 
     @property
@@ -109,13 +121,14 @@ class Boundary:
     @cached_property
     def corners(self) -> Mapping[str, Indices]:
         """Indices of the corners of each edge, its ends left out (`meshonet.geometry.polygon.corners`)."""
-        return {side: find_corners(getattr(self, side)) for side in SIDES}
+        return {side: read_only(find_corners(getattr(self, side))) for side in SIDES}
 
     def grid(
         self, nodes: Floats, provenance: Mapping[str, Any] | None = None, *, finite: bool = False
     ) -> Grid:
-        """Return the grid of `nodes` (ni, nj, 2) inside this boundary."""
-        return Grid.from_nodes(nodes, self.topology, self.patches, self.name, provenance or {}, finite=finite)
+        """Return the grid of `nodes` (ni, nj, 2) inside this boundary, with its patches and connections."""
+        block = Block(nodes, finite)
+        return Grid((block,), self.patches, self.connections, self.name, provenance or {})
 
     def outline(self) -> Floats:
         """Return the closed outline (n, 2) south, east, north, west, first node not repeated."""
@@ -133,7 +146,7 @@ class Boundary:
         InputError
             fewer than 2 sensors, or more than there are nodes.
         """
-        rings = [self.outline()] if self.topology == "quad" else [self.south[:-1], self.north[:-1]]
+        rings = [self.south[:-1], self.north[:-1]] if self.around_body else [self.outline()]
         most = len(rings) * len(rings[0])
         if not 2 <= count <= most:
             raise InputError(f"{count} sensors", f"use 2 to {most}, the number of boundary nodes")
@@ -144,83 +157,68 @@ class Boundary:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return this boundary with the node counts of `sampling`.
 
-        Given nodes are used as they are when the counts are absent or equal; others resample the
-        curves through the nodes, corners kept.
+        Edges are used as they are when the counts are absent or equal; others resample the curves through
+        the nodes, corners kept (`meshonet.geometry.blocks.resample`).
 
         Raises
         ------
         InputError
             `sampling` asks for anything else: another topology, a spacing, a far field ...
         """
-        self._check_asked(sampling)
+        self._check_sampling(sampling)
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
         if (ni, nj) == (self.ni, self.nj):
             return self
-        if self.topology == "c":
-            from meshonet.geometry.shapes.wake import resampled
+        sides: dict[Side, Floats] = {side: getattr(self, side) for side in SIDES}
+        edges: Any = resample_edges(sides, ni, nj, closed=self.periodic, wake=self.wake)
+        patches = resample_patches(self.patches, (self.ni, self.nj), (ni, nj), self.wake)
+        return replace(self, **edges, patches=patches, sensors=None, sampled=not self.wake or self.sampled)
 
-            return resampled(self, ni, nj)
-        periodic = self.topology == "o"
-        if periodic and ni < 4:
-            raise InputError(f"{ni} nodes around a body", "use at least 4")
-        edges: dict[str, Any] = {
-            side: resample_like(getattr(self, side), n, closed=periodic and side in ("south", "north"))
-            for side, n in (("south", ni), ("north", ni), ("west", nj), ("east", nj))
-        }
-        parts = tuple(_rescaled(part, self, ni, nj) for part in self.patches)
-        return replace(self, **edges, patches=parts, sensors=None, sampled=True)
-
-    def _check_asked(self, sampling: Sampling) -> None:
-        """Raise InputError when `sampling` asks for what given edges do not leave open."""
+    def _check_sampling(self, sampling: Sampling) -> None:
+        """Raise InputError when `sampling` sets what the edges have settled."""
         if sampling.topology not in ("auto", self.topology):
             raise InputError(
                 f"edges of topology {self.topology} do not make topology {sampling.topology}",
-                "leave --topology out, or give the shape instead of its edges",
+                "leave {topology} out, or give the shape instead of its edges",
                 source=self.name,
             )
-        implied = "curvature" if sampling.viscous else "auto"  # thin cells ask for that law by themselves
-        asked = {
-            "--spacing": sampling.spacing not in ("auto", implied),
-            "--le-spacing": sampling.le_spacing is not None,
-            "--te-spacing": sampling.te_spacing is not None,
-            "--far-field": sampling.far_field is not None,
-            "--corners": sampling.corners is not None,
-            "--te": sampling.te != "auto",
-            "--wake": sampling.wake is not None,
-            "--wake-nodes": sampling.wake_nodes is not None,
-            "--normalise": sampling.normalise,
+        implied = "curvature" if sampling.viscous else "auto"  # thin cells imply that law
+        settings = {
+            "spacing": sampling.spacing not in ("auto", implied),
+            "le_spacing": sampling.le_spacing is not None,
+            "te_spacing": sampling.te_spacing is not None,
+            "far_field": sampling.far_field is not None,
+            "corners": sampling.corners is not None,
+            "te": sampling.te != "auto",
+            "wake": sampling.wake is not None,
+            "wake_nodes": sampling.wake_nodes is not None,
+            "normalise": sampling.normalise,
         }
-        for option, given in asked.items():
-            if given:
+        for name, is_set in settings.items():
+            if is_set:
                 raise InputError(
-                    f"{option} says how a shape becomes edges, and these are edges already",
-                    f"leave {option} out, or give the shape",
+                    f"{{{name}}} says how a shape becomes edges, and these are edges already",
+                    f"leave {{{name}}} out, or give the shape",
                     source=self.name,
                 )
 
     def _check_corners(self) -> None:
-        corners = (
-            ("south", 0, "west", 0),
-            ("south", -1, "east", 0),
-            ("north", 0, "west", -1),
-            ("north", -1, "east", -1),
-        )
-        for one, k, other, m in corners:
-            p, q = getattr(self, one)[k], getattr(self, other)[m]
+        for side, k, neighbour, m in _CORNERS:
+            p, q = getattr(self, side)[k], getattr(self, neighbour)[m]
             if p[0] != q[0] or p[1] != q[1]:
                 raise InputError(
-                    f"{one} ends at ({p[0]:.6g}, {p[1]:.6g}) and {other} at ({q[0]:.6g}, {q[1]:.6g})",
+                    f"{side} ends at ({p[0]:.6g}, {p[1]:.6g}) and {neighbour} at ({q[0]:.6g}, {q[1]:.6g})",
                     "neighbouring edges must share their corner",
                 )
-        if self.topology == "o":
+        if self.periodic:
             for side in ("south", "north"):
                 edge = getattr(self, side)
                 if not np.array_equal(edge[0], edge[-1]):
                     raise InputError(f"{side} of an O grid is not closed", "repeat its first node at the end")
 
     def _check_orientation(self) -> None:
-        with np.errstate(over="ignore", invalid="ignore"):  # told of in `_check_outline`
-            if self.topology != "o":
+        with np.errstate(over="ignore", invalid="ignore"):  # `_check_outline` reports it
+            if not self.periodic:
                 if not 0.0 < polygon_area(self.outline()) < np.inf:
                     self._check_outline()
                     raise InputError(
@@ -238,23 +236,8 @@ class Boundary:
 
     def _check_outline(self) -> None:
         """Raise InputError for what makes the sign of an area say nothing: its size, edges that cross."""
-        from meshonet.geometry.blocks.validate import check_edges  # which looks at boundaries
-        from meshonet.geometry.shapes.airfoil.clean import check_extent
-
         check_extent(float(np.hypot(*np.ptp(self.outline(), axis=0))))
         check_edges(self)
-
-
-def polygon_area(points: Floats) -> float:
-    """Return the signed area of a closed polygon (n, 2), positive when counter-clockwise.
-
-    Examples
-    --------
-    >>> polygon_area(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]))
-    2.0
-    """
-    x, y = (points - points[0]).T
-    return float(0.5 * (x[:-1] @ y[1:] - x[1:] @ y[:-1]))  # the first point, now 0, closes it with nothing
 
 
 def _edge(side: str, points: Floats) -> Floats:
@@ -275,10 +258,3 @@ def _edge(side: str, points: Floats) -> Floats:
             f"{side} nodes {same[0]} and {same[0] + 1} are the same point ({x:.6g}, {y:.6g})", "remove one"
         )
     return edge
-
-
-def _rescaled(part: Patch, old: Boundary, ni: int, nj: int) -> Patch:
-    had, has = (old.ni, ni) if part.side in ("south", "north") else (old.nj, nj)
-    scale = (has - 1) / (had - 1)
-    start = min(round(part.start * scale), has - 2)
-    return replace(part, start=start, stop=max(round(part.stop * scale), start + 1))

@@ -20,12 +20,12 @@ from meshonet.geometry.errors import InputError
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
-    """Return the grid of every `k`-th node along both directions, its parts along.
+    """Return the grid of every `k`-th node along both directions, its patches along.
 
     Raises
     ------
     InputError
-        `k` does not divide the cells along a direction, or a part would lose an end.
+        `k` does not divide the cells along a direction, or a patch would lose an end.
 
     Examples
     --------
@@ -36,14 +36,16 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
     """
     _check(grid.ni, grid.nj, k)
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
-    return replace(grid, nodes=grid.nodes[::k, ::k], patches=_parts(grid.patches, k), provenance=facts)
+    patches = _coarser_patches(grid.patches, k)
+    nodes = grid.nodes[::k, ::k]
+    return Grid.from_nodes(nodes, grid.topology, patches, grid.name, facts, grid.origin, finite=True)
 
 
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
     """Return the boundary of every `k`-th node, as `coarser_grid` does of a grid."""
     _check(boundary.ni, boundary.nj, k)
     edges = {side: getattr(boundary, side)[::k] for side in SIDES}
-    return replace(boundary, **edges, patches=_parts(boundary.patches, k), sensors=None)
+    return replace(boundary, **edges, patches=_coarser_patches(boundary.patches, k), sensors=None)
 
 
 def _check(ni: int, nj: int, k: int) -> None:
@@ -59,12 +61,12 @@ def _check(ni: int, nj: int, k: int) -> None:
     raise InputError(cells, remedy)
 
 
-def _parts(parts: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
-    for part in parts:
-        for node in (part.start, part.stop):
+def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
+    for patch in patches:
+        for node in (patch.start, patch.stop):
             if node % k:
                 raise InputError(
-                    f"part {part.name!r} ends at node {node} of {part.side}, which every {k}-th leaves out",
-                    f"make the grid with ends at multiples of {k} (--wake-nodes for a wake), or coarsen less",
+                    f"patch {patch.name!r} ends at node {node} of {patch.side}, which every {k}-th leaves out",
+                    f"make the grid with ends at multiples of {k} ({{wake_nodes}} for a wake), or coarsen less",
                 )
-    return tuple(Patch(part.name, part.side, part.start // k, part.stop // k) for part in parts)
+    return tuple(replace(patch, start=patch.start // k, stop=patch.stop // k) for patch in patches)

@@ -1,38 +1,204 @@
-"""Where a grid meets itself: beyond the seam of an O grid, and across the wake of a C grid."""
+"""Where blocks meet node by node: another block's side, or their own.
+
+::
+
+    o   west is connected to east              c   the first nodes of south to its last ones, reversed
+
+        +--+--+--+--+                              +--+--+--+--+--+--+--+
+        |           |  east = west                 |                    |
+        +--+--+--+--+                              +--+--+--+--+--+--+--+
+                                                    a  b  c      c  b  a
+
+As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
 import numpy as np
+from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.arrays import Floats, Side, Topology
+from meshonet.geometry.blocks.block import Range
+from meshonet.geometry.errors import InputError
+
+Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
+"""Gives the nodes of a side of a block."""
 
 
-def wake_cells(grid: Grid) -> int:
-    """Return how many cells of a ``c`` grid stand on each side of its wake, 0 for other grids.
+@dataclass(frozen=True)
+class Motion:
+    """Rigid motion that carries one of two periodic sides to the other: x -> turn x + shift.
 
-    Node (i, 0) of the wake is node (ni-1-i, 0) too, bitwise; the cell that cell (i, 0) meets there is
-    (ni-2-i, 0).
+    Parameters
+    ----------
+    shift : of every coordinate; empty is none.
+    turn : rotation matrix, row by row; empty is none.
     """
-    if grid.topology != "c":
-        return 0
-    return max(wake_nodes(grid.nodes[:, 0]) - 1, 0)
+
+    shift: tuple[float, ...] = ()
+    turn: tuple[tuple[float, ...], ...] = ()
+
+    def __call__(self, nodes: Floats) -> Floats:
+        """Return `nodes` (..., d) moved."""
+        moved = nodes @ np.array(self.turn).T if self.turn else nodes
+        return np.asarray(moved + np.array(self.shift) if self.shift else moved)
 
 
-def beyond_seam(grid: Grid) -> Floats:
-    """Return the nodes (ni + 1, nj, 2) of an O grid with column 1 again at the end; others as they are."""
-    if grid.topology != "o":
-        return grid.nodes
-    return np.concatenate([grid.nodes, grid.nodes[1:2]])
+@dataclass(frozen=True)
+class Connection:
+    """A part of one side and a part of another, the donor, whose nodes are the same.
 
-
-def across_wake(grid: Grid) -> Floats:
-    """Return the nodes (wake nodes, 3, 2) of a C grid across its wake, which is in the middle.
-
-    Without a wake there are none.
+    Parameters
+    ----------
+    block, side, range : first and last node along each direction of that side.
+    donor, donor_side, donor_range : the same of the other side, ascending too.
+    orientation : for each direction of the side, the donor's that runs along it, counted from 1, negative
+        where it runs the other way.
+    transform : what carries the nodes of the side to the donor's, when they are periodic.
     """
-    cells = wake_cells(grid)
-    nodes = cells + 1 if cells else 0
-    below = grid.nodes[::-1][:nodes, 1]
-    return np.stack([below, grid.nodes[:nodes, 0], grid.nodes[:nodes, 1]], axis=1)
+
+    block: int
+    side: Side
+    range: Range
+    donor: int
+    donor_side: Side
+    donor_range: Range
+    orientation: tuple[int, ...]
+    transform: Motion | None = None
+
+    def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Return the nodes (n, d) or (n, m, d) of both sides in the same order, the first moved by `transform`."""
+        own, donor = _part(face(self.block, self.side), self.range), face(self.donor, self.donor_side)
+        donor = _part(donor, self.donor_range)
+        if len(self.orientation) != own.ndim - 1:
+            raise InputError(f"{self} has {len(self.orientation)} directions", f"give {own.ndim - 1}")
+        axes = [abs(direction) - 1 for direction in self.orientation]
+        donor = donor.transpose(*axes, donor.ndim - 1)
+        donor = donor[tuple(slice(None, None, -1 if d < 0 else 1) for d in self.orientation)]
+        return (self.transform(own) if self.transform else own), donor
+
+    def check(self, face: Face) -> None:
+        """Raise InputError unless the nodes of both sides are the same, bitwise."""
+        own, donor = self.nodes(face)
+        if own.shape != donor.shape:
+            raise InputError(
+                f"{self} joins {own.shape[:-1]} nodes to {donor.shape[:-1]}", "connect equal counts"
+            )
+        if np.array_equal(own, donor):
+            return
+        place = np.argwhere((own != donor).any(axis=-1))[0]
+        at = ", ".join(str(start + k) for (start, _), k in zip(self.range, place.tolist(), strict=True))
+        raise InputError(
+            f"{self} is open: its nodes differ, first at node {at} of {self.side}",
+            "make the nodes of both sides the same, or leave the connection out",
+        )
+
+    def __str__(self) -> str:
+        return (
+            f"the connection of {self.side} of block {self.block} to {self.donor_side} of block {self.donor}"
+        )
+
+    def stretches(self, block: int) -> list[tuple[Side, int, int]]:
+        """Return side, first and last node of what it takes of the boundary of a planar block."""
+        ends = ((self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range))
+        return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
+
+
+def _part(nodes: NDArray[Any], span: Range) -> NDArray[Any]:
+    return nodes[tuple(slice(start, stop + 1) for start, stop in span)]
+
+
+def o_seam(nj: int) -> Connection:
+    """Return the connection of the west side of an O block to its east side."""
+    whole = ((0, nj - 1),)
+    return Connection(0, "west", whole, 0, "east", whole, (1,))
+
+
+def c_wake(ni: int, cells: int) -> Connection:
+    """Return the connection of the first `cells` cells of the south side of a C block to its last ones."""
+    return Connection(0, "south", ((0, cells),), 0, "south", ((ni - 1 - cells, ni - 1),), (-1,))
+
+
+def topology_of(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> Topology:
+    """Return what the connections make of blocks with `counts` nodes along their directions.
+
+    Examples
+    --------
+    >>> topology_of([(9, 5)], ()), topology_of([(9, 5)], [o_seam(5)]), topology_of([(9, 5)], [c_wake(9, 2)])
+    ('quad', 'o', 'c')
+    """
+    if len(counts) == 1 and len(counts[0]) == 2:
+        if not connections:
+            return "quad"
+        if tuple(connections) == (o_seam(counts[0][1]),):
+            return "o"
+        if tuple(connections) == (c_wake(counts[0][0], wake_cells(connections)),):
+            return "c"
+    return "blocks"
+
+
+def wake_cells(connections: Sequence[Connection]) -> int:
+    """Return the cells of the wake in the connections of a C block, 0 for others."""
+    joined = connections[0] if len(connections) == 1 else None
+    return joined.range[0][1] if joined and joined.side == joined.donor_side == "south" else 0
+
+
+def wake_nodes(south: Floats) -> int:
+    """Return how many nodes at the start of `south` (ni, 2) are repeated, in reverse, at its end; 0 if all are.
+
+    This is how a wake is found in nodes that came without connections.
+    """
+    half = south[: len(south) // 2]
+    differs = (half != south[::-1][: len(half)]).any(axis=1)
+    return int(np.argmax(differs)) if differs.any() else 0
+
+
+def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
+    """Return the connections of a block of `topology` with the south side `south` (ni, 2) and nj rows.
+
+    Raises
+    ------
+    InputError
+        a topology of no single block; a C block without a wake.
+    """
+    if topology == "quad":
+        return ()
+    if topology == "o":
+        return (o_seam(nj),)
+    if topology != "c":
+        raise InputError(f"topology {topology!r} is not known", "use quad/o/c")
+    half = len(south) // 2
+    all_doubled = len(south) % 2 == 1 and np.array_equal(south[:half], south[: -half - 1 : -1])
+    cells = (half if all_doubled else wake_nodes(south)) - 1  # all but the middle: a wall of two cells
+    if cells < 1:
+        raise InputError(
+            "the south side of a C grid does not begin and end with the nodes of a wake",
+            "make both sides of the wake coincide, or call it quad",
+        )
+    return (c_wake(len(south), cells),)
+
+
+class Connected:
+    """What the connections of a grid or boundary of one block say of it."""
+
+    connections: tuple[Connection, ...]
+    topology: Topology
+
+    @property
+    def periodic(self) -> bool:
+        """Whether xi runs around a body and closes (topology ``o``)."""
+        return self.topology == "o"
+
+    @property
+    def around_body(self) -> bool:
+        """Whether the south side is a body, in a far field (topology ``o`` or ``c``)."""
+        return self.topology in ("o", "c")
+
+    @property
+    def wake(self) -> int:
+        """Cells of the wake at each end of the south side: node (i, 0) is node (ni-1-i, 0) up to this i."""
+        return wake_cells(self.connections)

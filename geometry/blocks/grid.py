@@ -1,98 +1,135 @@
-"""A structured grid.
+"""A structured grid: blocks, where they are connected, and the names of what is left of their sides.
 
 ::
 
-         north (j = nj-1)                    o: i runs clockwise around the body from the trailing
-        +----------------+                      edge: lower side, leading edge, upper side;
-        |                |                      south is the body, north the far field, and
-   west |   eta          | east                 column ni-1 repeats column 0 bitwise
-  (i=0) |    ^           | (i = ni-1)        c: south is wake, body, wake; the two wakes
-        |    |           |                      coincide bitwise
-        |    +--> xi     |
-        +----------------+
-         south (j = 0)
+    o: i runs clockwise around the body from the trailing edge: lower side, leading edge, upper side; south
+       is the body, north the far field; west is connected to east, so that column ni-1 is column 0.
+    c: south is wake, body, wake; the first wake is connected to the second, reversed.
 
 Nodes are ``[i, j] = (x, y)`` at (xi_i, eta_j); a valid grid is right-handed: every corner of every cell
-has a positive Jacobian.
+has a positive Jacobian. `meshonet.geometry.blocks.block` draws the sides.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import InitVar, dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology, as_planar
+from meshonet.geometry.arrays import Floats, Side, Topology
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connected, Connection, connections_of, topology_of, wake_cells
 from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
-from meshonet.geometry.blocks.patches import Patch, check_patches, known_patches
+from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.measure import Quality
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
-    """Nodes, topology and named parts; validates itself.
+class Grid(Connected):
+    """Blocks, patches and connections; validates itself.
 
     Parameters
     ----------
-    nodes : (ni, nj, 2) float64, any unit of length, kept in planar layout (see `meshonet.geometry.arrays`).
-    topology : ``quad``, ``o`` or ``c``.
-    patches : named stretches of the sides; empty means those of `meshonet.geometry.blocks.patches.known_patches`.
+    blocks : at least one.
+    patches : named stretches of the sides.
+    connections : where sides of blocks are the same nodes.
     name : what the input called this shape.
     provenance : how the grid was made: method, settings, version.
     origin : that of its boundary.
-    finite : the nodes are known to be finite: they are not read through, which takes a tenth of making some.
 
     Raises
     ------
     InputError
-        nodes of the wrong shape, fewer than 2 along a direction, or not finite; an open O seam.
+        no block; a patch outside its side; connected sides whose nodes differ.
     """
 
-    nodes: Floats
-    topology: Topology = "quad"
+    blocks: tuple[Block, ...]
     patches: tuple[Patch, ...] = ()
+    connections: tuple[Connection, ...] = ()
     name: str = ""
     provenance: Mapping[str, Any] = field(default_factory=dict)
     origin: Origin = UNKNOWN
-    finite: InitVar[bool] = False
 
-    def __post_init__(self, finite: bool) -> None:
-        nodes = np.asarray(self.nodes)
-        if nodes.ndim != 3 or nodes.shape[2] != 2 or min(nodes.shape[:2]) < 2:
-            raise InputError(
-                f"grid nodes have shape {nodes.shape}", "give (ni, nj, 2) with ni and nj at least 2"
-            )
-        nodes = as_planar(nodes)
-        if self.topology not in TOPOLOGIES:
-            raise InputError(f"topology {self.topology!r} is not known", "use " + "/".join(TOPOLOGIES))
-        if not finite:
-            _check_finite(nodes)
-        if self.topology == "o" and not np.array_equal(nodes[0], nodes[-1]):
-            j = int(np.argmax((nodes[0] != nodes[-1]).any(axis=-1)))
+    def __post_init__(self) -> None:
+        if not self.blocks:
+            raise InputError("a grid without blocks", "give at least one")
+        check_patches(self.patches, [block.counts for block in self.blocks])
+        for connection in self.connections:
+            connection.check(self.face)
+
+    @classmethod
+    def from_nodes(
+        cls,
+        nodes: Floats,
+        topology: Topology = "quad",
+        patches: tuple[Patch, ...] = (),
+        name: str = "",
+        provenance: Mapping[str, Any] | None = None,
+        origin: Origin = UNKNOWN,
+        *,
+        finite: bool = False,
+    ) -> Grid:
+        """Return the grid of a single block, its connections told by the nodes.
+
+        Parameters
+        ----------
+        nodes, finite : see `Block`.
+        topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where the south side lies on itself.
+        patches : empty means those of `default_patches`.
+        name, provenance, origin : see above.
+
+        Raises
+        ------
+        InputError
+            see `Block`; an O grid that is not closed, a C grid without a wake.
+
+        Examples
+        --------
+        >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
+        >>> Grid.from_nodes(np.stack([x, y], axis=-1)).topology
+        'quad'
+        """
+        block = Block(nodes, finite)
+        ni, nj = block.counts[:2]
+        if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
+            j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
             raise InputError(
                 f"column ni-1 differs from column 0 at j={j}", "close the O grid or call it quad"
             )
-        object.__setattr__(self, "nodes", nodes)
-        object.__setattr__(
-            self, "patches", tuple(self.patches) or known_patches(self.topology, nodes[:, 0], self.nj)
-        )
-        check_patches(self.patches, self.ni, self.nj)
+        connections = connections_of(topology, block.nodes[:, 0], nj)
+        named = tuple(patches) or default_patches(topology, ni, nj, wake_cells(connections))
+        return cls((block,), named, connections, name, provenance or {}, origin)
 
-    @classmethod
-    def from_nodes(cls, *args: Any, **settings: Any) -> Grid:
-        """Return the grid of one block of nodes."""
-        return cls(*args, **settings)
+    @cached_property
+    def topology(self) -> Topology:  # type: ignore[override]
+        """``quad``, ``o`` or ``c`` for a single planar block connected in that way, else ``blocks``."""
+        return topology_of([block.counts for block in self.blocks], self.connections)
+
+    @cached_property
+    def nodes(self) -> Floats:
+        """(ni, nj, 2) nodes of the only block."""
+        if len(self.blocks) != 1:
+            raise InputError(
+                f"a grid of {len(self.blocks)} blocks", "take the nodes of its blocks one by one"
+            )
+        return self.blocks[0].nodes
 
     @property
     def ni(self) -> int:
-        """Nodes along xi."""
+        """Nodes of the only block along xi."""
         return int(self.nodes.shape[0])
 
     @property
     def nj(self) -> int:
-        """Nodes along eta."""
+        """Nodes of the only block along eta."""
         return int(self.nodes.shape[1])
 
     @property
@@ -105,18 +142,58 @@ class Grid:
         """(ni, nj) y coordinates, C-contiguous, a view."""
         return self.nodes[..., 1]
 
+    def face(self, block: int, side: Side) -> Floats:
+        """Return the nodes of a side of a block."""
+        return self.blocks[block].face(side)
+
+    def outer_patches(self) -> list[Patch]:
+        """Return the outer boundary of the only block, each of its edges in one patch (`outer_patches`)."""
+        connected = [stretch for connection in self.connections for stretch in connection.stretches(0)]
+        return outer_patches(self.patches, (self.ni, self.nj), connected)
+
+    def walls(self) -> list[Patch]:
+        """Return the walls, told by the names of patches.
+
+        Where no name tells of a wall these are the unnamed stretches of the body, or the south and the north
+        side of a four-sided grid.
+        """
+        outer = self.outer_patches()
+        body = ("south",) if self.around_body else ()
+        walls = [p for p in outer if p.kind == "wall" or (p.kind == "other" and p.side in body)]
+        if walls or self.around_body:
+            return walls
+        return [patch for patch in outer if patch.side in ("south", "north") and patch.kind == "other"]
+
+    def with_nodes(self, nodes: Floats, *, finite: bool = False) -> Grid:
+        """Return the same grid with other nodes (ni, nj, 2), as many."""
+        return replace(self, blocks=(Block(nodes, finite),))
+
     def with_provenance(self, **facts: Any) -> Grid:
         """Return the same grid with `facts` added to its provenance."""
-        return replace(self, provenance={**self.provenance, **facts}, finite=True)
+        return replace(self, provenance={**self.provenance, **facts})
 
+    def quality(self) -> Quality:
+        """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`)."""
+        # by name: what is measured needs grids
+        return import_module("meshonet.geometry.quality.measure").measure(self, percentiles=True)
 
-def _check_finite(nodes: Floats) -> None:
-    # sums are finite exactly when (overflow aside) their terms are: one pass, no temporary, by BLAS
-    ones = np.ones(nodes.shape[1])
-    with np.errstate(invalid="ignore"):  # infinity less infinity
-        total = (nodes[..., 0] @ ones).sum() + (nodes[..., 1] @ ones).sum()
-    if not np.isfinite(total):
-        finite = np.isfinite(nodes).all(axis=-1)
-        if not finite.all():
-            i, j = (int(k) for k in np.argwhere(~finite)[0])
-            raise InputError(f"node i={i}, j={j} is not finite", "check the file for NaN or infinity")
+    def write(self, path: str | Path, *, to_format: str | None = None) -> None:
+        """Write the grid to a file, whole or not at all; the ending says the format (`meshonet.write`)."""
+        # by name: this room knows no formats
+        import_module("meshonet").write(self, path, to_format=to_format)
+
+    def to_pyvista(self) -> Any:
+        """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
+
+        Raises
+        ------
+        InputError
+            pyvista is not installed.
+        """
+        try:
+            from pyvista import StructuredGrid
+        except ImportError:
+            remedy = "install it: pip install 'meshonet[pyvista]'"
+            raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
+        planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
+        return StructuredGrid(*planes)

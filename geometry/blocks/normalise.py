@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -29,10 +26,10 @@ def normalised(grid: Grid) -> Grid:
     >>> normalised(Grid.from_nodes(np.stack([x, y], axis=-1))).nodes[1, 1].tolist()
     [1.0, 0.5]
     """
-    if grid.topology == "quad":
+    if not grid.around_body:
         corner = grid.nodes.min(axis=(0, 1))
-        return replace(grid, nodes=(grid.nodes - corner) / np.ptp(grid.nodes, axis=(0, 1)).max())
-    body = _body(grid)
+        return grid.with_nodes((grid.nodes - corner) / np.ptp(grid.nodes, axis=(0, 1)).max())
+    body = grid.nodes[grid.wake : grid.ni - grid.wake, 0]
     trailing = body[0]
     leading = body[np.hypot(*(body - trailing).T).argmax()]
     ax, ay = trailing - leading
@@ -42,16 +39,4 @@ def normalised(grid: Grid) -> Grid:
     # written out, not as a matrix product: nodes that coincide have to go on doing so bitwise
     x, y = grid.x - leading[0], grid.y - leading[1]
     nodes = np.stack([(x * ax + y * ay) / square, (y * ax - x * ay) / square], axis=-1)
-    return replace(grid, nodes=nodes)
-
-
-def _body(grid: Grid) -> Floats:
-    """Return the south nodes (n, 2) without the wake."""
-    south = grid.nodes[:, 0]
-    if grid.topology == "o":
-        return south
-    half = len(south) // 2
-    differs = (south[:half] != south[::-1][:half]).any(axis=1)
-    wake = int(np.argmax(differs)) if differs.any() else 0
-    first = max(wake - 1, 0)
-    return south[first : len(south) - first]
+    return grid.with_nodes(nodes)

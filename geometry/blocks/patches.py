@@ -1,85 +1,159 @@
-"""Named stretches of a boundary: what a flow solver calls patches, markers or boundary conditions."""
+"""Named stretches of a boundary: what flow solvers call patches, markers or boundary conditions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Literal, TypeAlias
 
-import numpy as np
-
-from meshonet.geometry.arrays import SIDES, Floats, Side, Topology
+from meshonet.geometry.arrays import SIDES, Side, Topology
+from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.errors import InputError
+
+Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
+
+_SIGNS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
+    ("farfield", ("far", "freestream")),
+    ("inlet", ("inlet", "inflow")),
+    ("outlet", ("outlet", "outflow")),
+    ("symmetry", ("symm",)),
+    ("wall", ("wall", "airfoil", "body", "surface", "blade")),
+    ("periodic", ("periodic",)),
+    ("interface", ("interface", "wake")),
+)
+
+
+def kind_of(name: str) -> Kind:
+    """Return the kind of boundary that the name of a patch tells of.
+
+    Examples
+    --------
+    >>> kind_of("lower wall"), kind_of("slot 3")
+    ('wall', 'other')
+    """
+    low = name.lower()
+    return next((kind for kind, signs in _SIGNS if any(sign in low for sign in signs)), "other")
 
 
 @dataclass(frozen=True)
 class Patch:
-    """Nodes ``start`` to ``stop`` (both included) of one side, under a name.
+    """Nodes ``start`` to ``stop``, both included, of one side of a block, under a name.
 
-    South and north count nodes along i, west and east along j.
+    Parameters
+    ----------
+    name : what the patch is called in files.
+    side : of its block. South and north count nodes along i, west and east along j.
+    start, stop : first and last node along the side.
+    across : the same along the second direction of a side of a block of three; None is all of it.
+    block : number of the block.
+    kind : of boundary; derived from the name unless set.
     """
 
     name: str
     side: Side
     start: int
     stop: int
+    across: tuple[int, int] | None = field(default=None, repr=False)
+    block: int = field(default=0, repr=False)
+    kind: Kind = field(default="other", repr=False)
+
+    def __post_init__(self) -> None:
+        if self.kind == "other":
+            object.__setattr__(self, "kind", kind_of(self.name))
+
+    @property
+    def place(self) -> tuple[int, int]:
+        """Direction that its side is an end of, and which end (`meshonet.geometry.blocks.block.PLACES`)."""
+        return PLACES[self.side]
+
+    def range(self, counts: tuple[int, ...]) -> Range:
+        """Return its nodes along each direction of a side with `counts` nodes."""
+        along: Range = ((self.start, self.stop),)
+        return along if len(counts) == 1 else (*along, self.across or (0, counts[1] - 1))
 
 
-def default_patches(topology: Topology, ni: int, nj: int) -> tuple[Patch, ...]:
-    """Return the parts that a grid of `topology` has when nobody named them.
+def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tuple[Patch, ...]:
+    """Return the patches of a block of `topology` when nobody named any.
 
-    ``quad`` has its four sides, ``o`` a wall and a far field (its west and east are the seam). Where the wake
-    of a ``c`` ends its nodes tell (`known_patches`): here it is all wall.
+    ``quad`` has its four sides, ``o`` a wall and a far field (its west and east are the seam), ``c`` a wake of
+    `wake` cells on both sides of a wall, and a far field around them.
 
     Examples
     --------
-    >>> [part.name for part in default_patches("o", 5, 4)]
+    >>> [patch.name for patch in default_patches("o", 5, 4)]
     ['wall', 'farfield']
     """
-    last = {"south": ni - 1, "north": ni - 1, "west": nj - 1, "east": nj - 1}
+    i, j = ni - 1, nj - 1
     if topology == "quad":
-        return tuple(Patch(side, side, 0, last[side]) for side in SIDES)
-    parts = (Patch("wall", "south", 0, ni - 1), Patch("farfield", "north", 0, ni - 1))
+        return tuple(Patch(side, side, 0, i if side in ("south", "north") else j) for side in SIDES)
+    far = Patch("farfield", "north", 0, i)
     if topology == "o":
-        return parts
-    return (*parts, Patch("farfield", "east", 0, nj - 1), Patch("farfield", "west", 0, nj - 1))
-
-
-def wake_nodes(south: Floats) -> int:
-    """Return how many nodes at the start of `south` (ni, 2) are met again, in reverse, at its end."""
-    half = south[: len(south) // 2]
-    differs = (half != south[::-1][: len(half)]).any(axis=1)
-    return int(np.argmax(differs)) if differs.any() else 0
-
-
-def c_patches(ni: int, nj: int, wake: int) -> tuple[Patch, ...]:
-    """Return the named parts of a C grid whose wake has `wake` nodes."""
+        return Patch("wall", "south", 0, i), far
     return (
-        Patch("wake", "south", 0, wake - 1),
-        Patch("wall", "south", wake - 1, ni - wake),
-        Patch("wake", "south", ni - wake, ni - 1),
-        Patch("farfield", "north", 0, ni - 1),
-        Patch("farfield", "east", 0, nj - 1),
-        Patch("farfield", "west", 0, nj - 1),
+        Patch("wake", "south", 0, wake),
+        Patch("wall", "south", wake, i - wake),
+        Patch("wake", "south", i - wake, i),
+        far,
+        Patch("farfield", "east", 0, j),
+        Patch("farfield", "west", 0, j),
     )
 
 
-def known_patches(topology: Topology, south: Floats, nj: int) -> tuple[Patch, ...]:
-    """Return the parts of a grid whose south side is `south` (ni, 2) when nobody named them."""
-    wake = wake_nodes(south) if topology == "c" else 0
-    return c_patches(len(south), nj, wake) if wake > 1 else default_patches(topology, len(south), nj)
+def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
+    """Raise InputError when a patch has no name, an unknown block or side, or leaves its side.
+
+    Parameters
+    ----------
+    patches : to check.
+    counts : of the nodes along each direction, for every block.
+    """
+    for patch in patches:
+        sides = SIDES if not 0 <= patch.block < len(counts) else tuple(PLACES)[: 2 * len(counts[patch.block])]
+        if not patch.name or patch.side not in sides:
+            raise InputError(
+                f"patch {patch.name!r} on side {patch.side!r} is not usable",
+                "name it and use " + "/".join(sides),
+            )
+        if not 0 <= patch.block < len(counts):
+            raise InputError(
+                f"patch {patch.name!r} is on block {patch.block} of {len(counts)}", "count blocks from 0"
+            )
+        side = face_counts(counts[patch.block], patch.side)
+        for (start, stop), count in zip(patch.range(side), side, strict=True):
+            if not 0 <= start < stop < count:
+                raise InputError(
+                    f"patch {patch.name!r} runs from node {start} to {stop} of a side with {count} nodes",
+                    "keep it inside the side and at least one cell long",
+                )
 
 
-def check_patches(parts: Iterable[Patch], ni: int, nj: int) -> None:
-    """Raise InputError when a part has no name, an unknown side or leaves its side."""
-    for part in parts:
-        count = ni if part.side in ("south", "north") else nj
-        if not part.name or part.side not in SIDES:
-            raise InputError(
-                f"part {part.name!r} on side {part.side!r} is not usable",
-                "name it and use " + "/".join(SIDES),
-            )
-        if not 0 <= part.start < part.stop < count:
-            raise InputError(
-                f"part {part.name!r} runs from node {part.start} to {part.stop} of a side with {count} nodes",
-                "keep it inside the side and at least one cell long",
-            )
+def outer_patches(
+    patches: Sequence[Patch], counts: tuple[int, int], inside: Iterable[tuple[Side, int, int]]
+) -> list[Patch]:
+    """Return the outer boundary of a planar block, each of its edges in one patch.
+
+    Where patches overlap the later one counts; edges without one are called by their side.
+
+    Parameters
+    ----------
+    patches : of the block.
+    counts : its nodes along xi and eta.
+    inside : side, first and last node of stretches that are connected, and so no boundary.
+    """
+    outer: list[Patch] = []
+    for side in SIDES:
+        owners: list[Patch | None] = [Patch(side, side, 0, 1)] * (face_counts(counts, side)[0] - 1)
+        for patch in patches:
+            if patch.side == side:
+                owners[patch.start : patch.stop] = [patch] * (patch.stop - patch.start)
+        for connected, start, stop in inside:
+            if connected == side:
+                owners[start:stop] = [None] * (stop - start)
+        start = 0
+        for stop in range(1, len(owners) + 1):
+            if stop == len(owners) or owners[stop] is not owners[start]:
+                owner = owners[start]
+                if owner is not None:
+                    outer.append(replace(owner, start=start, stop=stop))
+                start = stop
+    return outer

@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -22,7 +23,7 @@ _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "
 
 
 def turned(grid: Grid) -> Grid:
-    """Return `grid` with node (i, j) at (j, ni-1-i), its parts along.
+    """Return `grid` with node (i, j) at (j, ni-1-i), its patches along.
 
     Raises
     ------
@@ -31,12 +32,13 @@ def turned(grid: Grid) -> Grid:
     """
     if grid.topology != "quad":
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
-    parts = tuple(_turned(part, grid.ni - 1) for part in grid.patches)
-    return replace(grid, nodes=np.swapaxes(grid.nodes, 0, 1)[:, ::-1], patches=parts)
+    patches = tuple(_turned(patch, grid.ni - 1) for patch in grid.patches)
+    block = Block(np.swapaxes(grid.nodes, 0, 1)[:, ::-1], finite=True)
+    return replace(grid, blocks=(block,), patches=patches)
 
 
-def _turned(part: Patch, last: int) -> Patch:
-    side = _SIDES[part.side]
-    if part.side in ("south", "north"):
-        return Patch(part.name, side, last - part.stop, last - part.start)
-    return Patch(part.name, side, part.start, part.stop)
+def _turned(patch: Patch, last: int) -> Patch:
+    side, start, stop = _SIDES[patch.side], patch.start, patch.stop
+    if patch.side in ("south", "north"):
+        start, stop = last - stop, last - start
+    return replace(patch, side=side, start=start, stop=stop)

@@ -11,11 +11,12 @@ sides of a quad that are one line, the cut of a grid that goes round.
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Floats
-from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossings
 
@@ -25,53 +26,92 @@ _SEAM = 1e-6
 """Opposite sides are one line when they are no farther apart than this, in lengths of their shortest cell."""
 
 
-def check_edges(boundary: Boundary) -> None:
+class Edges(Protocol):
+    """What is checked of a boundary (`meshonet.geometry.blocks.boundary.Boundary`)."""
+
+    @property
+    def south(self) -> Floats:
+        """(ni, 2) nodes."""
+
+    @property
+    def north(self) -> Floats:
+        """(ni, 2) nodes."""
+
+    @property
+    def west(self) -> Floats:
+        """(nj, 2) nodes."""
+
+    @property
+    def east(self) -> Floats:
+        """(nj, 2) nodes."""
+
+    @property
+    def around_body(self) -> bool:
+        """Whether south is a body in a far field."""
+
+    @property
+    def periodic(self) -> bool:
+        """Whether south and north are closed."""
+
+    @property
+    def wake(self) -> int:
+        """Cells of the wake at each end of south."""
+
+    def outline(self) -> Floats:
+        """Return the closed outline (n, 2)."""
+
+
+def check_edges(boundary: Edges) -> None:
     """Raise InputError, with the place, when edges of `boundary` cross or touch, or a body lies outside.
 
     Examples
     --------
+    >>> from meshonet.geometry.blocks.boundary import Boundary
     >>> t = np.linspace(0.0, 1.0, 5)
     >>> south, west = np.stack([t, 0.0 * t], axis=1), np.stack([0.0 * t, t], axis=1)
     >>> check_edges(Boundary(south, south + [0.0, 1.0], west, west + [1.0, 0.0]))
     """
-    if boundary.topology == "quad" and not find_crossings(boundary.outline(), limit=1):
+    if not boundary.around_body and not find_crossings(boundary.outline(), limit=1):
         return
     lines = _lines(boundary)
     path = np.concatenate(lines)
     joints = np.cumsum([len(line) for line in lines[:-1]]) - 1  # segments that only lead to the next line
     ends = np.array([line[k] for line in lines for k in (0, -1)])
-    for found in sorted(find_crossings(path, closed=False, limit=_MOST), key=lambda c: (c.first, c.second)):
-        if found.first not in joints and found.second not in joints and not _meant(path, found, ends):
-            raise InputError(_told(boundary, path, found), REMEDY)
-    if len(lines) > 1 and boundary.topology != "quad" and not _inside(lines[0][0], lines[-1]):
+    crossings = find_crossings(path, closed=False, limit=_MOST)
+    for crossing in sorted(crossings, key=lambda c: (c.first, c.second)):
+        if crossing.first in joints or crossing.second in joints or _shares_end(path, crossing, ends):
+            continue
+        raise InputError(_where(boundary, path, crossing), REMEDY)
+    if len(lines) > 1 and boundary.around_body and not _inside(lines[0][0], lines[-1]):
         x, y = lines[0][0]
-        told = f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field"
-        raise InputError(told, "use a far field around the body")
+        raise InputError(
+            f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field", "use a far field around the body"
+        )
 
 
-def _lines(boundary: Boundary) -> list[Floats]:
+def _lines(boundary: Edges) -> list[Floats]:
     """Return lines (n, 2) that may not cross, the outermost last."""
-    south, north, west, east = (getattr(boundary, side) for side in ("south", "north", "west", "east"))
-    if boundary.topology == "o" or _coincide(west, east):
+    south, north, west, east = boundary.south, boundary.north, boundary.west, boundary.east
+    if boundary.periodic or _coincide(west, east):
         return [south, north]
-    wake = wake_nodes(south)
-    if wake > 1:
+    wake = boundary.wake or max(wake_nodes(south) - 1, 0)  # a quad may have a cut that nobody declared
+    if wake:
         outer = np.concatenate([west, north[1:], east[-2::-1]])
-        return [south[wake - 1 : len(south) - wake + 1], south[:wake], outer]
+        return [south[wake : len(south) - wake], south[: wake + 1], outer]
     if _coincide(south, north):
         return [west, east]
     outline = boundary.outline()
     return [np.concatenate([outline, outline[:1]])]
 
 
-def _coincide(one: Floats, other: Floats) -> bool:
-    step = float(np.abs(np.diff(one, axis=0)).sum(axis=1).min())
-    return bool(np.abs(one - other).max() <= _SEAM * step)
+def _coincide(a: Floats, b: Floats) -> bool:
+    step = float(np.abs(np.diff(a, axis=0)).sum(axis=1).min())
+    return bool(np.abs(a - b).max() <= _SEAM * step)
 
 
-def _meant(path: Floats, found: Crossing, ends: Floats) -> bool:
+def _shares_end(path: Floats, crossing: Crossing, ends: Floats) -> bool:
     """Return whether two segments have nothing in common but a node that is one of the `ends` of lines."""
-    (a, b), (c, d) = path[found.first : found.first + 2], path[found.second : found.second + 2]
+    (a, b), (c, d) = path[crossing.first : crossing.first + 2], path[crossing.second : crossing.second + 2]
     shared = [(p, q - p, s - p) for p, q in ((a, b), (b, a)) for r, s in ((c, d), (d, c)) if (p == r).all()]
     if len(shared) != 1:
         return False
@@ -79,16 +119,16 @@ def _meant(path: Floats, found: Crossing, ends: Floats) -> bool:
     return bool((at == ends).all(axis=1).any() and (u[0] * v[1] != u[1] * v[0] or u @ v < 0))
 
 
-def _told(boundary: Boundary, path: Floats, found: Crossing) -> str:
+def _where(boundary: Edges, path: Floats, crossing: Crossing) -> str:
     """Return which edges cross, behind which of their nodes, and where."""
-    (one, k), (other, m) = (_place(boundary, path[n : n + 2]) for n in (found.first, found.second))
-    at = f"({found.x:.6g}, {found.y:.6g})"
-    if one == other:
-        return f"{one} crosses itself at {at}, behind its nodes {min(k, m)} and {max(k, m)}"
-    return f"{one} and {other} cross at {at}, behind node {k} of {one} and node {m} of {other}"
+    (a, k), (b, m) = (_place(boundary, path[n : n + 2]) for n in (crossing.first, crossing.second))
+    at = f"({crossing.x:.6g}, {crossing.y:.6g})"
+    if a == b:
+        return f"{a} crosses itself at {at}, behind its nodes {min(k, m)} and {max(k, m)}"
+    return f"{a} and {b} cross at {at}, behind node {k} of {a} and node {m} of {b}"
 
 
-def _place(boundary: Boundary, segment: Floats) -> tuple[str, int]:
+def _place(boundary: Edges, segment: Floats) -> tuple[str, int]:
     """Return the side that a segment (2, 2) of it lies on, and the number of the node it begins at there."""
     for side in SIDES:
         edge = getattr(boundary, side)

@@ -112,12 +112,13 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
         fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
     if len(wall) < 8:
-        raise InputError(f"the wall has {len(wall)} nodes", "the operator needs at least 8: raise --res")
+        raise InputError(f"the wall has {len(wall)} nodes", "use at least 8")
     ring = np.ascontiguousarray(wall, complex)
     centre, quarter, removed, pole, phase, w, corners, winding = _native.lift_body(ring, swap)
     if not 0.9 < winding < 1.1:
         raise InputError(
-            "the wall does not wind once around its middle", "use meshonet solve-pde for this shape"
+            "the wall does not wind once around its middle",
+            "use a method without a conformal map for this shape",
         )
     return Lift(centre, quarter, tuple(Corner(*one) for one in removed), pole, phase), w, corners
 

@@ -21,6 +21,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.lift import lift_body, mirrored
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import inner_slopes
 from meshonet.geometry.errors import InputError
 
 ANGLES = 1024
@@ -44,10 +45,10 @@ def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
     InputError
         the lifted wall is not star-shaped, or the iteration does not settle.
     """
-    one = _one_way(curve, marks, count, mirror=False)
-    other = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
+    clockwise = _one_way(curve, marks, count, mirror=False)
+    mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
     # the two differ by the accuracy of the iteration; their mean makes a mirrored body's nodes mirror images
-    knots = 0.5 * (one + (curve.length - other[::-1]))
+    knots = 0.5 * (clockwise + (curve.length - mirrored_wall[::-1]))
     knots[np.searchsorted(knots, marks - 1e-9 * curve.length)] = marks
     return knots
 
@@ -111,7 +112,7 @@ def _shared_out(marks: Floats, count: int) -> Floats:
         1 + np.arange(len(marks)),
         cells - 1 - np.arange(len(marks))[::-1],
     )
-    return monotone_cubic(
+    return _monotone(
         np.concatenate([[0.0], nodes, [float(cells)]]),
         np.concatenate([[0.0], marks, [2.0 * np.pi]]),
         np.arange(count, dtype=np.float64),
@@ -121,7 +122,7 @@ def _shared_out(marks: Floats, count: int) -> Floats:
 
 def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
     """Return arc lengths where the circle's angle is `at`, by way of u: s is analytic in it at corners."""
-    where = monotone_cubic(t, u, at, periodic=False)
+    where = _monotone(t, u, at, periodic=False)
     k = np.minimum(where.astype(np.intp), round(u[-1]) - 1)
     ends = s[np.searchsorted(u, np.arange(round(u[-1]) + 1.0))]
     knots = ends[k] + (ends[k + 1] - ends[k]) * 0.5 * (1.0 - np.cos(np.pi * (where - k)))
@@ -131,18 +132,17 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
     return np.asarray(knots)
 
 
-def monotone_cubic(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
+def _monotone(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
     """Return the piecewise cubic through rising (x, y) that rises everywhere, at points inside x.
 
-    Slopes are the weighted harmonic means of the neighbouring differences; `periodic` lets the two ends
-    share one. Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300.
+    As `meshonet.geometry.curves.monotone`, with the slopes of the end intervals at the ends; `periodic` lets the
+    two ends share one.
     """
     h = np.diff(x)
     rise = np.diff(y) / h
     if periodic:
         h, rise = np.append(h, h[0]), np.append(rise, rise[0])
-    w1, w2 = 2.0 * h[1:] + h[:-1], h[1:] + 2.0 * h[:-1]
-    inner = (w1 + w2) / (w1 / rise[:-1] + w2 / rise[1:])
+    inner = inner_slopes(h, rise)
     slope = np.concatenate([inner[-1:], inner]) if periodic else np.concatenate([rise[:1], inner, rise[-1:]])
     h = np.diff(x)
     k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, distinct
+from meshonet.geometry.arrays import Floats, distinct, read_only
 from meshonet.geometry.curves.spline import spline_slopes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
-from meshonet.geometry.spacing.sampling import monotone_cubic
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
 _STEPS = 8
@@ -66,12 +65,12 @@ class Curve:
         corners: Sequence[int] | Indices | None = None,
         straight: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None,
     ) -> None:
-        self.points, self.closed = _checked(points, closed), closed
+        self.points, self.closed = read_only(_checked(points, closed)), closed
         n = len(self.points)
         if corners is None:
-            self.corner_index = find_corners(self.points, closed=closed)
+            self.corner_index = read_only(find_corners(self.points, closed=closed))
         else:
-            self.corner_index = distinct(np.asarray(corners, dtype=np.intp))
+            self.corner_index = read_only(distinct(np.asarray(corners, dtype=np.intp)))
             if self.corner_index.size and (self.corner_index[0] < 0 or self.corner_index[-1] >= n):
                 raise InputError(
                     f"a curve of {n} points has no corner {self.corner_index[-1]}", "count points from 0"
@@ -98,8 +97,8 @@ class Curve:
         self._rate_start = np.minimum(rate / np.maximum(speed[:, :-1], 1e-300), 3.0).ravel()
         self._rate_stop = np.minimum(rate / np.maximum(speed[:, 1:], 1e-300), 3.0).ravel()
         self.length = float(self._table[-1])
-        self.knots = self._table[::_STEPS][: len(self.points)].copy()
-        self.corners = self.knots[self.corner_index]
+        self.knots = read_only(self._table[::_STEPS][: len(self.points)].copy())
+        self.corners = read_only(self.knots[self.corner_index])
 
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
         """Return the interval and the parameter in it (0 to 1) at arc lengths s (m,)."""
@@ -144,40 +143,6 @@ class Curve:
         a, b, c, d = self._cubic[:, i]
         points = np.asarray((a + t * (b + t * (c + t * d))).reshape(-1, 2))
         return points if self.closed else np.concatenate([points, self.points[-1:]])
-
-
-def resample_like(nodes: Floats, m: int, *, closed: bool) -> Floats:
-    """Return `m` nodes (m, 2) on the curve through `nodes` (n, 2), spaced by the same law.
-
-    Arc length as a function of the place along the edge, 0 to 1, is kept; corners of the curve stay
-    nodes as far as `m` suffices; the end nodes are kept bitwise.
-
-    Parameters
-    ----------
-    nodes : a closed edge repeats its first node at the end.
-    m : at least 2.
-    closed : the edge returns to its start.
-
-    Examples
-    --------
-    >>> resample_like(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
-    [0.0, 0.5, 1.0, 1.5, 2.0]
-    """
-    n = len(nodes)
-    curve = Curve(nodes, closed=closed)
-    knots = np.append(curve.knots, curve.length) if closed else curve.knots
-    stops = distinct(np.concatenate([[0], curve.corner_index, [n - 1]]))
-    place = np.rint(stops * ((m - 1) / (n - 1))).astype(np.intp)
-    kept = np.concatenate([[True], (np.diff(place[:-1]) > 0) & (place[1:-1] < m - 1), [True]])
-    s = np.empty(m)
-    for a, b, p, q in zip(stops[kept][:-1], stops[kept][1:], place[kept][:-1], place[kept][1:], strict=True):
-        law = monotone_cubic(
-            np.linspace(0.0, 1.0, b - a + 1), knots[a : b + 1], np.linspace(0.0, 1.0, q - p + 1)
-        )
-        s[p : q + 1] = law
-    out = curve.at(s)
-    out[0], out[-1] = nodes[0], nodes[-1]
-    return out
 
 
 def _checked(points: Floats, closed: bool) -> Floats:

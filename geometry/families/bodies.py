@@ -15,7 +15,7 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
-from meshonet.geometry.spacing.laws import on_corners
+from meshonet.geometry.spacing.along_curve import on_corners
 
 FINE = 960
 """Points of a curve before nodes are placed on it."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.spacing.laws import on_corners
+from meshonet.geometry.spacing.along_curve import on_corners
 
 Corners = list[tuple[float, float]]
 

@@ -20,7 +20,8 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.far_field import straight
-from meshonet.geometry.spacing.sampling import Sampling, Spacing
+from meshonet.geometry.spacing.laws import Spacing
+from meshonet.geometry.spacing.sampling import Sampling
 
 POINTS = 120  # a surface
 ORDER = 6  # of the Bernstein polynomials

@@ -16,7 +16,7 @@ import numpy as np
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.edges import polyline
 from meshonet.geometry.families.family import Family
-from meshonet.geometry.spacing.laws import on_corners
+from meshonet.geometry.spacing.along_curve import on_corners
 
 RADIUS = 0.2
 LENGTH = 2.0

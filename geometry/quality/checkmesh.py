@@ -30,9 +30,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import beyond_seam, wake_cells
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.growth import Extreme, Tally, blocks
+from meshonet.geometry.quality.growth import Extreme, Tally, beyond_seam, strips
 
 SEVERE = 70.0
 """Non-orthogonality from which checkMesh counts faces."""
@@ -70,7 +69,7 @@ def faces(grid: Grid) -> Faces:
         skews.add(i, j, skew)
     for i, j, skew in _outside(grid):
         skews.add(i, j, skew)
-    for i, block in blocks(grid.nodes, 1):
+    for i, block in strips(grid.nodes, 1):
         boxes.add(i, 0, _box_ratio(block))
     turned, mean = angles.extreme, cosines.extreme
     if turned and mean:
@@ -80,13 +79,13 @@ def faces(grid: Grid) -> Faces:
 
 def _inside(grid: Grid) -> Iterator[tuple[int, int, Floats, Floats]]:
     """Yield angles and skewness (m, n) of the faces inside, with the cell (i, j) of the first."""
-    for i, block in blocks(beyond_seam(grid), 2):
+    for i, block in strips(beyond_seam(grid), 2):
         centre = centroids(block)
         yield i, 0, *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:])
-    for i, block in blocks(grid.nodes, 1):
+    for i, block in strips(grid.nodes, 1):
         centre = centroids(block)
         yield i, 0, *_between(centre[:, :-1], centre[:, 1:], block[1:, 1:-1], block[:-1, 1:-1])
-    wake = wake_cells(grid)
+    wake = grid.wake
     if wake:
         first, last = centroids(grid.nodes[: wake + 1, :2]), centroids(grid.nodes[-wake - 1 :, :2])[::-1]
         yield 0, 0, *_between(last, first, grid.nodes[1 : wake + 1, :1], grid.nodes[:wake, :1])
@@ -94,11 +93,11 @@ def _inside(grid: Grid) -> Iterator[tuple[int, int, Floats, Floats]]:
 
 def _outside(grid: Grid) -> Iterator[tuple[int, int, Floats]]:
     """Yield the skewness (m, n) of the faces of the outer boundary, with the cell (i, j) of the first."""
-    nodes, wake = grid.nodes, wake_cells(grid)
+    nodes, wake = grid.nodes, grid.wake
     body = nodes[wake : grid.ni - wake]
     yield wake, 0, _at_boundary(centroids(body[:, :2]), body[:-1, :1], body[1:, :1])
     yield 0, grid.nj - 2, _at_boundary(centroids(nodes[:, -2:]), nodes[:-1, -1:], nodes[1:, -1:])
-    if grid.topology != "o":
+    if not grid.periodic:
         yield 0, 0, _at_boundary(centroids(nodes[:2]), nodes[:1, :-1], nodes[:1, 1:])
         yield grid.ni - 2, 0, _at_boundary(centroids(nodes[-2:]), nodes[-1:, :-1], nodes[-1:, 1:])
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.connection import across_wake, beyond_seam
 from meshonet.geometry.blocks.grid import Grid
 
 ROWS = 128
@@ -71,15 +70,27 @@ def growth(grid: Grid) -> Growth:
     Growth(xi=Extreme(max=2.0, mean=1.5, at=(1, 0)), eta=None)
     """
     xi, eta = Tally(), Tally()
-    for i, block in blocks(beyond_seam(grid), 2):
+    for i, block in strips(beyond_seam(grid), 2):
         xi.add(i + 1, 0, _ratios(block))
-    for i, block in blocks(grid.nodes, 0):
+    for i, block in strips(grid.nodes, 0):
         eta.add(i, 1, _ratios(block.swapaxes(0, 1)).T)
     eta.add(0, 0, _ratios(across_wake(grid).swapaxes(0, 1)).T)
     return Growth(xi.extreme, eta.extreme)
 
 
-def blocks(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
+def beyond_seam(grid: Grid) -> Floats:
+    """Return the nodes (ni + 1, nj, 2) of an O grid with column 1 again at the end; others as they are."""
+    return np.concatenate([grid.nodes, grid.nodes[1:2]]) if grid.periodic else grid.nodes
+
+
+def across_wake(grid: Grid) -> Floats:
+    """Return the nodes (wake nodes, 3, 2) of a C grid across its wake, which is in the middle; else none."""
+    nodes = grid.wake + 1 if grid.wake else 0
+    below = grid.nodes[::-1][:nodes, 1]
+    return np.stack([below, grid.nodes[:nodes, 0], grid.nodes[:nodes, 1]], axis=1)
+
+
+def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
     """Yield parts of `nodes` (ni, nj, 2) with the index of their first column; `more` columns overlap."""
     for i in range(0, max(len(nodes) - more, 0), ROWS):
         yield i, nodes[i : i + ROWS + more]

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, as_planar
-from meshonet.geometry.blocks.connection import wake_cells
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
-from meshonet.geometry.quality.metrics import METRICS, NAMES
+from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
 from meshonet.geometry.quality.percentiles import Run, no_run, prepared
 from meshonet.kernels import _native
 
@@ -105,10 +104,10 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     x, y = grid.x, grid.y
     cells = (grid.ni - 1) * (grid.nj - 1)
     run = prepared(x, y, PERCENTS) if percentiles and cells > FEW else no_run()
-    values = np.empty((len(METRICS) if percentiles and cells <= FEW else 0, grid.ni - 1, grid.nj - 1))
+    values = np.empty((len(COMPILED) if percentiles and cells <= FEW else 0, grid.ni - 1, grid.nj - 1))
     table, where = _run(grid, 0, values, run)
     metrics = {}
-    for k, metric in enumerate(METRICS):
+    for k, metric in enumerate(COMPILED):
         low, mean, high = (float(value) for value in table[k])
         i, j = where[k, 0 if metric.worst == "min" else 1]
         ends: list[float | None] = [None, None]
@@ -118,7 +117,15 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
             all_values = values[k] if len(values) else per_cell(grid, metric.name)
             ends = [float(v) for v in np.percentile(all_values.ravel(), PERCENTS, overwrite_input=True)]
         metrics[metric.name] = Summary(low, mean, high, (int(i), int(j)), *ends)
+    metrics |= {m.name: _summary(m, m.cells(grid), percentiles) for m in METRICS if m.cells}
     return Quality(cells, count_folded(grid.nodes), metrics)
+
+
+def _summary(metric: Metric, values: Floats, percentiles: bool) -> Summary:
+    worst = np.argmin(values) if metric.worst == "min" else np.argmax(values)
+    i, j = divmod(int(worst), values.shape[1])
+    ends = [float(v) for v in np.percentile(values, PERCENTS)] if percentiles else [None, None]
+    return Summary(float(values.min()), float(values.mean()), float(values.max()), (i, j), *ends)
 
 
 def angles(nodes: Floats) -> tuple[float, float]:
@@ -153,6 +160,9 @@ def per_cell(grid: Grid, name: str) -> Floats:
     """
     if name not in NAMES:
         raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
+    metric = METRICS[NAMES.index(name)]
+    if metric.cells:
+        return metric.cells(grid)
     cells = np.empty((1, grid.ni - 1, grid.nj - 1))
     _run(grid, NAMES.index(name), cells, no_run())
     return np.asarray(cells[0])
@@ -163,14 +173,14 @@ def _run(grid: Grid, first: int, values: Floats, run: Run) -> tuple[Floats, NDAr
 
     `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
     """
-    return _summed(grid.x, grid.y, (grid.topology == "o", wake_cells(grid)), first, values, run)
+    return _summed(grid.x, grid.y, (grid.periodic, grid.wake), first, values, run)
 
 
 def _summed(
     x: Floats, y: Floats, joins: tuple[bool, int], first: int, values: Floats, run: Run
 ) -> tuple[Floats, NDArray[np.int64]]:
     """Return what `_run` does, for planes x and y; `joins` are whether they close and the cells of a wake."""
-    table, where = np.empty((len(METRICS), 3)), np.empty((len(METRICS), 2, 2), dtype=np.int64)
+    table, where = np.empty((len(COMPILED), 3)), np.empty((len(COMPILED), 2, 2), dtype=np.int64)
     _native.measure_cells(x, y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
     return table, where
 

@@ -1,4 +1,4 @@
-"""What the quality metrics of a cell mean.
+"""The quality metrics of a cell: a new one is a line in `METRICS`.
 
 A cell has its corners at nodes a = (i, j), b = (i+1, j), c = (i+1, j+1), d = (i, j+1). Where Verdict has a
 metric, this is Verdict's definition for a quadrilateral that lies in the plane; a cell whose corners run
@@ -26,21 +26,33 @@ VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
 
 
 @dataclass(frozen=True)
 class Metric:
-    """A metric's name, unit, and which of its ends is the bad one."""
+    """A quality metric.
+
+    Parameters
+    ----------
+    name, unit, short : for reports.
+    worst : which of its ends is the bad one.
+    cells : gives its value (ni-1, nj-1) for every cell of a grid; None for those of the compiled kernel.
+    """
 
     name: str
     unit: str
     worst: Literal["min", "max"]
     short: str
+    cells: Callable[[Grid], Floats] | None = None
 
 
-# the order of the compiled kernel (kernels/geometry/cells.h)
+# first those of the compiled kernel, in its order (kernels/geometry/cells.h), then those with a function
 METRICS: tuple[Metric, ...] = (
     Metric("max_angle", "deg", "max", "greatest included angle"),
     Metric("min_angle", "deg", "min", "least included angle"),
@@ -52,3 +64,4 @@ METRICS: tuple[Metric, ...] = (
 )
 
 NAMES: tuple[str, ...] = tuple(metric.name for metric in METRICS)
+COMPILED = tuple(metric for metric in METRICS if metric.cells is None)

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.quality.metrics import METRICS
+from meshonet.geometry.quality.metrics import COMPILED
 from meshonet.kernels._native import measure_cells
 
 TILES, TILE = 4096, 8
@@ -70,7 +70,7 @@ class Run:
 
 def no_run() -> Run:
     """Return a run that looks for nothing."""
-    n = len(METRICS)
+    n = len(COMPILED)
     return Run(np.empty((n, 0, 2)), np.zeros((n, 0, 4), dtype=np.int64), np.empty((n, 0, 1)))
 
 
@@ -79,7 +79,7 @@ def prepared(x: Floats, y: Floats, percents: tuple[float, ...]) -> Run:
     sample = _sample(x, y)
     ends = [(max(0.0, p - MARGIN), min(100.0, p + MARGIN)) for p in percents]
     found = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
-    n = len(METRICS)
+    n = len(COMPILED)
     brackets = np.ascontiguousarray(found.T).reshape(n, len(percents), 2)
     room = int(ROOM * (x.shape[0] - 1) * (x.shape[1] - 1)) + 1
     return Run(brackets, np.zeros((n, len(percents), 4), dtype=np.int64), np.empty((n, len(percents), room)))
@@ -92,7 +92,7 @@ def _sample(x: Floats, y: Floats) -> Floats:
     fills about a hundredth of the tiles. Those at the sides reach beyond the grid, or its outermost cells
     would be in fewer tiles than the others. All of them side by side make one grid to run over.
     """
-    n = len(METRICS)
+    n = len(COMPILED)
     i, inside_i = _tiles(np.linspace(0, 1, TILES), x.shape[0] - 1)
     j, inside_j = _tiles(np.arange(TILES) * 0.6180339887498949 % 1.0, x.shape[1] - 1)
     tiles = (np.swapaxes(plane[i[:, :, None], j[:, None, :]], 0, 1) for plane in (x, y))

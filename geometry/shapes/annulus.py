@@ -12,7 +12,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.laws import stretch_arcs
+from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import Sampling
 
 
@@ -40,7 +40,7 @@ class Annulus:
             another topology, or a setting that the body has no use for.
         """
         if sampling.topology not in ("auto", "o"):
-            raise InputError("a body in a far field makes an O grid", "use --topology o", source=self.name)
+            raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
         found = self._body.boundary(replace(sampling, topology="o"))
         north = self._around(found.north)
         cut = straight(found.south[0], north[0], found.nj)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -27,14 +29,27 @@ def straight(a: Floats, b: Floats, n: int) -> Floats:
     return np.asarray(nodes)
 
 
-def _start(wall: Floats, centre: Floats) -> float:
-    """Return the angle (radians) of the first far-field node around a closed wall (ni, 2)."""
+TURNED = math.radians(10.0)
+"""A turn of the far field's start that is worth a note."""
+
+
+def _start(wall: Floats, centre: Floats) -> tuple[float, tuple[str, ...]]:
+    """Return the angle (radians) of the first far-field node around a closed wall (ni, 2), and a note of it."""
+    behind = _direction(wall, centre)
     try:
         lift, w, _ = lift_body(mirrored(wall[:-1]))
-    except InputError:  # no conformal map
-        return _direction(wall, centre)
+    except InputError:
+        return behind, (
+            "the far field begins straight behind the first wall node: there is no conformal map",
+        )
     lead = float(np.mean(w.imag - 2.0 * np.pi * np.arange(len(w)) / len(w)))
-    return -(float(np.angle(lift.quarter)) + lift.phase + lead)
+    start = -(float(np.angle(lift.quarter)) + lift.phase + lead)
+    turn = math.remainder(start - behind, 2.0 * math.pi)
+    if abs(turn) <= TURNED:
+        return start, ()
+    return start, (
+        f"the far field begins {math.degrees(turn):.1f} degrees from where the first wall node lies",
+    )
 
 
 def _direction(wall: Floats, centre: Floats) -> float:
@@ -51,6 +66,7 @@ def o_boundary(
     name: str = "",
     chord: float = 0.0,
     turned: bool = True,
+    notes: tuple[str, ...] = (),
 ) -> Boundary:
     """Return the O boundary of a closed wall within a circle.
 
@@ -64,13 +80,16 @@ def o_boundary(
     chord : its unit for spacings, see `Boundary`.
     turned : whether the far field begins where the map below says, or, for marches that bring their own, in
         the direction of the first node.
+    notes : see `Boundary`; a turn of more than `TURNED` is added.
 
     The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal
     map, which for a symmetric body is straight behind it: a grid in between is then not sheared. West and
     east are the straight cut from there to the wall.
     """
     middle = np.asarray(centre, dtype=np.float64)
-    start = _start(wall, middle) if turned else _direction(wall, middle)
+    start, more = _start(wall, middle) if turned else (_direction(wall, middle), ())
     north = far_circle(middle, radius, len(wall), start)
     cut = straight(wall[0], north[0], nj)
-    return Boundary(wall, north, cut, cut, topology="o", name=name, wall=curve, chord=chord)
+    return Boundary(
+        wall, north, cut, cut, topology="o", name=name, wall=curve, chord=chord, notes=(*notes, *more)
+    )

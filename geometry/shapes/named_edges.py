@@ -39,7 +39,7 @@ class Labelled:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary of the shape, each cell of it called as the edge nearest to its middle."""
         boundary = self._shape.boundary(sampling)
-        sides: tuple[Side, ...] = SIDES if boundary.topology == "quad" else ("south", "north")
+        sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
         parts = []
         for side in sides:
             nodes = getattr(boundary, side)

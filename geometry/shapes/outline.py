@@ -16,14 +16,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
-from meshonet.geometry.shapes.airfoil.clean import check_extent
 from meshonet.geometry.shapes.far_field import o_boundary
-from meshonet.geometry.spacing.laws import stretch_arcs
+from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 _LEAST_TURN = np.radians(30.0)
@@ -45,6 +46,9 @@ class Outline:
     InputError
         too few points, repeated ones, an outline that crosses itself or has no area.
     """
+
+    notes: tuple[str, ...] = ()
+    """What a reader passed over in its file, for those who sample it."""
 
     def __init__(
         self,
@@ -88,26 +92,28 @@ class Outline:
                 "topology c needs the trailing edge of an airfoil", "use o or quad", source=self.name
             )
         if sampling.le_spacing or sampling.te_spacing:
-            raise InputError("le_spacing and te_spacing need an airfoil", "leave them out", source=self.name)
+            raise InputError(
+                "{le_spacing} and {te_spacing} need an airfoil", "leave them out", source=self.name
+            )
         if sampling.te != "auto":
-            raise InputError("only an airfoil has a trailing edge", "leave --te out", source=self.name)
+            raise InputError("only an airfoil has a trailing edge", "leave {te} out", source=self.name)
         if sampling.wake or sampling.wake_nodes:
-            raise InputError("only an airfoil has a wake", "leave --wake out", source=self.name)
+            raise InputError("only an airfoil has a wake", "leave {wake} out", source=self.name)
         if sampling.normalise:
-            raise InputError("only an airfoil can be normalised", "leave --normalise out", source=self.name)
+            raise InputError("only an airfoil can be normalised", "leave {normalise} out", source=self.name)
         topology = self.topology if sampling.topology == "auto" else sampling.topology
         if sampling.corners is not None:
             if sampling.topology == "o":
                 raise InputError(
                     "an O grid has no corners",
-                    "leave --corners out, or add --topology quad",
+                    "leave {corners} out, or use {topology} quad",
                     source=self.name,
                 )
             topology = "quad"
         if topology == "quad" and sampling.far_field is not None:
             raise InputError(
                 "a four-sided domain has no far field",
-                "leave --far-field out, or add --topology o",
+                "leave {far_field} out, or use {topology} o",
                 source=self.name,
             )
         if topology == "quad" and sampling.spacing == "conformal":
@@ -175,7 +181,7 @@ class Outline:
         else:
             reach = [int(np.argmax(unit @ np.array(d))) for d in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             if len(set(reach)) < 4:
-                raise InputError("no four corners can be told", "name them with --corners", source=self.name)
+                raise InputError("no four corners stand out", "name them with {corners}", source=self.name)
             chosen = np.sort(np.array(reach))
         order = chosen if self._left else chosen[::-1]
         knots, length = self.curve.knots, self.curve.length
@@ -190,11 +196,13 @@ class Outline:
     def _body(self, sampling: Sampling) -> Boundary:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
         curve = self._clockwise()
-        wall = curve.at(self._around(curve, ni, sampling))
+        arcs, notes = self._around(curve, ni, sampling)
+        wall = curve.at(arcs)
         wall[-1] = wall[0]
         box = np.stack([curve.points.min(axis=0), curve.points.max(axis=0)])
         extent = float(np.ptp(box, axis=0).max())
-        return o_boundary(wall, nj, box.mean(axis=0), sampling.radius * extent, curve, self.name, extent)
+        radius = sampling.radius * extent
+        return o_boundary(wall, nj, box.mean(axis=0), radius, curve, self.name, extent, notes=notes)
 
     def _clockwise(self) -> Curve:
         """Return the curve clockwise from the rightmost place, the middle of a straight right side."""
@@ -212,17 +220,17 @@ class Outline:
             p, corner = np.roll(p, -inside, axis=0), np.roll(corner, -inside)
         return Curve(p, closed=True, corners=np.flatnonzero(corner))
 
-    def _around(self, curve: Curve, ni: int, sampling: Sampling) -> Floats:
-        """Return the arc lengths (ni,) of the nodes around a body."""
+    def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
+        """Return the arc lengths (ni,) of the nodes around a body, and a note where ``auto`` is not the usual."""
+        notes: tuple[str, ...] = ()
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
-            from meshonet.geometry.conformal.spacing import conformal_knots
-
             try:
-                return conformal_knots(curve, curve.corners[curve.corners > 0], ni)
-            except InputError:
+                return conformal_knots(curve, curve.corners[curve.corners > 0], ni), ()
+            except InputError as error:
                 if sampling.spacing == "conformal":
                     raise
-        return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing)
+                notes = (f"spacing uniform is used instead of conformal: {error.problem}",)
+        return stretch_arcs(curve, 0.0, 0.0, ni - 1, sampling.spacing), notes
 
 
 def _on_a_line(points: Floats, extent: float) -> bool:

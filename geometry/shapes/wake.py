@@ -14,19 +14,17 @@ r"""C boundaries: the cut behind a sharp trailing edge, and the far field around
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from itertools import pairwise
+from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import Patch, c_patches, wake_nodes
-from meshonet.geometry.curves.curve import Curve, resample_like
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growth_ratio
-from meshonet.geometry.spacing.sampling import TanhLaw
+from meshonet.geometry.spacing.laws import TanhLaw
 
 C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
@@ -44,7 +42,7 @@ _STEEPEST = math.radians(34.0)
 _LEAST_WALL = 5
 
 
-def wake_cells(ni: int, asked: int | None, first: float, length: float) -> int:
+def cells_of_wake(ni: int, asked: int | None, first: float, length: float) -> int:
     """Return the cells of the wake of a C grid with `ni` nodes along xi.
 
     Parameters
@@ -136,7 +134,7 @@ def _growing(first: float, length: float, cells: int) -> Floats:
         raise InputError(
             f"{cells} cells from {first:.3g} on along a wake of {length:.3g} would grow by more than "
             f"{LARGEST:g} each",
-            "use more nodes, --wake-nodes or a larger --te-spacing",
+            "use more nodes, {wake_nodes} or a larger {te_spacing}",
         ) from None
     k = np.arange(1.0, cells)
     shape = np.append(0.0, np.cumsum(-np.expm1(-k / _RAMP) * (1.0 + _LATE * (2.0 * k / cells - 1.0))))
@@ -185,7 +183,6 @@ def c_boundary(
     if behind <= 0 or abs(float((wake[-1] - centre) @ normal)) >= radius:
         raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
     north = _far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, behind)
-    ni = len(south)
     west, east = straight(south[0], north[0], nj), straight(south[-1], north[-1], nj)
     return Boundary(
         south,
@@ -193,45 +190,11 @@ def c_boundary(
         west,
         east,
         topology="c",
-        patches=c_patches(ni, nj, len(wake)),
         name=name,
         wall=curve,
         chord=chord,
         notes=notes,
     )
-
-
-def resampled(boundary: Boundary, ni: int, nj: int) -> Boundary:
-    """Return a C boundary with other counts, shared out over wall and wake as they are.
-
-    Raises
-    ------
-    InputError
-        no room for the wall.
-    """
-    had = max(wake_nodes(boundary.south), 1) - 1
-    wake = max(round(had * (ni - 1) / (boundary.ni - 1)), 1) if had else 0
-    cells = wake, ni - 1 - 2 * wake, wake
-    if cells[1] < 2:
-        raise InputError(f"{ni} nodes along a C boundary with a wake", f"use at least {2 * wake + 3}")
-    ends, places = (0, had, boundary.ni - 1 - had, boundary.ni - 1), (0, wake, ni - 1 - wake, ni - 1)
-
-    def along(side: Floats) -> Floats:
-        pieces = [side[a : b + 1] for a, b in pairwise(ends)]
-        made = [resample_like(p, n + 1, closed=False) for p, n in zip(pieces, cells, strict=True) if n]
-        return np.concatenate([*(part[:-1] for part in made[:-1]), made[-1]])
-
-    def moved(part: Patch) -> Patch:
-        law = (ends, places) if part.side in ("south", "north") else ((0, boundary.nj - 1), (0, nj - 1))
-        start, stop = (round(float(np.interp(k, *law))) for k in (part.start, part.stop))
-        start = min(start, law[1][-1] - 1)
-        return replace(part, start=start, stop=max(stop, start + 1))
-
-    south, north = along(boundary.south), along(boundary.north)
-    south[ni - 1 - wake :] = south[: wake + 1][::-1]
-    west, east = (resample_like(side, nj, closed=False) for side in (boundary.west, boundary.east))
-    parts = tuple(moved(part) for part in boundary.patches)
-    return replace(boundary, south=south, north=north, west=west, east=east, patches=parts, sensors=None)
 
 
 def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:

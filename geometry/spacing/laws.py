@@ -1,90 +1,155 @@
-"""Nodes along a stretch of any curve by one of the spacing laws, with the curve's corners on nodes."""
+"""Spacing laws: where the nodes of a stretch of curve go, from 0 to 1.
+
+A new law is a line in `LAWS`: its name is then accepted wherever spacings are.
+"""
 
 from __future__ import annotations
 
-from itertools import pairwise
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.sampling import (
-    Spacing,
-    monotone_cubic,
-    spacing_cosine,
-    spacing_tanh,
-    spacing_uniform,
-)
 
-MANY = 64
-"""More corners than this, and than a quarter of the cells, are the steps of a drawing: no node seeks them."""
+Spacing: TypeAlias = str
+"""Name of a law, a key of `LAWS`."""
 
 
-def stretch_arcs(
-    curve: Curve, begin: float, end: float, cells: int, spacing: Spacing, *, forward: bool = True
-) -> Floats:
-    """Return arc lengths (cells + 1,) on a closed curve from `begin` to `end`, all the way round when equal.
+@dataclass(frozen=True)
+class Law:
+    """A spacing law.
 
     Parameters
     ----------
-    curve : closed.
-    begin, end : arc lengths.
-    cells : wanted.
-    spacing : ``auto`` and ``uniform`` are equal steps.
-    forward : along the curve's own direction, else against it.
+    place : s(q), both 0 to 1, of a law that is the same along every stretch; None for those that depend on
+        the curve or on the cells at its ends.
+    sets_ends : the cells at the two ends of a stretch can be chosen.
     """
-    sign = 1.0 if forward else -1.0
-    length = (sign * (end - begin)) % curve.length or curve.length
-    if spacing == "curvature":
-        from meshonet.geometry.spacing.size_field import distances_by_curvature
 
-        distance = distances_by_curvature(curve, begin, sign * length, cells)
-    elif spacing == "cosine":
-        distance = length * spacing_cosine(cells + 1)
-    elif spacing == "tanh" and cells > 3:
-        distance = length * spacing_tanh(cells + 1, 0.25 / cells, 0.25 / cells)
-    else:
-        distance = length * spacing_uniform(cells + 1)
-    corners = np.sort((sign * (curve.corners - begin)) % curve.length)
-    tiny = 1e-12 * curve.length
-    corners = corners[(corners > tiny) & (corners < length - tiny)]
-    if len(corners) <= max(MANY, cells // 4):
-        distance = on_corners(distance, corners)
-    return begin + sign * distance
+    place: Callable[[Floats], Floats] | None = None
+    sets_ends: bool = False
 
 
-def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -> Floats:
-    """Return increasing distances (n,) moved along so that every corner (m,) is one of them.
+@dataclass(frozen=True)
+class TanhLaw:
+    """Vinokur's two-sided stretching s(q), both 0 to 1, from its slopes ds/dq at the two ends.
 
-    The nearest node of each corner is put on it; those between are shared out evenly in index. The first,
-    the last and the `fixed` nodes stay.
-
-    Raises
-    ------
-    InputError
-        more corners than nodes to put on them.
+    u = 1/2 + tanh(d (q - 1/2)) / (2 tanh(d/2)),  s = u / (a + (1 - a) u),
+    a = sqrt(end/start),  sinh(d)/d = 1/sqrt(start end); tan and sin where that is below 1.
+    Vinokur, J. Comput. Phys. 50 (1983) 215-234.
     """
-    if corners.size == 0:
-        return distance
-    last = len(distance) - 1
-    index = np.arange(last + 1.0)
-    place = np.interp(corners, distance, index)
-    stays = sorted({0, last, *fixed})
-    node = np.rint(place).astype(np.intp)
-    for low, high in pairwise(stays):
-        mine = np.flatnonzero((place > low) & (place < high))
-        room = high - low - 1
-        if len(mine) > room:
-            raise InputError(f"{len(corners)} corners do not fit on {last + 1} nodes", "use more nodes")
-        rank = np.arange(len(mine))
-        node[mine] = np.maximum.accumulate(np.maximum(node[mine], low + 1) - rank) + rank
-        back = np.minimum(node[mine], high - 1)[::-1] + rank
-        node[mine] = (np.minimum.accumulate(back) - rank)[::-1]
-    kept = np.concatenate([np.array(stays, dtype=np.float64), node])
-    order = np.argsort(kept)
-    source = np.concatenate([np.array(stays, dtype=np.float64), place])
-    out = monotone_cubic(index, distance, np.interp(index, kept[order], source[order]))
-    out[node] = corners
-    out[stays] = distance[stays]
-    return out
+
+    start: float
+    end: float
+
+    @property
+    def stretch(self) -> float:
+        """The d above, positive where tanh holds, negative where tan does, 0 for equal steps."""
+        b = 1.0 / math.sqrt(self.start * self.end)
+        if abs(b - 1.0) < 1e-9:
+            return 0.0
+        return _inverse_sinhc(b) if b > 1.0 else -_inverse_sinc(b)
+
+    def __call__(self, q: Floats) -> Floats:
+        """Return s at q (any shape)."""
+        a, d = math.sqrt(self.end / self.start), self.stretch
+        u = np.asarray(q, dtype=np.float64)
+        if d > 0:
+            u = 0.5 + 0.5 * np.tanh(d * (u - 0.5)) / math.tanh(0.5 * d)
+        elif d < 0:
+            u = 0.5 + 0.5 * np.tan(d * (u - 0.5)) / math.tan(0.5 * d)
+        s = u / (a + (1.0 - a) * u)
+        return np.asarray(np.where(np.asarray(q) >= 1.0, 1.0, np.where(np.asarray(q) <= 0.0, 0.0, s)))
+
+    def _end_steps(self, low_q: float, high_q: float) -> tuple[float, float]:
+        """Return s at `low_q` and 1 - s at 1 - `high_q`, both small, without loss of digits."""
+        a, d = math.sqrt(self.end / self.start), self.stretch
+        low, high = (_small_u(d, q) for q in (low_q, high_q))
+        return low / (a + (1.0 - a) * low), a * high / (1.0 - (1.0 - a) * high)
+
+    @classmethod
+    def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
+        """Return the law whose first step of `cells` is `first` and whose last is `last`, to 1e-6 of them.
+
+        Parameters
+        ----------
+        cells : steps from 0 to 1; need not be whole when the last one goes on beyond 1.
+        first, last : parts of the whole.
+        last_part : how much of the last step lies before 1 (1 or 0.5).
+
+        Raises
+        ------
+        InputError
+            the steps do not fit: they are too large together, or too few nodes lie between them.
+        """
+        start, end = first * cells, last * cells
+        for _ in range(60):
+            law = cls(start, end)
+            begin, close = law._end_steps(1.0 / cells, last_part / cells)
+            rise, fall = first / begin, last * last_part / close
+            if max(abs(rise - 1.0), abs(fall - 1.0)) < 1e-6:
+                return law
+            start, end = start * min(max(rise, 0.25), 4.0), end * min(max(fall, 0.25), 4.0)
+        raise InputError(
+            f"steps of {first:.3g} and {last:.3g} of the length do not join over {cells:g} cells",
+            "change the spacing or the number of nodes",
+        )
+
+
+def _small_u(d: float, q: float) -> float:
+    """Return Vinokur's u at q, for q near 0: 1/2 - tanh(d/2 - d q) / (2 tanh(d/2)) without the difference."""
+    if d == 0:
+        return q
+    if d > 0:
+        return 0.5 * math.sinh(d * q) / (math.sinh(0.5 * d) * math.cosh(d * (0.5 - q)))
+    return 0.5 * math.sin(-d * q) / (math.sin(-0.5 * d) * math.cos(d * (0.5 - q)))
+
+
+def _inverse_sinhc(b: float) -> float:
+    """Return d with sinh(d)/d = b > 1, by Newton's method on the logarithm."""
+    d = math.sqrt(6.0 * (b - 1.0)) if b < 3.0 else math.log(2.0 * b) + math.log(math.log(2.0 * b))
+    for _ in range(40):
+        d = min(d, 700.0)
+        step = (math.log(math.sinh(d) / d) - math.log(b)) / (1.0 / math.tanh(d) - 1.0 / d)
+        d -= step
+        if abs(step) < 1e-13 * d:
+            break
+    return d
+
+
+def _inverse_sinc(b: float) -> float:
+    """Return d below pi with sin(d)/d = b < 1, by Newton's method on sin(d) - b d."""
+    d = math.pi * (1.0 - b) if b < 0.27 else math.sqrt(6.0 * (1.0 - b))
+    for _ in range(40):
+        step = (math.sin(d) - b * d) / (math.cos(d) - b)
+        d = min(max(d - step, 0.5 * d), 0.5 * (d + math.pi))
+        if abs(step) < 1e-14 * d:
+            break
+    return d
+
+
+def spacing_tanh(n: int, first: float, last: float) -> Floats:
+    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`).
+
+    Examples
+    --------
+    >>> steps = np.diff(spacing_tanh(21, 0.01, 0.02))
+    >>> [float(round(step, 6)) for step in (steps[0], steps[-1])]
+    [0.01, 0.02]
+    """
+    return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))
+
+
+LAWS: dict[str, Law] = {
+    "auto": Law(sets_ends=True),  # conformal where there is such a map, else tanh or uniform
+    "conformal": Law(),  # equal angles of the circle that the body is an image of
+    "uniform": Law(lambda q: q),
+    "cosine": Law(lambda q: np.asarray(np.sin(0.5 * np.pi * q) ** 2), sets_ends=True),
+    "tanh": Law(sets_ends=True),
+    "curvature": Law(sets_ends=True),  # `meshonet.geometry.spacing.size_field`
+}
+SPACINGS: tuple[Spacing, ...] = tuple(LAWS)

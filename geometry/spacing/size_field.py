@@ -9,7 +9,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.geometry.curves.monotone import monotone_cubic
 
 GROWTH = math.log(1.10)
 """How fast a cell may grow along the wall: by 10 % from one to the next."""

@@ -87,7 +87,8 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     patience = Patience()
     left = _repair_nested(nodes, periodic, patience)
     left = left and _repair_windows(nodes, periodic, patience, NESTED_MARGINS, nested=True)
-    poor = np.argwhere(per_cell(Grid(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR)
+    grid = Grid.from_nodes(nodes, "o" if periodic else "quad")
+    poor = np.argwhere(per_cell(grid, "scaled_jacobian") < POOR)
     if left == 0 and _few(len(poor), nodes):
         _smooth_windows(nodes, periodic, poor, margin)
     return left

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.boundary import polygon_area
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.energy.functional import Weights
 from meshonet.solvers.energy.preconditioner import Descent
 

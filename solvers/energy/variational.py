@@ -16,13 +16,14 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
+from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.elliptic.kinks import sweep_kinks
 from meshonet.solvers.energy.descent import descend, in_cells, listener_of, stiffness_of
 from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, value
 from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.iteration import check_settings, initial_nodes
-from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
 
 COARSEST = 17

@@ -12,7 +12,6 @@ from dataclasses import replace
 import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.hyperbolic.march import hyperbolic
@@ -30,7 +29,7 @@ STEEPEST = 1.3
 
 def first_cell(boundary: Boundary) -> float:
     """Return the height of first cells, in the unit of a C `boundary`."""
-    behind = max(wake_nodes(boundary.south), 1) - 1
+    behind = boundary.wake
     wall = boundary.south[behind : boundary.ni - behind]
     smallest = float(np.hypot(*np.diff(wall, axis=0).T).min())
     away = float(np.hypot(*(boundary.west[-1] - boundary.west[0])))

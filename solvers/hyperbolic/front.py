@@ -14,8 +14,8 @@ import math
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, planar_nodes
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.hyperbolic.level_spacing import Edge, sharpest_edge
 
 _OPENING = 5.0
@@ -57,7 +57,7 @@ class Front:
             return
         sides = boundary.west[-1] - boundary.west[0], boundary.east[-1] - boundary.east[0]
         self.ends = np.array([side / np.hypot(*side) for side in sides])
-        self._wake = max(wake_nodes(self._south), 1)
+        self._wake = boundary.wake + 1
         edge = self._south[self._wake - 1]
         behind = np.hypot(*(self._south[: self._wake] - edge).T) / boundary.chord
         opening = 1.0 + _OPENING * behind**2 / (behind + _NEAR)

@@ -21,7 +21,6 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
@@ -111,11 +110,13 @@ def hyperbolic(
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
     """Raise InputError unless `wall_spacing` (chords) and `growth` are values that `hyperbolic` takes."""
     if not 1e-9 <= wall_spacing <= 0.1:
-        raise InputError(f"a wall spacing of {wall_spacing:g} chords", "use 1e-9 to 0.1")
+        problem = f"a first cell of {wall_spacing:g} chords"
+        raise InputError(problem, "use 1e-9 to 0.1", parameter="first_cell")
     if growth is not None and not 1.0 < growth <= MOST_GROWTH:
         raise InputError(
             f"a growth of {growth:g}",
             f"give the ratio of neighbouring cells, such as 1.15, at most {MOST_GROWTH:g}",
+            parameter="growth",
         )
 
 
@@ -234,12 +235,13 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
         seconds={"grid": time.perf_counter() - begun},
         notes=(_first_cell_note(boundary, nodes, first),),
         boundary=edges,
+        first_cells={"south": first},
     )
 
 
 def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
     """Return the heights of the first cells and the growth of rows, as a note."""
-    behind = max(wake_nodes(boundary.south) - 1, 0) if boundary.topology == "c" else 0
+    behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)
     if np.abs(heights / first - 1.0).max() > 1e-6:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
@@ -57,7 +57,7 @@ class Heights:
             )
 
     @property
-    def by_side(self) -> dict[Side, float]:
+    def by_side(self) -> dict[str, float]:
         """The heights that are not 0, by side."""
         return {side: height for side in SIDES if (height := getattr(self, side))}
 

@@ -15,15 +15,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Floats, as_planar, planar_nodes
+from meshonet.geometry.arrays import Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import default_patches
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
-from meshonet.geometry.spacing.laws import on_corners
-from meshonet.geometry.spacing.sampling import monotone_cubic
 from meshonet.kernels._native import layer_lines, redistribute
 from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
 from meshonet.solvers.layers.first_cells import (
@@ -33,7 +33,6 @@ from meshonet.solvers.layers.first_cells import (
     check_fit,
     edge_in_layers,
 )
-from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
 FADE_NODES = 12.0
@@ -54,7 +53,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
 
     Parameters
     ----------
-    solution : a quad or O grid, best with even rows.
+    solution : a quad or O grid, valid and best with even rows.
     boundary : what it was made for.
     heights : of the first cells.
 
@@ -69,7 +68,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         heights that the boundary cannot have, or more growth than allowed.
     """
     check_fit(heights, boundary)
-    grid, path = guard(solution.grid, boundary, allow_invalid=True)
+    grid = solution.grid
     nodes = grid.nodes
     if heights.west or heights.east:
         nodes = _along_xi(nodes, boundary, heights)
@@ -86,13 +85,13 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
     )
-    asked = {f"spacing_{side}": height for side in SIDES if (height := getattr(heights, side))}
-    facts = {**grid.provenance, **asked}
+    first_cells = heights.by_side
+    facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights}, at every node there"
     note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""
     return replace(
         solution,
-        path=(*solution.path, *path),
+        first_cells=first_cells,
         grid=Grid.from_nodes(nodes, grid.topology, edges.patches, grid.name, facts),
         boundary=edges,
         notes=(*solution.notes, note),
@@ -103,7 +102,7 @@ def _parts(boundary: Boundary, nodes: Floats) -> tuple:  # type: ignore[type-arg
     """Return the parts of `boundary` when they do not depend on its counts of rows, else the defaults."""
     if all(part.side in ("south", "north") for part in boundary.patches):
         return boundary.patches
-    return default_patches(boundary.topology, *nodes.shape[:2])
+    return default_patches(boundary.topology, nodes.shape[0], nodes.shape[1], boundary.wake)
 
 
 def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Floats, float]:
@@ -209,11 +208,10 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
     view[..., 0], view[..., 1] = planes
 
 
-def worst_first_cell(grid: Grid) -> float:
-    """Return the largest relative error of the first cells that the making of `grid` asked for."""
-    asked = {side: grid.provenance.get(f"spacing_{side}") for side in SIDES}
-    asked["south"] = asked["south"] or grid.provenance.get("wall_spacing")
-    return max((first_cell_error(grid.nodes, side, float(h)) for side, h in asked.items() if h), default=0.0)
+def worst_first_cell(solution: Solution) -> float:
+    """Return the largest relative error of the first cells that `solution` was to have."""
+    nodes, heights = solution.grid.nodes, solution.first_cells
+    return max((first_cell_error(nodes, side, height) for side, height in heights.items()), default=0.0)
 
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:

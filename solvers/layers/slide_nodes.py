@@ -16,9 +16,9 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.laws import on_corners
-from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.wall_lines import leaning, lines_off

@@ -1,7 +1,6 @@
 """`meshonet convert`."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -148,7 +147,7 @@ def test_planes_say_how_many_layers(meshonet: Meshonet, grid_vts: Path) -> None:
 def test_normalise_gives_unit_chord(meshonet: Meshonet) -> None:
     meshonet("tfi", "naca:0012", "--res", "41x9", "-o", "grid.vts")
     (grid,) = read_grids("grid.vts")
-    moved = replace(grid, nodes=3 * grid.nodes @ np.array([[0.8, -0.6], [0.6, 0.8]]) + (5, -2))
+    moved = grid.with_nodes(3 * grid.nodes @ np.array([[0.8, -0.6], [0.6, 0.8]]) + (5, -2))
     write("moved.vts", [moved])
     assert meshonet("convert", "moved.vts", "back.vts", "--normalise").code == 0
     (back,) = read_grids("back.vts")
@@ -193,7 +192,7 @@ def test_a_pipe_needs_no_file(meshonet: Meshonet, process: Process, grid_vts: Pa
         (("grid.vts", "grid.abc"), "its ending '.abc' is not known; choose the format with --to"),
         (("grid.vts", "grid.p3d", "--extrude", "0"), "--extrude: height 0 is not positive"),
         (("grid.vts", "grid.p3d", "--extrude", "inf"), "--extrude: height inf is not positive"),
-        (("grid.vts", "grid.p3d", "--planes", "3"), "--planes: there is no height; add --extrude H"),
+        (("grid.vts", "grid.p3d", "--planes", "3"), "--planes: there is no height; give --extrude as well"),
         (("grid.vts", "grid.p3d", "--extrude", "1", "--planes", "1"), "'--planes': 1 is not in the range"),
         (("grid.vts", "grid.h5", "--extrude", "1"), "hdf5 holds flat grids only; write one of"),
         (("missing.vts", "grid.p3d"), "missing.vts: no such file"),

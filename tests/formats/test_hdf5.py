@@ -204,7 +204,7 @@ CASES = {
     "f['nodes'][0, 2, 3, 1] = np.inf": "sample 0: node i=2, j=3 has y = inf; check the file",
     "del f['names']; f['names'] = np.arange(3)": "dataset 'names' is not a list of texts; store strings",
     "f['parts'] = ['{']": r"sample 0: its parts are not a JSON list of \[name, side, start, stop\]; remove",
-    "f['parts'] = ['[[\"a\", \"south\", 0, 99]]']": "sample 0: part 'a' runs from node 0 to 99 of a side",
+    "f['parts'] = ['[[\"a\", \"south\", 0, 99]]']": "sample 0: patch 'a' runs from node 0 to 99 of a side",
     "f['provenance'] = ['[1]']": "sample 0: provenance is not a JSON object; remove",
     "f['provenance'] = ['{']": "sample 0: .*; write the dataset again",
     "f['parameters'] = np.zeros((4, 2))": "'parameters' has another count than 'south'; give one",

@@ -4,8 +4,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sections import STATIONS, farthest, selig, surfaces
 
-from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.spacing.sampling import Sampling
@@ -83,7 +83,7 @@ def test_a_symmetric_section_gets_symmetric_nodes(ni, spacing, base):
 def test_wall_nodes_are_points_of_the_curve_bitwise():
     airfoil = Airfoil(selig(0.12, 0.02, 0.003))
     boundary = airfoil.boundary(Sampling(ni=101, nj=11, spacing="tanh"))
-    from meshonet.geometry.spacing.airfoil import Stations, wall_arcs
+    from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 
     stations = Stations(airfoil.curve, *airfoil._arcs, airfoil.chord, airfoil.nose_radius)
     nodes = boundary.wall.at(wall_arcs(stations, 101, Sampling(spacing="tanh")))

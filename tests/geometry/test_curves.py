@@ -4,8 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sections import STATIONS, selig
 
-from meshonet.geometry.curves.curve import Curve, resample_like
+from meshonet.geometry.blocks.resample import resample_edge
+from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.family import family
 
 
 def circle(n: int, turns: float = 1.0) -> np.ndarray:
@@ -153,7 +155,7 @@ def test_refuses_a_corner_that_does_not_exist():
 def test_resampling_keeps_the_spacing_law():
     q = np.linspace(0, 1, 31)
     nodes = np.stack([q**2, np.zeros(31)], axis=1)
-    out = resample_like(nodes, 91, closed=False)
+    out = resample_edge(nodes, 91, closed=False)
     np.testing.assert_allclose(out[:, 0], np.linspace(0, 1, 91) ** 2, atol=2e-4)
     np.testing.assert_array_equal(out[[0, -1]], nodes[[0, -1]])
 
@@ -161,13 +163,13 @@ def test_resampling_keeps_the_spacing_law():
 def test_resampling_keeps_corners_on_nodes():
     nodes = np.concatenate([np.linspace([0, 0], [1, 0], 11)[:-1], np.linspace([1, 0], [1, 2], 21)])
     for m in (7, 16, 100):
-        out = resample_like(nodes, m, closed=False)
+        out = resample_edge(nodes, m, closed=False)
         assert np.hypot(*(out - [1, 0]).T).min() == 0
 
 
 def test_resampling_a_closed_edge_stays_closed_and_keeps_its_start():
     nodes = np.concatenate([circle(40), circle(40)[:1]])
-    out = resample_like(nodes, 101, closed=True)
+    out = resample_edge(nodes, 101, closed=True)
     np.testing.assert_array_equal(out[0], nodes[0])
     np.testing.assert_array_equal(out[-1], nodes[0])
     np.testing.assert_allclose(np.hypot(*out.T), 1, atol=1e-5)
@@ -175,4 +177,12 @@ def test_resampling_a_closed_edge_stays_closed_and_keeps_its_start():
 
 def test_resampling_to_the_same_count_changes_next_to_nothing():
     nodes = circle(30, 0.7)
-    np.testing.assert_allclose(resample_like(nodes, 30, closed=False), nodes, atol=1e-12)
+    np.testing.assert_allclose(resample_edge(nodes, 30, closed=False), nodes, atol=1e-12)
+
+
+def test_arrays_that_are_kept_cannot_be_written() -> None:
+    curve = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]), closed=True)
+    boundary = family("arch").boundary(0.2, 11, 11)
+    for kept in (curve.points, curve.knots, curve.corners, curve.corner_index, boundary.corners["south"]):
+        with pytest.raises(ValueError, match="read-only"):
+            kept[...] = 0

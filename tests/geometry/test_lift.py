@@ -81,7 +81,7 @@ def test_a_sharp_edge_is_one_corner_and_a_blunt_edge_two() -> None:
 
 
 def test_too_few_nodes_are_refused_with_a_remedy() -> None:
-    with pytest.raises(InputError, match="7 nodes; the operator needs at least 8"):
+    with pytest.raises(InputError, match="7 nodes; use at least 8"):
         lift_body(ellipse(1.0, 0.5, 7))
 
 

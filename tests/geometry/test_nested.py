@@ -33,7 +33,7 @@ def test_parts_keep_their_places() -> None:
         Patch("wall", "north", 0, 6),
     )
     with pytest.raises(
-        InputError, match="part 'step' ends at node 4 of south, which every 3-th leaves out; make"
+        InputError, match="patch 'step' ends at node 4 of south, which every 3-th leaves out; make"
     ):
         coarser_grid(Grid.from_nodes(lattice(13, 7), patches=parts), 3)
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
 

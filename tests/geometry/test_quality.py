@@ -236,3 +236,19 @@ def test_nodes_that_are_no_numbers_count_as_folded() -> None:
 def test_an_unknown_metric_is_refused_with_the_known_ones() -> None:
     with pytest.raises(InputError, match="'beauty' is not known; use one of max_angle, min_angle"):
         per_cell(shaken(), "beauty")
+
+
+def test_a_metric_with_a_function_of_its_own_is_measured_like_the_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    from meshonet.geometry.quality import measure as module
+    from meshonet.geometry.quality.metrics import METRICS, Metric
+
+    extent = Metric("extent", "", "max", "i plus j", lambda grid: grid.x[:-1, :-1] + grid.y[:-1, :-1])
+    monkeypatch.setattr(module, "METRICS", (*METRICS, extent))
+    monkeypatch.setattr(module, "NAMES", (*(metric.name for metric in METRICS), "extent"))
+    nodes = np.stack(np.meshgrid(np.arange(4.0), np.arange(6.0), indexing="ij"), axis=-1)
+    grid = Grid.from_nodes(nodes)
+    found = measure(grid, percentiles=True)["extent"]
+    assert (found.min, found.max, found.worst, found.p99) == (0.0, 6.0, (2, 4), pytest.approx(5.86))
+    assert per_cell(grid, "extent").shape == (3, 5)

@@ -1,9 +1,11 @@
 """Where a grid meets itself."""
 
 import numpy as np
+import pytest
 
-from meshonet.geometry.blocks.connection import across_wake, beyond_seam, wake_cells
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.growth import across_wake, beyond_seam
 from meshonet.geometry.quality.measure import per_cell
 
 
@@ -20,12 +22,13 @@ def c_grid(wake: int = 4, around: int = 9, nj: int = 5, growth: float = 1.5) -> 
 
 
 def test_the_wake_is_where_nodes_coincide() -> None:
-    assert wake_cells(c_grid(wake=4)) == 4
-    assert wake_cells(c_grid(wake=1)) == 1
-    assert wake_cells(Grid.from_nodes(c_grid().nodes, "quad")) == 0
+    assert c_grid(wake=4).wake == 4
+    assert c_grid(wake=1).wake == 1
+    assert Grid.from_nodes(c_grid().nodes, "quad").wake == 0
     open_everywhere = c_grid().nodes.copy()
     open_everywhere[0, 0, 0] += 1e-12
-    assert wake_cells(Grid.from_nodes(open_everywhere, "c")) == 0
+    with pytest.raises(InputError, match="does not begin and end with the nodes of a wake; make both sides"):
+        Grid.from_nodes(open_everywhere, "c")
 
 
 def test_lines_go_across_the_wake() -> None:

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from sections import STATIONS, selig, surfaces
 
-from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.airfoil.clean import clean_section
 
 SHARP, BLUNT = selig(0.12, 0.03), selig(0.12, 0.03, base=0.01)

@@ -3,7 +3,7 @@ import pytest
 
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.spacing.laws import on_corners, stretch_arcs
+from meshonet.geometry.spacing.along_curve import on_corners, stretch_arcs
 
 SQUARE = Curve(np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), closed=True)
 

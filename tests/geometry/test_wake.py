@@ -8,7 +8,7 @@ import pytest
 from sections import selig
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
@@ -162,7 +162,7 @@ def test_parts_nobody_named_are_told_by_the_nodes() -> None:
     [
         (
             {"te": "exact"},
-            "a C grid needs a sharp trailing edge; close it with --te wedge, or use topology o",
+            "a C grid needs a sharp trailing edge; close it with te wedge, or use topology o",
         ),
         ({"te": "round"}, "a C grid needs a sharp trailing edge"),
         (
@@ -191,7 +191,7 @@ def test_the_chord_of_a_boundary_from_elsewhere_is_that_of_the_body_not_of_the_w
 
 @pytest.mark.parametrize("asked", [{"wake": 5.0}, {"wake_nodes": 20}])
 def test_a_wake_asked_of_an_o_grid_is_not_ignored(asked: dict[str, Any]) -> None:
-    with pytest.raises(InputError, match="an O grid has no wake; leave --wake out, or add --topology c"):
+    with pytest.raises(InputError, match="an O grid has no wake; leave wake out, or use topology c"):
         naca("0012").boundary(Sampling(ni=60, nj=20, topology="o", **asked))
     with pytest.raises(InputError, match="an O grid has no wake"):
         naca("0012").boundary(Sampling(ni=60, nj=20, viscous=True, **asked))  # blunt: an O by itself
@@ -199,6 +199,6 @@ def test_a_wake_asked_of_an_o_grid_is_not_ignored(asked: dict[str, Any]) -> None
 
 def test_a_wake_of_too_few_nodes_says_what_to_change() -> None:
     with pytest.raises(
-        InputError, match=r"2 cells from .* would grow by more than 10 each; use more nodes, --wake"
+        InputError, match=r"2 cells from .* would grow by more than 10 each; use more nodes, wake_nodes"
     ):
         c(wake_nodes=3)

@@ -5,13 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from meshonet.geometry.blocks.patches import wake_nodes
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_unasked
-from meshonet.solvers.pipeline.select import solve_automatic
+from meshonet.solvers.method import method_named
+from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 
 
 @pytest.mark.parametrize(("section", "te"), [("0012", "wedge"), ("4415", "wedge"), ("23012", "wedge")])
@@ -26,7 +25,7 @@ def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, re
     assert angle.max < 125
     assert angle.mean < 94
     np.testing.assert_array_equal(nodes[:, 0], boundary.south)
-    behind = wake_nodes(boundary.south) - 1
+    behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*np.diff(wall, axis=1).T).T
     np.testing.assert_allclose(heights[:, 0], first_cell(boundary), rtol=1e-7)
@@ -36,7 +35,7 @@ def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, re
 def test_first_cells_are_a_part_of_the_smallest_and_larger_with_few_rows() -> None:
     def over_the_smallest(nj: int) -> float:
         boundary = naca("2412").boundary(Sampling(160, nj, "c"))
-        behind = wake_nodes(boundary.south) - 1
+        behind = boundary.wake
         wall = boundary.south[behind : boundary.ni - behind]
         return first_cell(boundary) / np.hypot(*np.diff(wall, axis=0).T).min()
 
@@ -54,8 +53,8 @@ def test_given_far_fields_and_very_few_rows_are_left_to_the_variational_method()
     few = naca("0012").boundary(Sampling(100, 30, "c"))
     for one in given, few:
         assert march_unasked(one) is None
-        found = solve_automatic(one, solve, "auto")
+        found = elliptic().solve([one])[0]
         assert found.method == "variational"
         np.testing.assert_array_equal(found.grid.nodes[:, -1], one.north)
-    assert solve_automatic(boundary, solve, "auto").method == "hyperbolic"
-    assert solve_automatic(boundary, solve, "winslow").method == "winslow"
+    assert elliptic().solve([boundary])[0].method == "hyperbolic"
+    assert fewer_on_quads(method_named("winslow")).solve([boundary])[0].method == "winslow"

@@ -7,10 +7,10 @@ import pytest
 from march_shapes import airfoil, circle, deviation, ellipse, first_cells
 
 from meshonet.geometry.arrays import Floats, Topology
-from meshonet.geometry.blocks.boundary import Boundary, polygon_area
-from meshonet.geometry.blocks.patches import wake_nodes
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.families import procedural
+from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
@@ -146,8 +146,8 @@ def test_three_nodes_are_enough_two_rows_are_not() -> None:
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        ({"wall_spacing": 0.0}, "a wall spacing of 0 chords; use 1e-9 to 0.1"),
-        ({"wall_spacing": float("nan")}, "a wall spacing of nan chords; use 1e-9 to 0.1"),
+        ({"wall_spacing": 0.0}, "a first cell of 0 chords; use 1e-9 to 0.1"),
+        ({"wall_spacing": float("nan")}, "a first cell of nan chords; use 1e-9 to 0.1"),
         (
             {"wall_spacing": 1e-5, "growth": 0.2},
             "a growth of 0.2; give the ratio of neighbouring cells, such as",
@@ -228,7 +228,8 @@ def test_bodies_that_are_no_airfoils_get_valid_grids(name: str, height: float) -
     boundary = Outline(BODIES[name]).boundary(Sampling(241, 100, topology="o"))
     solution = hyperbolic(boundary, wall_spacing=height)
     assert solution.boundary is not None
-    grid, path = guard(solution.grid, solution.boundary)
+    made = guard(solution, boundary)
+    grid, path = made.grid, made.path
     assert count_folded(grid.nodes) == 0
     np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
     if not path:
@@ -241,10 +242,11 @@ def test_folded_cells_of_a_march_are_repaired_by_the_guard(topology: Topology) -
     solution = hyperbolic(boundary, wall_spacing=1e-3)
     nodes = solution.grid.nodes.copy(order="K")
     nodes[30, 20] += 2.5 * (nodes[31, 20] - nodes[30, 20])
-    folded = replace(solution.grid, nodes=nodes)
+    folded = solution.grid.with_nodes(nodes)
     assert count_folded(nodes) > 0
     assert solution.boundary is not None
-    grid, path = guard(folded, solution.boundary)
+    made = guard(replace(solution, grid=folded), boundary)
+    grid, path = made.grid, made.path
     assert path == ("repair",)
     assert count_folded(grid.nodes) == 0
     np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
@@ -270,7 +272,7 @@ def test_constant_layers_are_equal_at_every_wall_node(topology: Topology, te: st
     wall = naca("4415").boundary(Sampling(160, 70, topology, "curvature", te=te))  # type: ignore[arg-type]
     nodes = hyperbolic(wall, wall_spacing=1e-5, constant=6).grid.nodes
     height = np.hypot(*np.moveaxis(np.diff(nodes, axis=1), -1, 0))
-    behind = max(wake_nodes(wall.south) - 1, 0) if topology == "c" else 0
+    behind = wall.wake
     at_wall = height[behind : len(height) - behind]
     np.testing.assert_allclose(at_wall[:, 1:6], np.repeat(at_wall[:, :1], 5, axis=1), rtol=1e-6)
     assert (at_wall[:, 6:] / at_wall[:, 5:-1]).min() > 0.8

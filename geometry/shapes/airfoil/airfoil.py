@@ -17,9 +17,9 @@ from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing,
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section, clean_section
 from meshonet.geometry.shapes.airfoil.te_fillet import rounded_base
 from meshonet.geometry.shapes.airfoil.te_wedge import wedged_base
+from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
-from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, wake_axis, wake_cells
-from meshonet.geometry.spacing.airfoil import Stations, wall_arcs
+from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 __all__ = ["SHARP_GAP", "Airfoil"]
@@ -53,6 +53,7 @@ class Airfoil:
     ----------
     points : (n, 2) around the section, any unit, either way, from any start (`meshonet.geometry.shapes.airfoil.clean`).
     name : what the input called it.
+    notes : what was changed of it before.
     places : (n,) where each point stands in its source, such as ``line 12``, for messages.
 
     Raises
@@ -74,11 +75,17 @@ class Airfoil:
     blunt: bool
     """The trailing edge is a straight base; a gap below `SHARP_GAP` chords has been closed at its middle."""
 
-    def __init__(self, points: Floats, name: str = "", places: Sequence[str] = ()) -> None:
+    notes: tuple[str, ...]
+    """What was changed of the given points: one sentence each."""
+
+    def __init__(
+        self, points: Floats, name: str = "", places: Sequence[str] = (), notes: tuple[str, ...] = ()
+    ) -> None:
         self.name, self._round = name, False
         self._section = section = clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
-        self.curve = _fitted(section, places)
+        self.curve, changes = _fitted(section, places)
+        self.notes = tuple(dict.fromkeys((*notes, *changes)))
         self.trailing_edge = self.curve.points[0]
         arc = _farthest(self.curve, self.trailing_edge)
         self.leading_edge = self.curve.at(np.array([arc]))[0]
@@ -121,7 +128,8 @@ class Airfoil:
         """Return the same airfoil turned, scaled and moved to have its edges at (0, 0) and (1, 0)."""
         axis = (self.trailing_edge - self.leading_edge) / self.chord**2
         off = self.curve.points[1 if self.blunt else 0 :] - self.leading_edge
-        return Airfoil(np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1), self.name)
+        points = np.stack([off @ axis, off @ np.array([-axis[1], axis[0]])], axis=1)
+        return Airfoil(points, self.name, notes=self.notes)
 
     def rounded(self) -> Airfoil:
         """Return the same airfoil with the corners of its blunt base rounded off (`meshonet.geometry.shapes.airfoil.te_fillet`)."""
@@ -137,7 +145,7 @@ class Airfoil:
     def moved_apart(self) -> Airfoil:
         """Return the same airfoil with surfaces at least 9e-5 chords apart where they all but touch."""
         section = self._section.moved_apart()
-        return Airfoil(section.points, self.name)
+        return Airfoil(section.points, self.name, notes=(*self.notes, _moved(self._section, section)))
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
         """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
@@ -147,18 +155,31 @@ class Airfoil:
         InputError
             fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
         """
+        return self._wall(ni, sampling)[0]
+
+    def _wall(self, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
+        """Return what `wall` does, and a note where ``auto`` spacing is not the usual one."""
+        if sampling.spacing != "auto":
+            return self._nodes(ni, sampling), ()
+        tanh, notes = replace(sampling, spacing="tanh"), ()
+        if sampling.le_spacing is None and sampling.te_spacing is None:
+            try:
+                return self._nodes(ni, replace(sampling, spacing="conformal")), ()
+            except InputError as error:
+                notes = (f"spacing tanh is used instead of conformal: {error.problem}",)
+        return self._nodes(ni, tanh), notes
+
+    def _nodes(self, ni: int, sampling: Sampling) -> Floats:
         stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
         nodes = self.curve.at(wall_arcs(stations, ni, sampling))
         nodes[-1] = nodes[0]
         crossing = find_crossing(nodes[:-1])
-        if crossing is None:
-            return nodes
-        if sampling.spacing == "auto":  # where one distribution cuts through a thin edge another may not
-            return self.wall(ni, replace(sampling, spacing="tanh"))
-        raise CrossingError(
-            f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
-            "use more nodes where the section is thin",
-        )
+        if crossing is not None:
+            raise CrossingError(
+                f"the wall of {ni} nodes crosses itself at ({crossing.x:.6g}, {crossing.y:.6g})",
+                "use more nodes where the section is thin",
+            )
+        return nodes
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return this wall in a far field: a circle (o), or half of one and a wake behind the body (c).
@@ -174,7 +195,7 @@ class Airfoil:
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")
         if sampling.corners is not None:
-            raise InputError("an airfoil has no corners to choose", "leave --corners out")
+            raise InputError("an airfoil has no corners to choose", "leave {corners} out")
         body = self.normalised() if sampling.normalise else self
         try:
             return body._around(sampling)
@@ -189,7 +210,7 @@ class Airfoil:
         step = 0.01 * self.chord
         a, b, c, d = self.curve.at(np.array([first, first + step, last - step, last]))
         ways = (a - b) / np.hypot(*(a - b)), (d - c) / np.hypot(*(d - c))
-        return Airfoil(wedged_base(self.curve.points[1:], ways), self.name)
+        return Airfoil(wedged_base(self.curve.points[1:], ways), self.name, notes=self.notes)
 
     def _around(self, sampling: Sampling) -> Boundary:
         topology, te = sampling.topology, sampling.te
@@ -201,35 +222,42 @@ class Airfoil:
             topology = "c" if sampling.viscous and sharp else "o"
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
             raise InputError(
-                "an O grid has no wake", "leave --wake out, or add --topology c", source=self.name
+                "an O grid has no wake", "leave {wake} out, or use {topology} c", source=self.name
             )
-        notes: tuple[str, ...] = ()
+        notes = body.notes
         if te == "wedge" and self.blunt:
             length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
-            notes = (
+            notes += (
                 f"the outline is changed: its base, {self.gap / self.chord:.3g} chords wide, is closed by a "
                 f"wedge {length:.3g} chords long",
             )
         if topology == "c":
             return body._c_boundary(sampling, self, notes)
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
-        wall = body.wall(sampling.ni or DEFAULT_NI, sampling)
+        wall, replaced = body._wall(sampling.ni or DEFAULT_NI, sampling)
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
-        found = o_boundary(
-            wall, nj, centre, radius, body.curve, self.name, self.unit, turned=not sampling.viscous
+        return o_boundary(
+            wall,
+            nj,
+            centre,
+            radius,
+            body.curve,
+            self.name,
+            self.unit,
+            turned=not sampling.viscous,
+            notes=(*notes, *replaced),
         )
-        return replace(found, notes=notes) if notes else found
 
     def _c_boundary(self, sampling: Sampling, given: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
         if self.blunt or self._round:
             raise InputError(
-                "a C grid needs a sharp trailing edge", "close it with --te wedge, or use topology o"
+                "a C grid needs a sharp trailing edge", "close it with {te} wedge, or use {topology} o"
             )
         chord, ni = given.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord
-        cells = wake_cells(ni, sampling.wake_nodes, step, length)
+        cells = cells_of_wake(ni, sampling.wake_nodes, step, length)
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
@@ -252,38 +280,64 @@ class Airfoil:
         )
 
 
-def _fitted(section: Section, places: Sequence[str]) -> Curve:
-    """Return the curve through a section's points, straight where it would otherwise cross itself.
+def _fitted(section: Section, places: Sequence[str]) -> tuple[Curve, list[str]]:
+    """Return the curve through a section's points, straight where it would otherwise cross itself, and notes.
 
-    Points whose surfaces touch or cross by rounding are moved apart first (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
+    Points whose surfaces touch or cross by rounding are moved apart first
+    (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
     """
+    notes = []
+    if section.swapped:
+        points = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
+        more = ", ..." if len(section.swapped) > 6 else ""
+        notes.append(f"the outline is changed: points in the wrong order are swapped ({points}{more})")
     crossing = find_crossing(section.points)
     if crossing is not None:
-        section = section.moved_apart()
+        given, section = section, section.moved_apart()
         if find_crossing(section.points) is not None:
             raise _crossed(section, crossing, places)
+        notes.append(_moved(given, section))
     points, corners = section.points, section.corners
     if section.blunt:  # node 0 is the middle of the base
         points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
     straight = np.zeros(len(points), dtype=bool)
     for left in reversed(range(8)):
         curve = Curve(points, closed=True, corners=corners, straight=straight)
-        found = find_crossings(curve.polyline(_CUTS), limit=4096)
-        where = np.array([k // len(_CUTS) for c in found for k in (c.first, c.second)], dtype=np.intp)
+        crossings = find_crossings(curve.polyline(_CUTS), limit=4096)
+        where = np.array([k // len(_CUTS) for c in crossings for k in (c.first, c.second)], dtype=np.intp)
         if straight[where].all():
             break
         straight[where if left > 1 else slice(None)] = True
-    return curve
+    if straight.any():
+        notes.append(
+            f"the outline follows straight lines between {straight.sum()} of its {len(points)} pairs of points, "
+            "where a smooth curve would cross itself"
+        )
+    return curve, notes
+
+
+def _moved(given: Section, section: Section) -> str:
+    """Return a note of how far the surfaces of `section` were moved apart."""
+    off = section.points - given.points
+    edge = given.points[0]
+    chord = float(np.hypot(*(given.points - edge).T).max())
+    most = float(np.hypot(*off.T).max()) / chord
+    k = int(np.argmax(np.hypot(*off.T)))
+    x, y = given.points[k]
+    return (
+        f"the outline is changed: its surfaces touch near ({x:.6g}, {y:.6g}) and are moved apart, by at most "
+        f"{most:.2g} chords"
+    )
 
 
 def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:
     """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
     n = len(section.points)
     ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
-    told = [places[k] if places else f"point {k}" for k in ends]
+    a, b, c, d = (places[k] if places else f"point {k}" for k in ends)
     return InputError(
         f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
-        f"between {told[0]} and {told[1]} and between {told[2]} and {told[3]}",
+        f"between {a} and {b} and between {c} and {d}",
         "correct these points: no grid can be made around crossing surfaces",
     )
 

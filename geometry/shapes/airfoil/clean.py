@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
-from meshonet.geometry.blocks.boundary import polygon_area
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import check_extent, polygon_area
 from meshonet.geometry.polygon.corners import Indices, find_corners, turning
 from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
@@ -40,6 +40,7 @@ class Section:
     blunt : the trailing edge has a base.
     gap : distance between the two ends of the surfaces, before a sharp edge was closed.
     corners : indices of points where the tangent jumps, those of the trailing edge included.
+    swapped : given points that stood in the wrong order among their neighbours.
     """
 
     points: Floats
@@ -47,6 +48,7 @@ class Section:
     blunt: bool
     gap: float
     corners: Indices
+    swapped: tuple[int, ...] = ()
 
     def moved_apart(self) -> Section:
         """Return the section with its surfaces moved apart where they all but touch (`meshonet.geometry.shapes.airfoil.separate_surfaces`)."""
@@ -69,7 +71,9 @@ def clean_section(points: Floats) -> Section:
     given = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(given, axis=0))) if len(given) else 0.0
     check_extent(extent)
-    index = _in_order(given, _distinct(given, SAME_POINT * extent))
+    distinct_points = _distinct(given, SAME_POINT * extent)
+    index = _in_order(given, distinct_points)
+    swapped = tuple(sorted(index[index != distinct_points].tolist()))
     ring = given[index]
     open_gap = np.hypot(*(ring[0] - ring[-1])) > SAME_POINT * extent
     if not open_gap:
@@ -84,14 +88,7 @@ def clean_section(points: Floats) -> Section:
     if area > 0:
         order = np.arange(len(ring))[::-1] if open_gap else np.roll(np.arange(len(ring))[::-1], 1)
         ring, index = ring[order], index[order]
-    return _opened_at_edge(ring, index, bool(open_gap))
-
-
-def check_extent(extent: float) -> None:
-    """Raise InputError when the size of a shape is nothing, or beyond what can be multiplied a few times."""
-    if not 1e-60 < extent < 1e60:
-        what = "no extent" if extent == 0 else f"an extent of {extent:.3g}"
-        raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")
+    return replace(_opened_at_edge(ring, index, bool(open_gap)), swapped=swapped)
 
 
 def _distinct(points: Floats, tolerance: float) -> Indices:

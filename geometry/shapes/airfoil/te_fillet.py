@@ -14,7 +14,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
-from meshonet.geometry.spacing.sampling import monotone_cubic
+from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.spacing.size_field import GROWTH, limited_size
 
 _ACROSS = 0.9

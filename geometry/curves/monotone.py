@@ -1,0 +1,44 @@
+"""Monotone interpolation.
+
+Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+
+
+def inner_slopes(h: Floats, delta: Floats) -> Floats:
+    """Return slopes (n-1,) between n intervals of lengths `h` and slopes `delta`: weighted harmonic means.
+
+    The cubics with these slopes overshoot in no interval.
+    """
+    w1, w2 = 2 * h[1:] + h[:-1], h[1:] + 2 * h[:-1]
+    return np.asarray((w1 + w2) / (w1 / delta[:-1] + w2 / delta[1:]))
+
+
+def monotone_cubic(x: Floats, y: Floats, at: Floats) -> Floats:
+    """Return the monotone cubic through (x, y), both (n,) and increasing, at `at` (m,) within them.
+
+    The slopes at the ends are those of parabolas through three points, limited.
+
+    Examples
+    --------
+    >>> monotone_cubic(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), np.array([0.5, 2.0])).tolist()
+    [0.5, 2.0]
+    """
+    h, delta = np.diff(x), np.diff(y) / np.diff(x)
+    slope = np.full(len(x), delta[0])
+    if len(x) > 2:
+        slope[1:-1] = inner_slopes(h, delta)
+        for end, a, b in ((0, 0, 1), (-1, -1, -2)):
+            value = ((2 * h[a] + h[b]) * delta[a] - h[a] * delta[b]) / (h[a] + h[b])
+            slope[end] = min(max(value, 0.0), 3 * delta[a])
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
+    t = (at - x[i]) / h[i]
+    rise = np.diff(y)[i]
+    a, b = h[i] * slope[i], h[i] * slope[i + 1]
+    out = y[i] + t * (a + t * ((3 * rise - 2 * a - b) + t * (a + b - 2 * rise)))
+    return np.asarray(np.where(at >= x[-1], y[-1], out))

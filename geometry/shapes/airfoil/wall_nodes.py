@@ -1,0 +1,236 @@
+"""Nodes along the wall of an airfoil: how many cells each stretch gets, and how large they are.
+
+::
+
+    half base | lower side                      nose   upper side                      | half base
+    0 ... lower ................................ nose ................................ upper ... length
+
+Both sides get the same number of cells; where that leaves half a cell, one lies astride the nose, so that a
+symmetric section has symmetric nodes at every count. The first cells of the sides are as large as those of
+the base beside them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.conformal.spacing import conformal_knots
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.te_fillet import half_rounds
+from meshonet.geometry.spacing.along_curve import on_corners
+from meshonet.geometry.spacing.laws import LAWS, TanhLaw
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.spacing.size_field import arcs_by_curvature
+
+_EDGE_STEP = 20.0
+"""Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
+grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
+_EDGE_PART = 0.24
+"""The same cell in mean cells where spacing follows curvature, the law of marched grids: lines beside smaller
+ones open within fewer rows."""
+_BASE_GROWTH = 1.15
+_BASE_JUMP = 4.0
+"""Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
+_ROUND_CELLS = 14
+"""Fewest cells on half a rounded base, when there are 16 times as many in all."""
+_BASE_SHARE = 0.35
+"""Largest part of all cells that goes to the base."""
+
+
+@dataclass(frozen=True)
+class Stations:
+    """What the distribution needs to know of an airfoil: arc lengths on its curve, and two lengths."""
+
+    curve: Curve
+    lower: float
+    nose: float
+    upper: float
+    chord: float
+    nose_radius: float
+    rounded: bool = False
+    """The base between `upper` and `lower` has no corners."""
+
+    @property
+    def half_base(self) -> float:
+        """Half the width of the blunt base, 0 when sharp."""
+        return self.lower
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Cells of half the base and of a side, and the steps at the trailing and at the leading edge."""
+
+    half: int
+    cells: float
+    base_step: float
+    te: float
+    le: float
+    base: tuple[Floats, Floats] | None = None
+    """Distances from the middle of a rounded base to its lower and its upper end."""
+
+
+def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
+    """Return the arc lengths (ni,) of the wall nodes, from 0 to the length of the curve.
+
+    Spacings: ``conformal`` has equal angles of the circle that the section is an image of
+    (`meshonet.geometry.conformal.spacing`); ``tanh`` and ``auto`` stretch each side between a step at its two
+    edges; ``cosine`` is the half circle's on each side, or ``tanh`` with its end steps where one is given or
+    the edge is blunt; ``uniform`` has equal steps on a side; ``curvature`` follows
+    `meshonet.geometry.spacing.size_field`.
+
+    Parameters
+    ----------
+    stations : of the airfoil.
+    ni : nodes, the last one being the first again.
+    sampling : spacing, `le_spacing` and `te_spacing` (met to 1 %, in chords).
+
+    Raises
+    ------
+    InputError
+        too few nodes, or steps that cannot be met with them.
+    """
+    least = 7 if stations.half_base else 5
+    if ni < least:
+        raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
+    steps_given = sampling.le_spacing is not None or sampling.te_spacing is not None
+    if steps_given and not LAWS[sampling.spacing].sets_ends:
+        raise InputError(
+            f"{sampling.spacing} spacing leaves no cell size to choose",
+            "use tanh, cosine or curvature with it",
+        )
+    if sampling.spacing == "conformal":
+        blunt = stations.half_base and not stations.rounded
+        corners = np.array([stations.lower, stations.upper]) if blunt else np.zeros(0)
+        return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
+    plan = _plan(stations, ni - 1, sampling)
+    if sampling.spacing == "curvature":
+        sides = arcs_by_curvature(
+            stations.curve,
+            (stations.lower, stations.nose, stations.upper),
+            round(2 * plan.cells),
+            chord=stations.chord,
+            steps=(plan.te, plan.le),
+            exact=(sampling.te_spacing is not None or plan.half > 0, sampling.le_spacing is not None),
+            hurried=sampling.te_spacing is not None,
+        )
+    else:
+        q = np.arange(1, math.ceil(plan.cells)) / plan.cells
+        lower = stations.lower + _side(stations.nose - stations.lower, plan, sampling, q)
+        upper = stations.upper - _side(stations.upper - stations.nose, plan, sampling, q)
+        nose = [stations.nose] if float(plan.cells).is_integer() else []
+        sides = np.concatenate([[stations.lower], lower, nose, upper[::-1], [stations.upper]])
+    if plan.half == 0:
+        arcs = sides
+    else:
+        lower, upper = plan.base or (_half_base(plan, stations.half_base),) * 2
+        arcs = np.concatenate([lower[:-1], sides, stations.curve.length - upper[-2::-1]])
+    return _on_inner_corners(arcs, stations)
+
+
+def _on_inner_corners(arcs: Floats, stations: Stations) -> Floats:
+    """Return the arcs with the corners of the two sides on nodes; the trailing edge's are there already."""
+    corners = stations.curve.corners
+    inside = corners[(corners > stations.lower) & (corners < stations.upper)]
+    ends = np.searchsorted(arcs, [stations.lower, stations.upper])
+    return on_corners(arcs, inside, fixed=(int(ends[0]), int(ends[1])))
+
+
+def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
+    """Return how the cells are shared out and which steps they start from."""
+    wanted_te = sampling.te_spacing and sampling.te_spacing * stations.chord
+    wanted_le = sampling.le_spacing and sampling.le_spacing * stations.chord
+    plan = _natural(stations, Plan(0, 0.5 * cells, 0.0, 0.0, 0.0), sampling)
+    if stations.half_base:
+        fixed = bool(wanted_te) or not LAWS[sampling.spacing].sets_ends
+        half, step = _base_cells(stations.half_base, wanted_te or plan.te, cells, fixed=fixed)
+        if stations.rounded and not wanted_te and half < min(_ROUND_CELLS, cells // 16):
+            half = min(_ROUND_CELLS, cells // 16)
+            step = stations.half_base / half
+        plan = _natural(stations, Plan(half, 0.5 * cells - half, step, 0.0, 0.0), sampling)
+        plan = replace(plan, te=step)
+        if stations.rounded and half > 2 and not wanted_te:
+            base = half_rounds(stations.curve, stations.half_base, half)
+            te = 0.5 * sum(float(part[-1] - part[-2]) for part in base)
+            left = cells - sum(len(part) - 1 for part in base)
+            plan = replace(plan, cells=0.5 * left, te=te, base=base)
+    plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
+    side = min(stations.nose - stations.lower, stations.upper - stations.nose)
+    if plan.te + plan.le >= side:
+        raise InputError(
+            f"cells of {plan.te / stations.chord:.3g} and {plan.le / stations.chord:.3g} chords fill a side",
+            "use smaller spacings",
+        )
+    return plan
+
+
+def _natural(stations: Stations, plan: Plan, sampling: Sampling) -> Plan:
+    """Return the plan with the steps that the program chooses.
+
+    At the nose that of equal angles on the circle which a conformal map makes of the section,
+    sqrt(r c / 2) π / n with the nose radius r; at a sharp edge see `_EDGE_STEP`.
+    """
+    n = plan.cells
+    side = 0.5 * (stations.upper - stations.lower)
+    mean = side / n
+    if sampling.spacing == "uniform":
+        return replace(plan, te=mean, le=mean)
+    le = math.pi / n * math.sqrt(0.5 * stations.nose_radius * stations.chord)
+    if sampling.spacing == "cosine":
+        le = side * math.sin(0.5 * math.pi / n) ** 2
+        return replace(plan, te=le if not stations.half_base else mean * min(0.5, _EDGE_STEP / n), le=le)
+    edge = _EDGE_PART if sampling.spacing == "curvature" else min(0.5, _EDGE_STEP / n)
+    return replace(plan, te=mean * edge, le=min(max(le, 0.05 * mean), 0.7 * mean))
+
+
+def _base_cells(half_base: float, step: float, cells: int, *, fixed: bool) -> tuple[int, float]:
+    """Return the cells of half a base and the size of the one at the corner.
+
+    At least 2, more for wider bases (measured: fewer fold at the corners, more make the solver slow); as
+    many as a step of the size asked for needs when growing by 15 % towards the middle. Where the steps beside
+    the base are `fixed`, those on it are not much smaller: cells fold at a corner between very unlike steps.
+    """
+    enough = cells >= 48
+    least = max(2, round(2 * (half_base / 1.2e-4) ** (1 / 3))) if enough else 1
+    least = min(least, max(cells // 24, 1), 12)
+    if fixed:
+        least = min(least, math.ceil(_BASE_JUMP * half_base / step))
+    most = max(least, int(0.5 * _BASE_SHARE * cells))
+    if not fixed:
+        step = min(step, half_base / least)
+    if half_base <= 6 * step:
+        half = min(max(least, round(half_base / step)), most)
+        return half, half_base / half
+    for half in range(4, most):
+        # steps go like sech², whose ratio is largest at the corner
+        d = TanhLaw(2 * half * 0.5 * step / half_base, 2 * half * 0.5 * step / half_base).stretch
+        if d / half * math.tanh(0.5 * d) < math.log(_BASE_GROWTH):
+            return half, step
+    return most, step
+
+
+def _half_base(plan: Plan, half_base: float) -> Floats:
+    """Return distances (half + 1,) from the middle of the base to its corner."""
+    part = plan.base_step / (2 * half_base)
+    if abs(part * 2 * plan.half - 1.0) < 1e-9:
+        return np.linspace(0.0, half_base, plan.half + 1)
+    law = TanhLaw.fitted(2 * plan.half, part, part)
+    out = half_base - 2 * half_base * law(np.arange(plan.half + 1) / (2 * plan.half))[::-1]
+    out[0], out[-1] = 0.0, half_base
+    return np.asarray(out)
+
+
+def _side(length: float, plan: Plan, sampling: Sampling, q: Floats) -> Floats:
+    """Return distances along a side from its trailing edge at the places `q` of 0 to 1."""
+    ends_set = sampling.te_spacing is not None or sampling.le_spacing is not None
+    if plan.cells < 4 and not ends_set:
+        return np.asarray(length * q)
+    law = LAWS[sampling.spacing]
+    if law.place and not (law.sets_ends and (ends_set or plan.half)):
+        return np.asarray(length * law.place(q))
+    part = 1.0 if float(plan.cells).is_integer() else 0.5
+    return np.asarray(length * TanhLaw.fitted(plan.cells, plan.te / length, plan.le / length, part)(q))

@@ -1,0 +1,84 @@
+"""Nodes along a stretch of a curve by a spacing law, with the curve's corners on nodes."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.laws import LAWS, Spacing, spacing_tanh
+from meshonet.geometry.spacing.size_field import distances_by_curvature
+
+MANY = 64
+"""More corners than this, and than a quarter of the cells, are taken for facets of a drawn curve: nodes are not
+moved onto them."""
+
+
+def stretch_arcs(
+    curve: Curve, begin: float, end: float, cells: int, spacing: Spacing, *, forward: bool = True
+) -> Floats:
+    """Return arc lengths (cells + 1,) on a closed curve from `begin` to `end`, all the way round when equal.
+
+    Parameters
+    ----------
+    curve : closed.
+    begin, end : arc lengths.
+    cells : wanted.
+    spacing : ``tanh`` has end cells a quarter of the mean; laws that need more than a curve are equal steps.
+    forward : along the curve's own direction, else against it.
+    """
+    sign = 1.0 if forward else -1.0
+    length = (sign * (end - begin)) % curve.length or curve.length
+    q, place = np.linspace(0.0, 1.0, cells + 1), LAWS[spacing].place
+    if spacing == "curvature":
+        distance = distances_by_curvature(curve, begin, sign * length, cells)
+    elif spacing == "tanh" and cells > 3:
+        distance = length * spacing_tanh(cells + 1, 0.25 / cells, 0.25 / cells)
+    else:
+        distance = length * (place(q) if place else q)
+    corners = np.sort((sign * (curve.corners - begin)) % curve.length)
+    tiny = 1e-12 * curve.length
+    corners = corners[(corners > tiny) & (corners < length - tiny)]
+    if len(corners) <= max(MANY, cells // 4):
+        distance = on_corners(distance, corners)
+    return begin + sign * distance
+
+
+def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -> Floats:
+    """Return increasing distances (n,) moved along so that every corner (m,) is one of them.
+
+    The nearest node of each corner is put on it; those between are shared out evenly in index. The first,
+    the last and the `fixed` nodes stay.
+
+    Raises
+    ------
+    InputError
+        more corners than nodes to put on them.
+    """
+    if corners.size == 0:
+        return distance
+    last = len(distance) - 1
+    index = np.arange(last + 1.0)
+    place = np.interp(corners, distance, index)
+    stays = sorted({0, last, *fixed})
+    node = np.rint(place).astype(np.intp)
+    for low, high in pairwise(stays):
+        mine = np.flatnonzero((place > low) & (place < high))
+        room = high - low - 1
+        if len(mine) > room:
+            raise InputError(f"{len(corners)} corners do not fit on {last + 1} nodes", "use more nodes")
+        rank = np.arange(len(mine))
+        node[mine] = np.maximum.accumulate(np.maximum(node[mine], low + 1) - rank) + rank
+        back = np.minimum(node[mine], high - 1)[::-1] + rank
+        node[mine] = (np.minimum.accumulate(back) - rank)[::-1]
+    kept = np.concatenate([np.array(stays, dtype=np.float64), node])
+    order = np.argsort(kept)
+    source = np.concatenate([np.array(stays, dtype=np.float64), place])
+    out = monotone_cubic(index, distance, np.interp(index, kept[order], source[order]))
+    out[node] = corners
+    out[stays] = distance[stays]
+    return out
