@@ -29,11 +29,11 @@ UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0)
 The harmonic term alone unfolds more, with wider angles; around spikes it takes many iterations.
 """
 
-SMOOTHING = Weights(smoothness=5e-4)
+SMOOTHING = Weights()
 """Weights with which the corners of an unfolded patch are opened."""
 
-SMOOTHING_ITERATIONS = 300
-SMOOTHING_STILL = 1e-4
+SMOOTHING_ITERATIONS = 1500
+SMOOTHING_STILL = 3e-5
 """Iterations of that at the most, and the move of nodes, in cells, below which it stops."""
 
 MARGIN = 6
