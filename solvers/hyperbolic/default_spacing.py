@@ -37,7 +37,7 @@ def first_cell(boundary: Boundary) -> float:
     return max(PART * smallest, min(gentle, MOST * smallest))
 
 
-def march_unasked(boundary: Boundary) -> Solution | None:
+def march_by_default(boundary: Boundary) -> Solution | None:
     """Return the C grid marched from `boundary`, or None where another method suits better.
 
     That is where the far field is given node by node, since a march ends in its own; where rows are so few
