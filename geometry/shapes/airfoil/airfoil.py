@@ -161,13 +161,13 @@ class Airfoil:
         """Return what `wall` does, and a note where ``auto`` spacing is not the usual one."""
         if sampling.spacing != "auto":
             return self._nodes(ni, sampling), ()
-        tanh, notes = replace(sampling, spacing="tanh"), ()
+        notes: tuple[str, ...] = ()
         if sampling.le_spacing is None and sampling.te_spacing is None:
             try:
                 return self._nodes(ni, replace(sampling, spacing="conformal")), ()
             except InputError as error:
                 notes = (f"spacing tanh is used instead of conformal: {error.problem}",)
-        return self._nodes(ni, tanh), notes
+        return self._nodes(ni, replace(sampling, spacing="tanh")), notes
 
     def _nodes(self, ni: int, sampling: Sampling) -> Floats:
         stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
@@ -288,9 +288,9 @@ def _fitted(section: Section, places: Sequence[str]) -> tuple[Curve, list[str]]:
     """
     notes = []
     if section.swapped:
-        points = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
+        named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
         more = ", ..." if len(section.swapped) > 6 else ""
-        notes.append(f"the outline is changed: points in the wrong order are swapped ({points}{more})")
+        notes.append(f"the outline is changed: points in the wrong order are swapped ({named}{more})")
     crossing = find_crossing(section.points)
     if crossing is not None:
         given, section = section, section.moved_apart()
