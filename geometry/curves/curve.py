@@ -146,25 +146,25 @@ class Curve:
 
 
 def _checked(points: Floats, closed: bool) -> Floats:
-    given = np.array(points, dtype=np.float64)
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise InputError(f"curve points have shape {given.shape}", "give (n, 2)")
-    bad = np.flatnonzero(~np.isfinite(given).all(axis=1))
+    nodes = np.array(points, dtype=np.float64)
+    if nodes.ndim != 2 or nodes.shape[1] != 2:
+        raise InputError(f"curve points have shape {nodes.shape}", "give (n, 2)")
+    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
     if bad.size:
         raise InputError(f"curve point {bad[0]} is not finite", "check the input for NaN or infinity")
-    if closed and len(given) > 1 and np.array_equal(given[0], given[-1]):
-        given = given[:-1]
+    if closed and len(nodes) > 1 and np.array_equal(nodes[0], nodes[-1]):
+        nodes = nodes[:-1]
     least = 3 if closed else 2
-    if len(given) < least:
+    if len(nodes) < least:
         raise InputError(
-            f"{len(given)} points make no {'closed ' if closed else ''}curve", f"give at least {least}"
+            f"{len(nodes)} points make no {'closed ' if closed else ''}curve", f"give at least {least}"
         )
-    step = np.diff(given, axis=0, append=given[:1]) if closed else np.diff(given, axis=0)
+    step = np.diff(nodes, axis=0, append=nodes[:1]) if closed else np.diff(nodes, axis=0)
     same = np.flatnonzero((step == 0).all(axis=1))
     if same.size:
-        x, y = given[same[0]]
+        x, y = nodes[same[0]]
         raise InputError(f"curve point {same[0]} and the next are the same, ({x:.6g}, {y:.6g})", "remove one")
-    return given
+    return nodes
 
 
 def _norm(d: Floats) -> Floats:

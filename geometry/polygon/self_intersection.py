@@ -77,8 +77,8 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
     along = p @ _SWEEP
-    other = np.roll(along, -1) if closed else along[1:]
-    low, top = np.minimum(along[: len(end)], other), np.maximum(along[: len(end)], other)
+    along_end = np.roll(along, -1) if closed else along[1:]
+    low, top = np.minimum(along[: len(end)], along_end), np.maximum(along[: len(end)], along_end)
     top += _ROUNDING * np.abs(along).max(initial=0.0)  # of the products
     pairs, complete = crossing_segments(p, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
     if not complete:

@@ -78,9 +78,9 @@ def prepared(x: Floats, y: Floats, percents: tuple[float, ...]) -> Run:
     """Return a run that brackets the percentiles `percents` of every metric of the grid (ni, nj)."""
     sample = _sample(x, y)
     ends = [(max(0.0, p - MARGIN), min(100.0, p + MARGIN)) for p in percents]
-    found = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
+    values_at_ends = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
     n = len(COMPILED)
-    brackets = np.ascontiguousarray(found.T).reshape(n, len(percents), 2)
+    brackets = np.ascontiguousarray(values_at_ends.T).reshape(n, len(percents), 2)
     room = int(ROOM * (x.shape[0] - 1) * (x.shape[1] - 1)) + 1
     return Run(brackets, np.zeros((n, len(percents), 4), dtype=np.int64), np.empty((n, len(percents), room)))
 

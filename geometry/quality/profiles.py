@@ -156,8 +156,8 @@ class Figures:
             return (float(min(row.equal_cells for row in self.wall_rows)), None) if self.wall_rows else None
         if name == "far_field":
             return self._far_field()
-        found = self._wall_growth() if name == "wall_growth" else getattr(self.faces, name)
-        return None if found is None else (found.max, found.at)
+        figure = self._wall_growth() if name == "wall_growth" else getattr(self.faces, name)
+        return None if figure is None else (figure.max, figure.at)
 
     def _wall_growth(self) -> Extreme | None:
         sides = {part.side for part in self.walls}
@@ -165,7 +165,7 @@ class Figures:
             self.growth.eta if sides & {"south", "north"} else None,
             self.growth.xi if sides & {"west", "east"} else None,
         ]
-        return max((one for one in along if one), key=lambda one: one.max, default=None)
+        return max((extreme for extreme in along if extreme), key=lambda extreme: extreme.max, default=None)
 
     def _far_field(self) -> tuple[float, None] | None:
         if not self.grid.around_body or not self.walls:
@@ -181,11 +181,11 @@ def judge(figures: Figures, profile: str) -> Judgement:
     """Return what `profile`, one of `PROFILES`, says of a grid."""
     checked = []
     for check in PROFILES[profile]:
-        found = figures.value(check.figure, low=check.limits[0].compare == "<")
-        if found is None:
+        figure = figures.value(check.figure, low=check.limits[0].compare == "<")
+        if figure is None:
             checked.append(Checked(check, None, None, "none"))
             continue
-        broken = [limit.level for limit in check.limits if limit.broken(found[0])]
+        broken = [limit.level for limit in check.limits if limit.broken(figure[0])]
         verdict: Verdict = "fail" if "fail" in broken else "warn" if broken else "pass"
-        checked.append(Checked(check, *found, verdict))
+        checked.append(Checked(check, *figure, verdict))
     return Judgement(profile, tuple(checked))

@@ -51,7 +51,7 @@ class Labelled:
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
         """Return the nearest edge to each of `points` (m, 2), and its distance."""
-        found: list[tuple[int, float]] = []
+        nearest: list[tuple[int, float]] = []
         start, along = self._edges[:, 0], self._edges[:, 1] - self._edges[:, 0]
         square = np.maximum((along**2).sum(axis=1), 1e-300)
         step = max(1, _BLOCK // len(self._edges))
@@ -60,8 +60,8 @@ class Labelled:
             t = np.clip((off * along).sum(axis=-1) / square, 0.0, 1.0)
             gap = np.hypot(*np.moveaxis(off - t[..., None] * along, -1, 0))
             k = gap.argmin(axis=1)
-            found += zip(k.tolist(), gap[np.arange(len(k)), k].tolist(), strict=True)
-        return found
+            nearest += zip(k.tolist(), gap[np.arange(len(k)), k].tolist(), strict=True)
+        return nearest
 
 
 def runs(side: Side, names: Sequence[str]) -> list[Patch]:

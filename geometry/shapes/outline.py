@@ -125,8 +125,8 @@ class Outline:
 
     def _quad(self, sampling: Sampling) -> Boundary:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
-        asked = sampling.corners or self.corners
-        corners = self._asked_corners(asked) if asked is not None else self._found_corners()
+        chosen = sampling.corners or self.corners
+        corners = self._ordered_corners(chosen) if chosen is not None else self._sharpest_corners()
         curve = Curve(
             self.curve.points, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners))
         )
@@ -143,25 +143,25 @@ class Outline:
         south, east, north, west = edges
         return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
 
-    def _asked_corners(self, asked: tuple[int, int, int, int]) -> tuple[int, ...]:
+    def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
         """Return the corners asked for, counter-clockwise from the first."""
         n = len(self.curve.points)
-        for corner in asked:
+        for corner in chosen:
             if not 0 <= corner < n:
                 raise InputError(
                     f"corner {corner} of {n} points does not exist", f"use 0 to {n - 1}", source=self.name
                 )
-        ahead = [(corner - asked[0]) % n for corner in asked]
+        ahead = [(corner - chosen[0]) % n for corner in chosen]
         if ahead != sorted(ahead) and ahead[1:] != sorted(ahead[1:], reverse=True):
             raise InputError(
-                f"corners {','.join(map(str, asked))} are not in order along the outline",
+                f"corners {','.join(map(str, chosen))} are not in order along the outline",
                 "sort them",
                 source=self.name,
             )
-        ordered = [(asked[0] + step) % n for step in sorted(ahead)]
+        ordered = [(chosen[0] + step) % n for step in sorted(ahead)]
         return tuple(ordered if self._left else [ordered[0], *ordered[:0:-1]])
 
-    def _found_corners(self) -> tuple[int, ...]:
+    def _sharpest_corners(self) -> tuple[int, ...]:
         """Return the four sharpest corners, counter-clockwise, the lowest edge between the first two.
 
         Of equally sharp ones (to a degree) those nearest the corners of the box count; where there are not
@@ -174,13 +174,13 @@ class Outline:
         if len(sharp) >= 4:
             turn = np.round(np.degrees(np.abs(turning(p, closed=True)[sharp])))
             inward = np.hypot(1.0 - np.abs(unit[sharp, 0]), 1.0 - np.abs(unit[sharp, 1]))
-            chosen = np.sort(sharp[np.lexsort((inward, -turn))[:4]])
+            best = np.sort(sharp[np.lexsort((inward, -turn))[:4]])
         else:
             reach = [int(np.argmax(unit @ np.array(d))) for d in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             if len(set(reach)) < 4:
                 raise InputError("no four corners stand out", "name them with {corners}", source=self.name)
-            chosen = np.sort(np.array(reach))
-        order = chosen if self._left else chosen[::-1]
+            best = np.sort(np.array(reach))
+        order = best if self._left else best[::-1]
         knots, length = self.curve.knots, self.curve.length
         heights = []
         for k in range(4):

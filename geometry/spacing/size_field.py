@@ -133,24 +133,24 @@ def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floa
     goal, width = math.log(cells), 0.5 * np.diff(s)
 
     def excess(log_factor: float) -> tuple[float, Floats]:
-        found = known(math.exp(log_factor))
-        density = np.sqrt(np.sqrt(found))
-        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, found
+        terms = known(math.exp(log_factor))
+        density = np.sqrt(np.sqrt(terms))
+        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, terms
 
-    low, (above, found) = 0.0, excess(0.0)
-    high, (below, at_most) = _SCARCEST, (0.0, found) if above <= 0 else excess(_SCARCEST)
+    low, (above, terms) = 0.0, excess(0.0)
+    high, (below, at_most) = _SCARCEST, (0.0, terms) if above <= 0 else excess(_SCARCEST)
     if above <= 0 or below >= 0:
-        return found if above <= 0 else at_most
+        return terms if above <= 0 else at_most
     for _ in range(30):  # Illinois method
         middle = (low * below - high * above) / (below - above)
-        value, found = excess(middle)
+        value, terms = excess(middle)
         if abs(value) < 1e-3:
             break
         if value > 0:
             low, above, below = middle, value, 0.5 * below
         else:
             high, below, above = middle, value, 0.5 * above
-    return found
+    return terms
 
 
 def _known(

@@ -243,24 +243,24 @@ class Airfoil:
             notes=(*notes, *replaced),
         )
 
-    def _c_boundary(self, sampling: Sampling, given: Airfoil, notes: tuple[str, ...]) -> Boundary:
+    def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
         if self.blunt or self._round:
             raise InputError(
                 "a C grid needs a sharp trailing edge", "close it with {te} wedge, or use {topology} o"
             )
-        chord, ni = given.chord, sampling.ni or DEFAULT_NI
+        chord, ni = original.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord
         cells = cells_of_wake(ni, sampling.wake_nodes, step, length)
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
-        axis = wake_axis(given.leading_edge, given.trailing_edge)
+        axis = wake_axis(original.leading_edge, original.trailing_edge)
         line = Wake.behind(wall, axis, chord, length)
         first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
         wake = line.nodes(first, cells)
-        centre = 0.5 * (given.leading_edge + given.trailing_edge)
+        centre = 0.5 * (original.leading_edge + original.trailing_edge)
         return c_boundary(
             wall,
             sampling.nj or DEFAULT_NJ,
@@ -269,7 +269,7 @@ class Airfoil:
             sampling.radius * chord,
             axis=axis,
             curve=self.curve,
-            name=given.name,
-            chord=given.unit,
+            name=original.name,
+            chord=original.unit,
             notes=notes,
         )

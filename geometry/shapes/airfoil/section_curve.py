@@ -31,10 +31,10 @@ def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[
         notes.append(f"the outline is changed: points in the wrong order are swapped ({named}{more})")
     crossing = find_crossing(section.points)
     if crossing is not None:
-        given, section = section, section.moved_apart()
+        before, section = section, section.moved_apart()
         if find_crossing(section.points) is not None:
             raise _crossed(section, crossing, places)
-        notes.append(moved_note(given, section))
+        notes.append(moved_note(before, section))
     points, corners = section.points, section.corners
     if section.blunt:  # node 0 is the middle of the base
         points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
@@ -54,14 +54,14 @@ def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[
     return curve, notes
 
 
-def moved_note(given: Section, section: Section) -> str:
+def moved_note(before: Section, section: Section) -> str:
     """Return a note of how far the surfaces of `section` were moved apart."""
-    off = section.points - given.points
-    edge = given.points[0]
-    chord = float(np.hypot(*(given.points - edge).T).max())
+    off = section.points - before.points
+    edge = before.points[0]
+    chord = float(np.hypot(*(before.points - edge).T).max())
     most = float(np.hypot(*off.T).max()) / chord
     k = int(np.argmax(np.hypot(*off.T)))
-    x, y = given.points[k]
+    x, y = before.points[k]
     return (
         f"the outline is changed: its surfaces touch near ({x:.6g}, {y:.6g}) and are moved apart, by at most "
         f"{most:.2g} chords"
