@@ -15,7 +15,7 @@ help:
 	@echo 'make lint    style, types and import contracts'
 	@echo 'make train   the shipped models again, from random shapes (resumable; about three hours on one core)'
 	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
-	@echo 'make bench   the benchmarks behind docs/benchmarks.md'
+	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
 	@echo 'make docs    the generated pages and pictures of docs/'
 	@echo 'make wheel   dist/meshonet-*.whl for this platform, and the source distribution'
 
@@ -143,11 +143,13 @@ paper-quick: $(VENV)/.developing
 
 # FILES: a folder of airfoil .dat files; finished rows are kept in build/bench, and a run goes on from them
 bench: $(VENV)/.developing
-	$(BIN)/python benchmarks/bench_operator.py $(if $(FILES),--files $(FILES)) --keep build/bench --page docs/benchmarks.md
-	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md
-	$(BIN)/python benchmarks/bench_quads.py --page docs/quad-operator.md
-	$(BIN)/python benchmarks/bench_bodies.py --page docs/body-operator.md
-	for name in tfi variational hyperbolic; do $(BIN)/python benchmarks/bench_$$name.py || exit 1; done
+	$(BIN)/python benchmarks/bench_operator.py $(if $(FILES),--files $(FILES)) --keep build/bench --page docs/benchmarks/o-grids.md
+	$(BIN)/python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md
+	$(BIN)/python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md
+	$(BIN)/python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md
+	$(BIN)/python benchmarks/bench_variational.py --page docs/benchmarks/variational.md
+	$(BIN)/python benchmarks/bench_hyperbolic.py $(if $(FILES),--files $(FILES)) --page docs/benchmarks/marching.md
+	$(BIN)/python benchmarks/bench_tfi.py
 
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py

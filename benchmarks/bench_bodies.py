@@ -1,6 +1,6 @@
 """Bodies in far fields by the network that goes round them, beside every way without one.
 
-    python benchmarks/bench_bodies.py [--sizes 129x65:60,401x201:10] [--page docs/body-operator.md]
+    python benchmarks/bench_bodies.py [--sizes 129x65:60,401x201:10] [--page docs/benchmarks/body-operator.md]
 
 Bodies are random ones of seeds that no model was trained on, and the paper's moving hole, whose family no
 model has seen. Folds are counted before the guard. Processor time of one thread, in one run.
@@ -24,11 +24,12 @@ from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
+from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
 SEED = 1000
@@ -95,7 +96,7 @@ def tables(edges: list[Boundary], model: str, twin: str) -> list[str]:
 def batches(model: str) -> str:
     """Return the table of batches at 65 x 33 nodes, in memory."""
     edges = [random_body(np.random.default_rng([SEED, k]), 65, 33) for k in range(32)]
-    lines = ["\n## 32 bodies together, 65 x 33\n", "| way | CPU ms a grid |", "| --- | --- |"]
+    lines = ["\n## 32 bodies in one batch, 65 x 33\n", "| method | CPU ms a grid |", "| --- | --- |"]
     for dtype in ("float32", "float64"):
         spent = min(clocked(partial(infer_quads, edges, model, 0, dtype)) for _ in range(5)) / len(edges)
         lines.append(f"| **network in {dtype}** | {1e3 * spent:.2f} |")
@@ -109,7 +110,7 @@ def holes(model: str, twin: str) -> str:
     kept = split(drawn, "random")
     groups = {
         "random": [v for v, use in zip(drawn, kept, strict=True) if use == "test"],
-        "beyond, to 0.5": [-0.5, -0.45, 0.45, 0.5],
+        "outside the range, to 0.5": [-0.5, -0.45, 0.45, 0.5],
     }
     lines = [HOLES]
     for name, parameters in groups.items():
@@ -158,83 +159,56 @@ def wakes() -> str:
 WAKES = """
 ## C grids: no model
 
-A C grid is a four-sided domain whose south side is wake, airfoil and wake. Three sections, far fields of 5
-and 15 chords, 201 x 65. The network for four-sided domains was shown none, and 33 nodes are few for such a
-side: alone it is worse than TFI. No `airfoil-c` is shipped; `infer` marches C grids from the wall.
+A C grid is a four-sided domain whose south side consists of wake, airfoil and wake. The table is over three
+airfoils with far fields at 5 and 15 chords, 201 x 65 nodes. The network for four-sided domains was not
+trained on such domains, and its 33 nodes are too few for the long south side. Without iteration it is worse
+than TFI. No model for C grids is shipped; `infer` marches them from the wall.
 
-| way | valid % | max / mean angle, averaged | CPU ms, median |
+| method | valid % | max / mean angle, average | CPU ms, median |
 | --- | --- | --- | --- |"""
 HOLES = """
-## The paper's moving hole, 101 x 101
+## The moving hole of the MeshONet paper, 101 x 101
 
-Relative L2 to Winslow's solution, median, grids with folds in brackets; then the largest and mean angle,
-averaged, of `hole-o` and of Winslow's grid. No hole of this family was shown to the network; the paper's
-models were trained on 30 of them ([the paper, done again](paper/README.md)).
+`hole-winslow` and the paper's models: median relative L2 distance to Winslow's solution; in brackets, how
+many grids have folded cells. `hole-o` and Winslow: largest / mean angle, averaged. The network was not
+trained on holes of this family; the paper's models were trained on 30 of them
+([the reproduction](../paper/README.md)).
 
 | split | hole-winslow | 2 cycles | MeshONet | MeshONet-hard | hole-o | hole-o, 5 steps | Winslow |
 | --- | --- | --- | --- | --- | --- | --- | --- |"""
-HEAD = """# The operator for bodies
+HEAD = """# The neural operator for bodies: accuracy and time
 
-<!-- made by python benchmarks/bench_bodies.py --page docs/body-operator.md -->
+<!-- made by python benchmarks/bench_bodies.py --page docs/benchmarks/body-operator.md -->
 
-`infer --model hole-o` makes the variational O grid between any body and any far field by one pass of a
-network; `hole-winslow` is its other answer, Winslow's grid. `--polish N` takes N steps of descent after it
-(of multigrid for Winslow's).
+Read this page to decide whether `infer --model hole-o` is good enough for O grids around your bodies. How the
+operator works is in [operators](../operators.md).
 
-It is the network of [four-sided domains](quad-operator.md), taught on: around a body the logarithm of the
-distance from its middle unrolls the domain to a strip, where Winslow's equations are the same and only one
-thing is new, that steps and layers go round along xi. So walls are bitwise those given, a body moved, turned
-or scaled has the same grid moved, a mirrored one the mirrored, and one whose nodes begin an eighth of the way
-further round the same one from there, all to rounding. Steps after the network are taken in a frame of the
-body's own, on walls rounded to 1e-9 of their size there, so that all but the last hold for them too.
-
-It was taught on 5,710 random bodies, six times over, about nine minutes of one core; that is little. Grids
-may fold before the guard; its repairs are not in these tables. Angles are the largest included angle of each
-cell, in degrees. The gain is what a way improves on Winslow's figure, over what the variational grid does,
-summed over bodies where Winslow's is valid. Bodies where Winslow's equations have no discrete solution, a
-few in a hundred, are left out. Processor time of one thread of a shared, busy machine.
+- `hole-o` predicts the variational O grid, `hole-winslow` Winslow's grid. *n steps* and *n cycles* are
+  `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
+- The network was trained on 5,710 random bodies for six epochs, about nine minutes on one core. This is
+  little training.
+- *valid*: share of grids without a folded cell, before repair.
+- *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
+  of Winslow's grid.
+- *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the bodies.
+- *gain*: the improvement over Winslow's angle as a share of the improvement that the full variational grid
+  has; in the mean angle over all bodies together and as a median, and in the largest angle.
+- Bodies on which Winslow's equations have no discrete solution, a few in a hundred, are left out.
+- *CPU ms*: processor time of one thread, while other programs used the machine.
 """
 TAIL = """
-## Which to use
+## What follows
 
-`infer` without a model gives `hole-o` the compact bodies that the airfoil operator refuses, unless its
-answer on 65 x 33 nodes has folds; then the elliptic solver makes the grid. With its five steps it is
-valid where a quarter of Winslow's grids are folded before the guard, and nearer to right angles, in up to
-four times the time; alone, none of these folds. `solve-pde --method variational` has the best of all, in
-four times the time again. What both pay is evenness: they draw lines together where a body stands near
-its far field. Smooth bodies in round far fields stay with `airfoil-o`, as do thin ones. A body whose
-centroid lies outside it (a clip, a crescent, an angle) is seen from where it is thickest. No such body
-was shown to the network: its answer often folds, and the five steps, or the guard's repair, unfold it; of
-25 plates, crescents and angles all were valid after the steps, and nearly as near to right angles as the
-variational grids.
-
-## Gradients
-
-`meshonet.solvers.neural.quads.differentiable_around.BodyGrids` is the same in torch, equal to 1e-12, with gradients
-from every node to the nodes of body and far field, which finite differences confirm; on a GPU with
-`device="cuda"`, as `infer --device cuda` has it. Where the hole is that a given grid was made around:
-
-```python
-import torch
-from meshonet.geometry.families.family import family
-from meshonet.solvers.neural.quads.differentiable_around import BodyGrids
-
-edges, grids = family("hole").boundary(0.3, 65, 33), BodyGrids()
-hole, square = (torch.tensor(side)[None] for side in (edges.south, edges.north))
-wanted = grids(hole + torch.tensor([0.1, -0.2]), square, 33)
-place = torch.zeros(2, dtype=torch.float64, requires_grad=True)
-optimiser = torch.optim.LBFGS([place], line_search_fn="strong_wolfe")
-
-def missed():
-    optimiser.zero_grad()
-    loss = (grids(hole + place, square, 33) - wanted).square().mean()
-    loss.backward()
-    return loss
-
-for _ in range(2):
-    optimiser.step(missed)
-print(place.tolist())  # about 0.1 and -0.2
-```
+- `infer` without `--model` uses `hole-o` for compact bodies that the airfoil operator cannot treat. If its
+  grid on 65 x 33 nodes has folded cells, the elliptic solver makes the grid instead.
+- With five steps the operator is valid on all bodies, where a quarter of Winslow's grids are folded before
+  repair. It takes up to four times the time of Winslow's grid and is closer to right angles.
+- `solve-pde --method variational` has the best angles and takes about four times as long again.
+- Both variational grids crowd grid lines where a body is close to its far field.
+- Smooth bodies in a round far field and thin bodies stay with `airfoil-o`.
+- The network was not trained on bodies whose centroid lies outside them, such as clips, crescents and angle
+  sections. Its grids of these are often folded; the five steps or the repair unfold them. Of 25 plates,
+  crescents and angle sections, all were valid after the steps.
 """
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """The elliptic solvers: seconds, rate a cycle, memory, order of convergence; sources at walls; channels.
 
-    python benchmarks/bench_elliptic.py [--sizes 400,800,1600] [--largest 3200] [--page docs/elliptic.md]
+    python benchmarks/bench_elliptic.py [--sizes 400,800,1600] [--largest 3200] [--page PAGE.md]
 
 One thread, float64, processor seconds, so that neighbours on the machine count little. Construct2D's figures
 and those of the paper stand beside ours as they were measured or published; they are not measured here.
@@ -34,21 +34,25 @@ from meshonet.solvers.pipeline.fallback import guard
 
 Result = TypeVar("Result")
 
-HEAD = """# The elliptic solvers, measured
+HEAD = """# Elliptic solvers: time, convergence, memory
 
-<!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/elliptic.md -->
+<!-- made by python benchmarks/bench_elliptic.py --largest 3200 --page docs/benchmarks/elliptic.md -->
 
-Processor seconds of one thread on {processor}, other programs at work; float64.
-*default* stops at discretisation level; *rate* is the factor by which a cycle shrinks the residual, on
-average to 1e-8. *doubles a node*: the most memory in use while solving, the grid included. *folded*: as it
-leaves the solver; then what the guard made of it.
+Read this page for the cost of `solve-pde` with the methods `winslow`, `thomas-middlecoff` and
+`steger-sorenson`. The methods are described in [elliptic grids](../elliptic.md).
+
+Processor seconds of one thread on {processor}, float64, while other programs used the machine.
+*default*: stops when the error of the iteration is below that of the discretisation. *rate*: the factor by
+which one multigrid cycle reduces the residual, averaged down to 1e-8. *doubles a node*: the peak memory of
+the solver, grid included, in float64 numbers for each node. *folded*: inverted cells as the solver leaves
+them. *repair*: the stages of repair, their seconds, and the folded cells left.
 """
 
 OTHERS = """
-## Beside others
+## Compared with other programs
 
-Seconds for an elliptic grid, or what comes nearest. The paper's figures (arXiv 2501.11937, table of mesh
-refinement; its network on an RTX 4090) and Construct2D's (user time) are theirs, on their machines.
+Seconds for an elliptic grid or its nearest equivalent. The figures of the paper (arXiv 2501.11937, table of
+mesh refinement; its network ran on an RTX 4090) and of Construct2D (user time) were taken on other machines.
 
 | program | 100x100 | 200x200 | 250x100 | 400x400 | 800x800 | 1600x1600 | 3200x3200 |
 | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -93,15 +97,16 @@ def row(name: str, edges: Boundary) -> str:
     level, to_level = timed(lambda: solve(edges))
     exact, to_exact = timed(lambda: solve(edges, tol=1e-8, max_cycles=60))
     begun = time.process_time()
-    grid, path = guard(level.grid, edges)
+    guarded = guard(level, edges)
+    grid, path = guarded.grid, guarded.path
     guarding = time.process_time() - begun
     folded = count_folded(level.grid.nodes)
     rate = (exact.residual or 0.0) ** (1.0 / max(1, exact.cycles or 1))
-    told = " then ".join(path) or "nothing to do"
+    stages = " then ".join(path) or "none"
     return (
         f"| {name} | {edges.ni} | {to_level:.3f} | {level.cycles} | {to_exact:.3f} | {exact.cycles} "
         f"| {rate:.2f} | {doubles_a_node(edges):.1f} | {folded} "
-        f"| {told}, {guarding:.2f} s, {count_folded(grid.nodes)} left |"
+        f"| {stages}, {guarding:.2f} s, {count_folded(grid.nodes)} left |"
     )
 
 
@@ -109,7 +114,7 @@ def speed(sizes: list[int], largest: int) -> Iterator[str]:
     """Yield the table of shapes; of the largest size some only."""
     yield "\n## Winslow's equations\n"
     heads = ("shape", "nodes a side", "default, s", "cycles", "to 1e-8, s", "cycles", "rate")
-    yield "| " + " | ".join((*heads, "doubles a node", "folded", "guard")) + " |"
+    yield "| " + " | ".join((*heads, "doubles a node", "folded", "repair")) + " |"
     yield "| --- |" + " --- |" * 9
     for n in sizes:
         for name, edges in shapes(n):
@@ -129,7 +134,7 @@ def ours(largest: int) -> str:
             continue
         _, spent = timed(lambda ni=ni, nj=nj: solve(naca("0012-sharp").boundary(Sampling(ni, nj))))  # type: ignore[misc]
         cells.append(f"{spent:.3f}")
-    return "| **ours, NACA 0012, O grid to discretisation level** | " + " | ".join(cells) + " |"
+    return "| **meshonet, NACA 0012, O grid, default** | " + " | ".join(cells) + " |"
 
 
 def conformal(n: int) -> Floats:
@@ -140,7 +145,8 @@ def conformal(n: int) -> Floats:
 
 def order() -> Iterator[str]:
     """Yield errors against the conformal map, and the fitted slope."""
-    yield "\n## Order of convergence\n\nAgainst z = exp ζ, largest error of a node.\n"
+    yield "\n## Order of convergence\n"
+    yield "Largest error of a node against the conformal map z = exp ζ, an exact solution.\n"
     yield "| nodes | error |\n| --- | --- |"
     counts, errors = np.array([17, 33, 65, 129, 257]), []
     for n in counts.tolist():
@@ -193,8 +199,9 @@ def leans(nodes: Floats, edges: Boundary) -> float:
 def walls(ni: int, nj: int) -> Iterator[str]:
     """Yield the table of channels with first cells of 1e-5 at both walls."""
     yield f"\n## Channels, first cells of 1e-5 at both walls, {ni} x {nj}\n"
-    yield "*lean*: the largest angle between a first cell's line and the wall's normal, degrees.\n"
-    yield "| channel | way | folded | first cell, error | lean | ms |\n| --- | --- | --- | --- | --- | --- |"
+    yield "*angle to normal*: the largest angle of first cells' grid lines to the wall's normal, degrees.\n"
+    yield "| channel | method | folded | first cell error | angle to normal | ms |"
+    yield "| --- " * 6 + "|"
     heights = Heights(south=1e-5, north=1e-5)
 
     def plain(edges: Boundary) -> tuple[object, Boundary]:
@@ -207,7 +214,7 @@ def walls(ni: int, nj: int) -> Iterator[str]:
         moved, controls = slide_walls(edges)
         return solve(moved, controls=controls), moved
 
-    ways = {"winslow": plain, "**steger-sorenson**": turned, "**wall nodes slid**": slid}
+    ways = {"winslow": plain, "**steger-sorenson**": turned, "**winslow, --slide**": slid}
     for name in CHANNELS:
         edges = channel(name, ni, nj)
         for way, make in ways.items():
@@ -219,7 +226,7 @@ def walls(ni: int, nj: int) -> Iterator[str]:
             (made, moved), spent = timed(act)
             nodes = made.grid.nodes
             yield (
-                f"| {name} | {way} | {count_folded(nodes)} | {worst_first_cell(made.grid):.0e} "
+                f"| {name} | {way} | {count_folded(nodes)} | {worst_first_cell(made):.0e} "
                 f"| {leans(nodes, moved):.2f} | {1e3 * spent:.0f} |"
             )
 
@@ -260,8 +267,8 @@ def controls(sizes: list[int]) -> Iterator[str]:
 
 def processor() -> str:
     """Return the name of the processor, where the system tells it."""
-    told = Path("/proc/cpuinfo")
-    lines = told.read_text().splitlines() if told.exists() else []
+    path = Path("/proc/cpuinfo")
+    lines = path.read_text().splitlines() if path.exists() else []
     return next(
         (line.split(":")[1].strip() for line in lines if line.startswith("model name")), "one machine"
     )
@@ -279,18 +286,18 @@ def page(sizes: list[int], largest: int) -> Iterator[str]:
 
 
 def main() -> None:
-    """Print the page, and write it where asked."""
+    """Print the page, and write it to --page."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", default="400,800,1600")
     parser.add_argument("--largest", type=int, default=0, help="one more size, for three of the shapes")
     parser.add_argument("--page", type=Path)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     lines = []
-    for line in page([int(n) for n in asked.sizes.split(",")], asked.largest):
+    for line in page([int(n) for n in options.sizes.split(",")], options.largest):
         print(line, flush=True)
         lines.append(line)
-    if asked.page:
-        asked.page.write_text("\n".join(lines) + "\n")
+    if options.page:
+        options.page.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Marched grids for boundary layers: folds, first cell, angles, growth, time from file to nodes.
 
-    python benchmarks/bench_hyperbolic.py [--files FOLDER] [--count 40] [--page docs/viscous.md]
+    python benchmarks/bench_hyperbolic.py [--files FOLDER] [--count 40] [--page docs/benchmarks/marching.md]
 
 Shapes are NACA sections, procedural airfoils, and the ``.dat`` files of FOLDER when one is given; one thread.
 Deviation is that of all four corners of every cell from 90 degrees; growth is the largest step in size
@@ -30,10 +30,9 @@ from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.families import procedural
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.energy.variational import solve as minimise
 from meshonet.solvers.hyperbolic.march import hyperbolic
-from meshonet.solvers.pipeline.select import solve_automatic
+from meshonet.solvers.method import method_named
+from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 
 SEED = 20_000_003
 REPEAT = 3
@@ -45,49 +44,55 @@ SIZES = (
     (400, 150, 1e-6),
     (800, 200, 1e-6),
 )
-HEAD = """# Marched grids for boundary layers
+HEAD = """# Marched grids for boundary layers: quality and time
 
 <!-- made by benchmarks/bench_hyperbolic.py -->
 
-`solve-pde --wall-spacing H`: wall nodes by curvature, far field at 15 chords, H in chords. Nodes of C grids
-count both sides of the wake, so that 250 of them leave about 140 for the wall; blunt edges are closed by a
-wedge. *first cell*: largest relative error over all wall nodes. *off 90*: deviation of every corner of
-every cell from a right angle in degrees, the largest and, *away*, the largest farther than 3 cells from the
-trailing edge; then the mean. *growth*: largest relative step between neighbouring cells along (xi) and away
-from (eta) the wall. Groups: median over the shapes / 90th percentile. *CPU ms*: processor time from the
-file (or boundary, for procedural ones) to nodes in memory, best of {repeat} (procedural: once), one thread of
-{machine}, with other programs at work.
+Read this page to see how good marched grids are at a given size and first cell. How to make them is in
+[boundary layers](../boundary-layers.md), how the method works in [marching](../marching.md).
 
-A sharp edge puts an angle near 180 degrees into one line of any O grid: it gets a C grid unless told
-otherwise.
+All grids: `solve-pde --first-cell H`, H in chords, wall nodes spaced by curvature, far field at 15 chords. In
+C grids the node count includes both sides of the wake: of 250 nodes, about 140 lie on the wall. Blunt
+trailing edges are closed by a wedge in C grids.
 
-![C grid around NACA 2412, trailing edge](img/c-grid-edge.png)
+- *first cell error*: largest relative error over all wall nodes.
+- *deviation*: difference of a cell's corner angles from 90 degrees. *max* is over all cells, *away* over
+  cells more than 3 cells from the trailing edge, *mean* over all corners.
+- *growth*: largest relative change in size between neighbouring cells, along the wall (xi) and away from it
+  (eta).
+- Groups of shapes show the median / the 90th percentile.
+- *CPU ms*: processor time from the file (for procedural airfoils: from the boundary) to nodes in memory, best
+  of {repeat} (procedural: one run), one thread of {machine}, while other programs used the machine.
+
+A sharp trailing edge puts an angle near 180 degrees into one line of any O grid. It therefore gets a C grid
+unless `--topology` says otherwise.
+
+![C grid around NACA 2412, trailing edge](../img/c-grid-edge.png)
 """
 CONSTRUCT2D = """
-## Construct2D
+## Compared with Construct2D
 
-The same figures of Construct2D's hyperbolic grids, 250x100, first cell 1e-5, all corners of all cells (its
-own figure leaves obtuse ones out). It rounds blunt edges: its O grids compare with ours with the edge
-rounded.
+The same figures for Construct2D's hyperbolic grids: 250x100, first cell 1e-5, all corners of all cells.
+Construct2D rounds blunt trailing edges, so its O grids compare with ours with the edge rounded.
 
-| grid | off 90, largest / mean | ours |
+| grid | deviation, max / mean | ours |
 | --- | --- | --- |
 | O, NACA 0012, blunt | 18.7 / 3.5 | {0} |
 | O, LS(1)-0417, blunt | 24.8 / 3.3 | see the blunt, rounded files |
 | C, NACA 0012, sharp | 14.2 / 1.8 | {1} |
 
-Its growth is 0.10 to 0.18 along and 0.13 away from the wall, its first cell exact, its time 150 to 270 ms at
-250x100 and 1.24 s at 500x200.
+Construct2D's growth is 0.10 to 0.18 along the wall and 0.13 away from it. Its first cell is exact. It takes
+150 to 270 ms at 250x100 and 1.24 s at 500x200.
 
-The procedural shapes have walls spaced by every law, some with neighbours three times as large and cells at
-the edge hardly longer than high.
+The walls of the procedural airfoils are spaced by every law. In some of them neighbouring cells differ by a
+factor of three, and cells at the trailing edge are hardly longer than high.
 """
-UNASKED = """
+DEFAULT_FIRST_CELL = """
 ## C grids without a first cell
 
-`--topology c` without `--wall-spacing`: marched with a first cell of a twentieth of the smallest one along
-the wall, more where rows are few, or minimised (`--method variational`), which is what `auto` falls back to.
-*first cells*: the lowest and the highest at the wall, in chords; the rest as above.
+`--topology c` without `--first-cell`. *marched* (`--method auto`) uses a first cell of one twentieth of the
+smallest cell along the wall, or a higher one where rows are few. *variational* is `--method variational`.
+*first cells*: lowest and highest first cell at the wall, in chords. Other columns as above.
 
 """
 SQUARE = (100, 200, 400)
@@ -120,7 +125,7 @@ def main() -> None:
     }
     if options.files:
         groups |= of_files(sorted(options.files.glob("*.dat")))
-    heads = "shapes|nodes|H|folded|first cell|off 90|away|mean|growth xi|growth eta|CPU ms"
+    heads = "shapes|nodes|H|folded|first cell error|deviation, max|away|mean|growth xi|growth eta|CPU ms"
     rows = [f"| {heads.replace('|', ' | ')} |", "| --- " * 11 + "|"]
     for name, cases in groups.items():
         rows += [row(name, cases, *size) for size in SIZES]
@@ -128,7 +133,7 @@ def main() -> None:
     ours = [angles(groups[name][0]) for name in ("NACA 0012, blunt edge rounded", "NACA 0012, C")]
     page = "\n".join([HEAD.format(machine=machine(), repeat=REPEAT), *rows, CONSTRUCT2D.format(*ours)])
     most = max((group for name, group in groups.items() if name.endswith(", C")), key=len)
-    page += UNASKED + "\n".join(unasked_rows(most)) + "\n"
+    page += DEFAULT_FIRST_CELL + "\n".join(default_rows(most)) + "\n"
     print(page)
     if options.page:
         options.page.write_text(page)
@@ -182,16 +187,16 @@ def procedural_row(count: int, ni: int, nj: int, first: float) -> str:
         begun = time.process_time()
         nodes = hyperbolic(edges, wall_spacing=first).grid.nodes
         table.append([*figures(nodes, first * edges.chord, 0), 1e3 * (time.process_time() - begun)])
-    return line(f"{count} procedural, any wall spacing law", np.array(table), ni, nj, first)
+    return line(f"{count} procedural, every wall spacing law", np.array(table), ni, nj, first)
 
 
-def unasked_rows(cases: list[Case]) -> list[str]:
+def default_rows(cases: list[Case]) -> list[str]:
     """Return the table of C grids without a first cell."""
-    heads = "way|nodes|folded|off 90|mean|growth xi|growth eta|first cells|CPU ms"
+    heads = "method|nodes|folded|deviation, max|mean|growth xi|growth eta|first cells|CPU ms"
     rows = [f"| {heads.replace('|', ' | ')} |", "| --- " * 9 + "|"]
     for n in SQUARE:
         for name in ("auto", "variational"):
-            table = np.array([unasked(case, name, n) for case in cases])
+            table = np.array([defaults(case, name, n) for case in cases])
             cells = ["marched" if name == "auto" else name, f"{n}x{n}", f"{table[:, 0].sum():.0f}"]
             for k, digits in ((1, 1), (2, 2), (3, 2), (4, 3)):
                 values = np.median(table[:, k]), np.quantile(table[:, k], 0.9)
@@ -201,11 +206,13 @@ def unasked_rows(cases: list[Case]) -> list[str]:
     return rows
 
 
-def unasked(case: Case, name: str, n: int) -> list[float]:
+def defaults(case: Case, name: str, n: int) -> list[float]:
     """Return folded cells, two angles, two growths, the least and greatest first cell, and milliseconds."""
     edges = case.make().boundary(Sampling(n, n, "c", te=case.te))  # type: ignore[arg-type]
     begun = time.process_time()
-    nodes = solve_automatic(edges, solve if name == "auto" else minimise, name).grid.nodes
+    nodes = (
+        (elliptic() if name == "auto" else fewer_on_quads(method_named(name))).solve([edges])[0].grid.nodes
+    )
     spent = 1e3 * (time.process_time() - begun)
     wake = edges.wake + 1
     found = figures(nodes, 1.0, wake)

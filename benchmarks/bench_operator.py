@@ -1,6 +1,6 @@
 """The operators beside every way without a network: valid grids, distances, angles, time. One honest page.
 
-    python benchmarks/bench_operator.py [--files FOLDER] [--keep FOLDER] [--page docs/benchmarks.md]
+    python benchmarks/bench_operator.py [--files FOLDER] [--keep FOLDER] [--page docs/benchmarks/o-grids.md]
 
 Shapes are procedural airfoils of a seed that no model was trained on, the ``.dat`` files of FOLDER, random
 four-sided domains and the paper's families. All ways of a table run on the same boundaries, one thread; with
@@ -45,7 +45,7 @@ from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
-OURS = "**infer (base, polish auto)**"
+OURS = "**infer, default**"
 SOLVER = "multigrid Winslow"
 SIZES = (100, 200, 400, 800, 1600, 3200)
 LARGEST = {"variational": 800}
@@ -109,14 +109,13 @@ def main() -> None:
 def sections(options: argparse.Namespace, kept: Kept):  # type: ignore[no-untyped-def]
     """Yield the page part by part."""
     for title, shapes, k, ways in airfoil_tables(options):
-        told = ways or AIRFOILS
-        yield table(f"{title} ({len(shapes)})", rows(kept, title, shapes, k, told))
+        yield table(f"{title} ({len(shapes)})", rows(kept, title, shapes, k, ways or AIRFOILS))
     yield folds(kept, options.many)
     for size in options.domains.split(","):
         n, count = (int(word) for word in size.split(":"))
         title, shapes = f"Random four-sided domains, {n}x{n}", random_domains(count, n)
         ways = {way: make for way, make in DOMAINS.items() if n > 65 or not way.endswith("65")}
-        yield table(f"{title} ({len(shapes)})", rows(kept, title, shapes, 2, ways), DOMAINS_TOLD)
+        yield table(f"{title} ({len(shapes)})", rows(kept, title, shapes, 2, ways), DOMAINS_NOTE)
     yield families(kept)
     yield times(kept)
     yield WHICH
@@ -139,24 +138,24 @@ def airfoil_tables(options: argparse.Namespace):  # type: ignore[no-untyped-def]
 def folds(kept: Kept, count: int) -> str:
     """Return a table: how many procedural airfoils have no folded cell before and after the guard."""
     lines = [
-        f"\n## Folds before the guard and after it, {count} procedural airfoils, 200x200\n",
-        f"| spacing | {OURS} | after the guard | {SOLVER} |",
+        f"\n## Share of grids without folded cells, {count} procedural airfoils, 200x200\n",
+        f"| spacing | {OURS} | after repair | {SOLVER} |",
         "| --- | --- | --- | --- |",
     ]
 
     def folded(shape: Shape) -> list[bool]:
         edges = shape.make(1)
-        grid = infer(edges).grid
-        first = count_folded(grid.nodes) > 0
-        after = first and count_folded(guard(grid, edges, allow_invalid=True)[0].nodes) > 0
+        solution = infer(edges)
+        first = count_folded(solution.grid.nodes) > 0
+        after = first and count_folded(guard(solution, edges, allow_invalid=True).grid.nodes) > 0
         return [first, after, count_folded(winslow(edges).grid.nodes) > 0]
 
     for spacing in ("conformal", "cosine", "curvature", None):
         shapes = random_airfoils(count, 200, spacing)  # type: ignore[arg-type]
-        told = "every law, random steps at the edges" if spacing is None else str(spacing)
-        found = [kept.row(("folds", told, one.name), partial(folded, one)) for one in shapes]
+        label = "every law, random first cells at both edges" if spacing is None else str(spacing)
+        found = [kept.row(("folds", label, one.name), partial(folded, one)) for one in shapes]
         share = 100.0 * (1.0 - np.array(found).mean(axis=0))
-        lines.append(f"| {told} | {share[0]:.1f} % | {share[1]:.1f} % | {share[2]:.1f} % |")
+        lines.append(f"| {label} | {share[0]:.1f} % | {share[1]:.1f} % | {share[2]:.1f} % |")
     return "\n".join(lines) + "\n"
 
 
@@ -167,16 +166,16 @@ def families(kept: Kept) -> str:
         "harmonic base": DOMAINS["harmonic base"],
         "Winslow, coarse 33": DOMAINS["Winslow, coarse 33"],
         SOLVER: winslow,
-        "ours": partial(operate, "quad-winslow", 0),
-        "ours, polish": partial(operate, "quad-winslow", 2),
+        "operator": partial(operate, "quad-winslow", 0),
+        "operator, polish": partial(operate, "quad-winslow", 2),
     }
-    ring = {**quad, "ours": lambda b: infer(b, polish="off"), "ours, polish": infer}
+    ring = {**quad, "operator": lambda b: infer(b, polish="off"), "operator, polish": infer}
     plate = {
         **quad,
-        "ours": partial(operate, "hole-winslow", 0),
-        "ours, polish": partial(operate, "hole-winslow", 2),
+        "operator": partial(operate, "hole-winslow", 0),
+        "operator, polish": partial(operate, "hole-winslow", 2),
     }
-    lines = [FAMILIES_TOLD, "| family | " + " | ".join([*quad, "MeshONet", "MeshONet-hard"]) + " |"]
+    lines = [FAMILIES_NOTE, "| family | " + " | ".join([*quad, "MeshONet", "MeshONet-hard"]) + " |"]
     lines.append("| --- |" + " --- |" * (len(quad) + 2))
     for name in FAMILIES:
         for split in ("interpolation", "extrapolation"):
@@ -192,26 +191,26 @@ def families(kept: Kept) -> str:
 
 def times(kept: Kept) -> str:
     """Return a table of grid-stage milliseconds around airfoils and inside the arch."""
-    lines = [TIMES_TOLD, "| way | " + " | ".join(f"{n}x{n}" for n in SIZES) + " |"]
+    lines = [TIMES_HEAD, "| method | " + " | ".join(f"{n}x{n}" for n in SIZES) + " |"]
     lines.append("| --- |" + " --- |" * len(SIZES))
     sharp, blunt = (partial(section, name) for name in ("2412-sharp", "2412"))
     network = {way: AIRFOILS[way] for way in ("**network, polish auto**",)}
     general = {way: DOMAINS[way] for way in ("**quad-general**", "**quad-general, 5 steps**")}
-    copy: dict[str, Way | None] = {"copy of the result into fresh memory": None}
-    for told, shape, ways in (
+    copy: dict[str, Way | None] = {"copy of the grid in memory": None}
+    for label, shape, ways in (
         ("sharp edge", sharp, {OURS: infer}),
         ("blunt edge", blunt, {OURS: infer, **network, **COMMON}),
         ("arch", partial(ARCH.boundary, 0.3), {**general, **COMMON}),
-        ("any", sharp, copy),
+        ("all", sharp, copy),
     ):
         for way, make in ways.items():
             sizes = [n for n in SIZES if n <= LARGEST.get(way, n)]
             found = [
-                kept.row(("times", told, way, str(n)), lambda n=n, do=make, of=shape: best(do, of(n, n)))
+                kept.row(("times", label, way, str(n)), lambda n=n, do=make, of=shape: best(do, of(n, n)))
                 for n in sizes
             ]
             cells = [f"{spent:.1f}" for spent in found] + [""] * (len(SIZES) - len(sizes))
-            lines.append(f"| {told}: {way} | " + " | ".join(cells) + " |")
+            lines.append(f"| {label}: {way} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -244,57 +243,70 @@ def machine() -> str:
     return f"{names[0] if names else platform.processor()}, one thread"
 
 
-HEAD = """# Benchmarks
+HEAD = """# All methods compared: airfoils and four-sided domains
 
-<!-- made by python benchmarks/bench_operator.py --page docs/benchmarks.md (make bench) -->
+<!-- made by python benchmarks/bench_operator.py --page docs/benchmarks/o-grids.md (make bench) -->
 
-Every operator in the package beside every way without a network, before the guard, in one run on
-{machine} of a busy, shared machine. Times are processor time of
-the grid stage, set-up included: medians over shapes, each run once; their last digits are noise. Rows in bold
-are the package's operators.
+Read this page to see what each method costs and how close its grid comes to a converged solution. Advice in
+short form is in [choosing a method](../choosing-a-method.md).
 
-Distances are relative L2, from the middle of the shape: near the wall (within 1.5 chords of an airfoil; in
-the tenth of the rows along each side of a domain) and over all nodes. Around airfoils they are to Winslow's
-solution on the same wall and outer nodes, converged to residual 1e-8 on grids of four and two times the cells
-(at 800x800 two times and the same) and extrapolated; variational grids are measured against the variational
-optimum on the same nodes. Transfinite interpolation spaces its nodes otherwise across the field, so its
-distance says little. Angles are ratios to the multigrid solution at residual 1e-8 on the same nodes: below 1
-is better than the PDE. The multigrid solver stops at discretisation level, its default.
-Bodies that the airfoil operator refuses, for spacing that it does not resolve, are solved by multigrid or
-meshed by `hole-o`, and these decide the worst distances of `infer`. Boundaries of the tables of distances
-are every fourth node of finer ones (at 800x800 every second), which may leave out corners of a blunt edge
-and so moves the largest angles there by some percent; folds are counted on boundaries sampled so.
-On evenly spaced walls that reference is itself good to about 1e-4, since its order falls to 1.4 at trailing
-edges, and the operator is away from it on purpose where the first lines off an edge halve its angle.
+**Timing.** All methods of a table ran on the same boundaries, in one run, on {machine}, while other programs
+used the machine. *ms* is the processor time of making the grid: set-up is included; reading, writing and
+repair are not. Each value is the median over the shapes, each run once. The last digits are noise. Bold rows
+are the conformal and neural operators of this package.
+
+**Distance** is a relative L2 norm. It is the root mean square distance of the nodes from the reference nodes,
+divided by that of the reference nodes from the middle of the shape. *Near the wall* means within 1.5 chords
+of the middle of an airfoil, or in the tenth of the rows next to each side of a four-sided domain.
+
+**Reference.** Winslow's equations are solved to a residual of 1e-8 with two and with four times the cells in
+each direction (at 800x800: with the same and twice the cells), and the two solutions are extrapolated.
+Variational grids are compared with the full variational solve on the same nodes.
+
+**Angles** are divided by those of the multigrid solution at residual 1e-8 on the same nodes. A value below 1
+is better than the PDE solution. *Valid* is the share of grids without a folded cell before any repair.
+
+Five remarks:
+
+- TFI distributes nodes differently across the field, so its distance says little about its quality.
+- Multigrid Winslow stops when the error of the iteration is below that of the discretisation, its default.
+- Some bodies have wall cells that the airfoil operator cannot resolve. `infer` hands these to multigrid or to
+  `hole-o`, and they decide its worst distances.
+- In the tables of distances, boundaries are every fourth node of a finer boundary (at 800x800 every second).
+  This can leave out corners of a blunt trailing edge and changes the largest angles there by a few percent.
+  The table of folded cells samples its boundaries directly.
+- On uniformly spaced walls the reference is accurate to about 1e-4 only, because its order falls to 1.4 at
+  trailing edges. The operator also differs from the reference on purpose: the grid lines that leave the
+  trailing edge bisect its angle.
 """
-DOMAINS_TOLD = """`quad-winslow` and Winslow's ways are measured against Winslow's solution, `quad-general`
-and variational ways against the variational optimum."""
-FAMILIES_TOLD = """
-## The paper's six families, 101x101, test members
+DOMAINS_NOTE = """Winslow's methods and `quad-winslow` are compared with Winslow's solution, variational
+methods and `quad-general` with the full variational solve."""
+FAMILIES_NOTE = """
+## The six families of the MeshONet paper, 101x101, test members
 
-Median relative L2 over all nodes to Winslow's converged solution, and how many of the six grids fold
-(Winslow's own wrenches do). Ours is `quad-winslow` for the first four, the airfoil operator for the airfoil
-and `hole-winslow` for the plate with a hole, which have seen none of these shapes. The paper's models were
-trained on 30 members of each family; their results are those
-of [the paper, done again](paper/README.md), measured against the solver's own grid.
+Median relative L2 distance over all nodes to Winslow's converged solution; in brackets, how many of the six
+grids have folded cells. Winslow's own grids of the wrench are folded. The operator is `quad-winslow` for the
+first four families, the airfoil operator for the airfoil and `hole-winslow` for the plate with a hole. None
+of them was trained on these shapes. The paper's models were trained on 30 members of each family; their
+figures come from [the reproduction of the paper](../paper/README.md), where they are compared with the grid
+of the PDE solver.
 """
-TIMES_TOLD = """
-## Grid stage, milliseconds, float64, best of 3
+TIMES_HEAD = """
+## Time to make the grid, milliseconds, float64, best of 3
 """
 WHICH = """
-## What the defaults are, and why
+## What follows for the defaults of `infer`
 
-`infer` gives an airfoil's O grid by the operator without its network: the harmonic base in the strip,
-polished until it changes nothing, is as near to the solution and as well shaped, in less time. The network
-answers where no iteration is wanted: with `--polish off`, or named with `--model airfoil-o`. A four-sided
-domain gets the variational grid, through fewer nodes where that measures as good, because for one grid no
-network beats that; batches of domains go through `--model quad-general`, where one pass of the network is
-many times faster than any solve ([the operator for four-sided domains](quad-operator.md)).
-
-C grids have no model: the network for four-sided domains is worse there than transfinite interpolation
-([figures](body-operator.md#c-grids-no-model)), so `infer` marches them from wall and wake, and minimises
-where that does not suit. Many airfoils at once gain little: the network takes one pass for 64 of them, but
-lifts, polish and nodes are each body's own.
+- **O grids around airfoils** use the conformal map and Picard iteration without the network. The result is as
+  close to the solution and as well shaped, in less time. The network is used with `--polish off` or
+  `--model airfoil-o`.
+- **Four-sided domains** get the variational grid, solved on fewer nodes where that gives an equal grid. For a
+  single grid no network is better. For batches, `--model quad-general` is many times faster than any solver
+  ([figures](quad-operator.md)).
+- **C grids** are marched from wall and wake, or minimised where marching does not suit. The network for
+  four-sided domains makes worse C grids than TFI ([figures](body-operator.md#c-grids-no-model)).
+- **Batches of airfoils** gain little from the network. It evaluates 64 airfoils in one pass, but the map, the
+  iteration and the evaluation of nodes are separate for each body.
 """
 
 if __name__ == "__main__":

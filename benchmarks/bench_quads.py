@@ -1,6 +1,6 @@
 """Four-sided domains by the quad network beside every way without one: folds, angles, distances, time.
 
-    python benchmarks/bench_quads.py [--sizes 65:120,193:60,385:30] [--page docs/quad-operator.md]
+    python benchmarks/bench_quads.py [--sizes 65:120,193:60,385:30] [--page docs/benchmarks/quad-operator.md]
 
 Domains are the random ones of the tests, of a generator that no model was trained on, and the paper's
 families. Folds are counted before the guard. Processor time of one thread, in one run.
@@ -136,7 +136,7 @@ def large(n: int, network: Callable[..., Solution]) -> str:
     }
     lines = [
         f"\n## The arch at {n} x {n}\n",
-        "| way | folded | max / mean angle | CPU ms |",
+        "| method | folded | max / mean angle | CPU ms |",
         "| --- | --- | --- | --- |",
     ]
     for name, way in ways.items():
@@ -150,8 +150,8 @@ def batches(model: str, clock: bool) -> str:
     """Return the table of batches at 65 x 65 nodes, in memory, with rates by the `clock` when asked."""
     boundaries = domains(65, 80)[:64]
     lines = [
-        "\n## 64 domains together, 65 x 65\n",
-        "| way | CPU ms a grid | grids a second and core | times the solves one by one |",
+        "\n## 64 domains in one batch, 65 x 65\n",
+        "| method | CPU ms a grid | grids a second on one core | speed-up over single solves |",
         "| --- | --- | --- | --- |",
     ]
     ways: dict[str, Callable[[], object]] = {
@@ -226,55 +226,44 @@ def families(twin: str) -> str:
 
 
 FAMILIES = """
-## The paper's families, 101 x 101, test members
+## The families of the MeshONet paper, 101 x 101, test members
 
-Relative L2 to Winslow's solution, median, and grids with folds in brackets: Winslow's own wrenches fold.
-`quad-winslow` has seen none of these shapes; the paper's models were trained on 30 members of each
-([the paper, done again](paper/README.md)).
+Median relative L2 distance to Winslow's solution; in brackets, how many of the six grids have folded cells.
+Winslow's own grids of the wrench are folded. `quad-winslow` was not trained on these shapes. The paper's
+models were trained on 30 members of each family ([the reproduction](../paper/README.md)).
 
 | family | quad-winslow | 1 cycle | MeshONet | MeshONet-hard |
 | --- | --- | --- | --- | --- |"""
-HEAD = """# The operator for four-sided domains
+HEAD = """# The neural operator for four-sided domains: accuracy and time
 
-<!-- made by python benchmarks/bench_quads.py --page docs/quad-operator.md -->
+<!-- made by python benchmarks/bench_quads.py --page docs/benchmarks/quad-operator.md -->
 
-`infer --model quad-general` makes the variational grid of any four-sided domain by one pass of a network on
-33 x 33 nodes, evaluated at any resolution; `quad-winslow` is the same network's other answer, Winslow's grid.
-`--polish N` takes up to N steps of descent after it (of multigrid for Winslow's): of five the first three are
-steps of Newton's method on the network's own nodes, fewer where one gains little, the last two of L-BFGS on
-all.
+Read this page to decide whether `infer --model quad-general` is good enough for a batch of four-sided
+domains. How the operator works is in [operators](../operators.md).
 
-On these nodes four Picard steps from the harmonic grid go most of the way to Winslow's equations, with
-differences of nearly fourth order and sine transforms for an inverse: the row "4 Picard steps", a tenth of a
-millisecond in a batch. The network sees that grid and the last step, in a frame without place, turn and size,
-and makes up for corners and tails, or goes on to the variational grid. Both commute with the eight
-relabellings of a quad by construction, so a mirrored domain has the mirrored grid to rounding. Edges are met
-bitwise. `quad-winslow` takes three more such steps after the network, on 65 x 65 nodes and extrapolated
-(Anderson's method). An answer that folds is taken 95, 90 or 80 % of the way, where that does not. Grids may
-fold before the guard all the same; its repairs are not in these tables.
-
-Angles are the largest included angle of each cell, in degrees. The gain is what a way improves on Winslow's
-figure, over what the full variational grid does. Processor time of one thread of a shared, busy machine.
+- `quad-general` predicts the variational grid, `quad-winslow` Winslow's grid. *n steps* and *n cycles* are
+  `--polish n`: iterations of the variational method, or multigrid cycles for Winslow's grid.
+- *4 Picard steps, 33* is the grid from which the network starts, without the network.
+- *valid*: share of grids without a folded cell, before repair.
+- *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
+  of Winslow's grid.
+- *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the domains.
+- *gain*: the improvement over Winslow's angle as a share of the improvement that the full variational grid
+  has; in the mean angle over all domains together and as a median, and in the largest angle.
+- *CPU ms*: processor time of one thread, while other programs used the machine.
 """
 TAIL = """
-## Which to use
+## What follows
 
-For a single domain the coarse variational solve has the last percent of the mean angle, and it is what
-`infer` does unless a model is named. For batches name `--model quad-general`: its members go through the
-network together, at a fraction of the time of any solve, and `--polish 2` to 5 takes out folds and kinks.
-For Winslow's grid the network earns nothing: the steps alone, with the three on 65 x 65 nodes, come as near,
-and one cycle of multigrid is worth more than either.
-In Python the fastest call is `infer_quads(boundaries, "quad-general", "off", "float32", threads=2)`: single
-precision in the network, and a core for each thread; the grids do not depend on their number.
-
-## Gradients
-
-`meshonet.solvers.neural.quads.differentiable.QuadGrids` is the same in torch, equal to 1e-12, with gradients from
-every node to the nodes of the boundary; on a GPU with `device="cuda"`.
-[`throat.py`](../examples/shape-optimisation/throat.py) finds the wall of a duct with
-a given throat that leaves the least skewed cells:
-
-![the duct, coloured by its largest angles](img/throat.png)
+- **One domain**: the variational solve on fewer nodes gives the last percent of the mean angle. It is the
+  default of `infer`.
+- **Batches**: name `--model quad-general`. All members go through the network together, in a fraction of the
+  time of any solver. `--polish 2` to `5` removes folded and kinked cells.
+- **Winslow's grid**: the network gains nothing. The Picard steps alone come as close, and one multigrid cycle
+  gains more than either.
+- **Python**: the fastest call is `infer_quads(boundaries, "quad-general", "off", "float32", threads=2)`. The
+  network runs in single precision, on one core for each thread. The grids do not depend on the number of
+  threads.
 """
 
 if __name__ == "__main__":

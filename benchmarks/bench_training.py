@@ -1,6 +1,6 @@
-"""Training throughput of the faithful MeshONet beside the published scheme: one geometry a step, every place.
+"""Training throughput of the faithful MeshONet beside the published scheme: one geometry a step, all points.
 
-    python benchmarks/bench_training.py [--seeds 3] [--page docs/training-speed.md]
+    python benchmarks/bench_training.py [--seeds 3] [--page docs/benchmarks/training-speed.md]
 
 The published scheme takes one geometry a step, 15,000 times the thirty of the training set. Three loops
 train the same network on the same 30 arches of 101 x 101 nodes, one thread, from the same first weights:
@@ -61,7 +61,7 @@ def main() -> None:
     options = parser.parse_args()
     torch.set_num_threads(1)
     samples = arches()
-    rows = [Row("one geometry a step, every place", 1), Row("one geometry a step, 1,200 places", 1)]
+    rows = [Row("one geometry a step, all points", 1), Row("one geometry a step, 1,200 points", 1)]
     rows += [Row(f"`meshonet train --batch {n} --points {sum(points)}`", n) for n, points in BATCHES]
     pace(rows, samples, options.rate, options.batched_rate)
     for seed in range(options.seeds):
@@ -208,7 +208,7 @@ class Row:
 def page(rows: list[Row]) -> str:
     """Return the table."""
     every, drawn = rows[:2]
-    head = ["loop", "geometries a second", "times that of every place", "times that of 1,200 places"]
+    head = ["loop", "geometries a second", "speed-up over all points", "speed-up over 1,200 points"]
     head += [f"loss after {n:,}" for n in SEEN]
     lines = [head, ["---"] * len(head)]
     for row in rows:
@@ -216,13 +216,16 @@ def page(rows: list[Row]) -> str:
         lines.append([row.name, f"{row.speed:,.0f}", *times, *(row.cell(n) for n in SEEN)])
     table = "\n".join("| " + " | ".join(line) + " |" for line in lines)
     mark = "<!-- table made by python benchmarks/bench_training.py -->"
-    return f"# Training throughput\n\n{mark}\n\n{TOLD}\n\n{table}\n"
+    return f"# Training throughput\n\n{mark}\n\n{NOTE}\n\n{table}\n"
 
 
-TOLD = """The faithful `meshonet` on 30 arches of 101 x 101 nodes, one thread, processor seconds.
-The published scheme takes one geometry a step; whether at every place or at places drawn at random is
-not known, so both are here. Losses are of every place of every grid: median, least and largest of the
-seeds."""
+NOTE = """Read this page before choosing `--batch` and `--points` of `meshonet train --model meshonet`. The
+settings are explained in [paper models](../paper-models.md).
+
+The `meshonet` model on 30 arches of 101 x 101 nodes, one thread, processor seconds. The published scheme
+takes one geometry a step. Whether it uses all grid points or points drawn at random is not known, so both are
+timed. Losses are over all points of all grids: median (least to largest) of the seeds, after the stated
+number of geometries."""
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 """Quad grids by TFI, Winslow and the variational method, directly and through a coarse solve.
 
-    python benchmarks/bench_variational.py [--sizes 65,129,800] [--domains 60] [--page docs/quad-grids.md]
+    python benchmarks/bench_variational.py [--sizes 65,129,800] [--domains 60] [--page PAGE.md]
 
 Folded cells, included angles (largest of each cell), deviation from orthogonal at the walls, relative L2
-distance to the full solve, and processor time of one thread, beside that of a copy of the nodes.
+distance to the full solve, and processor time of one thread, beside that of copy of the grid in memory.
 """
 
 from __future__ import annotations
@@ -33,12 +33,13 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
 from meshonet.solvers.neural.operator import infer as operate
 from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
+from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
 Way = Callable[[Boundary], Solution]
@@ -53,7 +54,7 @@ def main() -> None:
     parser.add_argument("--large", type=int, default=3200, help="one more size, of the arch alone")
     parser.add_argument("--domains", type=int, default=60, help="random domains to try")
     parser.add_argument("--bodies-at", default="200x100", help="nodes around bodies")
-    parser.add_argument("--page", type=Path, help="markdown page to write, its picture beside it in img/")
+    parser.add_argument("--page", type=Path, help="markdown page to write, its picture goes to ../img/")
     options = parser.parse_args()
     parts = [HEAD, PAPER]
     for n in (int(word) for word in options.sizes.split(",")):
@@ -65,7 +66,7 @@ def main() -> None:
     print(text)
     if options.page:
         options.page.write_text(text)
-        picture(options.page.parent / "img" / "quad-grids.png")
+        picture(options.page.parents[1] / "img" / "quad-grids.png")
 
 
 def ways(n: int) -> dict[str, Way]:
@@ -78,7 +79,7 @@ def ways(n: int) -> dict[str, Way]:
         found["**variational**"] = variational
     for m in counts:
         found[f"**variational --coarse {m}**"] = partial(solve_coarse, method=variational, n=m, smooth=True)
-    found["operator, quad-general"] = lambda b: infer_quads([b], "quad-general")[0]
+    found["neural operator, quad-general"] = lambda b: infer_quads([b], "quad-general")[0]
     return found
 
 
@@ -92,11 +93,11 @@ def shapes(n: int, makers: tuple[Callable[[int, int], Boundary], ...] = SHAPES) 
         for name, way in ways(n).items():
             full_solve = "coarse" not in name
             seconds, nodes = best(way, boundary, 7 if n < 500 else 1 if full_solve else 4)
-            family = "variational" if name.startswith("operator") else name.strip("*").split()[0]
+            family = "variational" if name.startswith("neural") else name.strip("*").split()[0]
             full = reference.setdefault(family, nodes)
             lines.append(row(name, nodes, full, seconds))
         copied = min(clocked(partial(full.copy, order="K"))[0] for _ in range(5))
-        lines.append(f"| a copy of the nodes | | | | | | {1e3 * copied:.1f} |")
+        lines.append(f"| copy of the grid in memory | | | | | | {1e3 * copied:.1f} |")
     return "\n".join(lines)
 
 
@@ -124,7 +125,7 @@ def domains(n: int, count: int) -> str:
     """Return the table over random domains at n x n nodes."""
     boundaries = [b for seed in range(count) if (b := random_quad(seed, n, n)) is not None]
     lines = [f"\n## {len(boundaries)} random four-sided domains, {n} x {n}\n"]
-    lines += ["| way | with folds | max / mean angle, averaged | worse than Winslow | CPU ms, median |"]
+    lines += ["| method | folded grids | max / mean angle, average | worse than Winslow's | CPU ms, median |"]
     lines += ["| --- | --- | --- | --- | --- |"]
     reference: list[tuple[float, float]] = []
     for name, way in ways(65).items():
@@ -217,36 +218,39 @@ def clocked(call: Callable[[], T]) -> tuple[float, T]:
     return time.process_time() - begun, result
 
 
-TABLE = "| way | folded | max / 99 % / mean angle | off 90 at walls | from the full solve | CPU ms |"
+TABLE = "| method | folded | max / 99 % / mean angle | deviation at walls | distance to full solve | CPU ms |"
 RULE = "| --- | --- | --- | --- | --- | --- |"
 BODIES = (
-    "| body | way | folded | max / 99 % / mean angle | CPU ms |",
+    "| body | method | folded | max / 99 % / mean angle | CPU ms |",
     "| --- | --- | --- | --- | --- |",
 )
-HEAD = """# Quad grids: TFI, Winslow, variational
+HEAD = """# Four-sided domains: TFI, Winslow and variational grids
 
-<!-- made by python benchmarks/bench_variational.py --page docs/quad-grids.md -->
+<!-- made by python benchmarks/bench_variational.py --page docs/benchmarks/variational.md -->
 
-Angles are the largest included angle of each cell, in degrees; a corner of the boundary itself (arch 147.5,
-hexagon 135) bounds the maximum from below. Distances are relative, in L2, to the method without --coarse.
-Processor time of one thread of a shared, busy machine, the best of several runs. Folds are counted as they
-leave the solver, before the guard repairs them. The operator for four-sided domains has
-[a page of its own](quad-operator.md). Around a notch the full variational solve takes many iterations on
-fine grids; `--coarse auto` goes through fewer nodes there.
+Read this page to choose between `tfi`, `solve-pde --method winslow` and `solve-pde --method variational`, and
+to see what `--coarse N` saves and costs. The methods are described in [elliptic](../elliptic.md) and
+[variational grids](../variational.md). The neural operator has [its own page](quad-operator.md).
 
-How far 33 nodes are from the full solve is the discretisation's error, of second order, not the descent's:
-with both solved to 1e-6 the distance is the same. Extrapolated from 17 and 33 nodes it is half, in the
-median of 93 domains, but largest angles are wider and more grids fold, so it is not done; nor does a start
-extrapolated so save iterations.
+- *angle*: largest included angle of each cell, in degrees. A corner of the boundary itself (arch 147.5,
+  hexagon 135) is a lower bound of the maximum.
+- *deviation at walls*: mean difference from 90 degrees of the lines that leave the four sides.
+- *distance to full solve*: relative L2 distance to the same method without `--coarse`.
+- *folded*: inverted cells as they leave the solver, before repair.
+- *CPU ms*: processor time of one thread, best of several runs, while other programs used the machine.
 
-![Grids by five ways, coloured by the largest included angle](img/quad-grids.png)
+Around a notch the full variational solve takes many iterations on fine grids; `--coarse auto` solves on fewer
+nodes there. The distance of a solve on 33 nodes from the full solve is its discretisation error, of second
+order. Converging both solves to 1e-6 does not change it.
+
+![Grids by five methods, coloured by the largest included angle](../img/quad-grids.png)
 """
 PAPER = """
-## What the paper tells
+## What the MeshONet paper reports
 
-Xiao et al., arXiv 2501.11937, compare by colour maps of the largest included angle, without numbers: their
-MeshONet above TFI and PDE on arches and hexagons, equal to TFI on wrenches, not always above on moved
-semicircles. Their seconds, of Python on another machine, MeshONet on a GPU:
+Xiao et al., arXiv 2501.11937, compare methods by colour maps of the largest included angle, without numbers.
+They report MeshONet as better than TFI and PDE on arches and hexagons, as equal to TFI on wrenches, and as
+not always better on moved semicircles. Their seconds, with Python on another machine and MeshONet on a GPU:
 
 | nodes | PDE | TFI | MeshONet |
 | --- | --- | --- | --- |

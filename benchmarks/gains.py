@@ -23,12 +23,12 @@ from meshonet.solvers.solution import Solution
 Way = Callable[[Boundary], Solution]
 
 ANGLES = (
-    "| way | valid % | max and mean not above Winslow's % | max / mean angle, averaged "
-    "| gain in the mean %, of all / median | gain in the max % | CPU ms, median |",
+    "| method | valid % | no worse than Winslow % | max / mean angle, average "
+    "| gain in mean angle %, all / median | gain in largest angle % | CPU ms, median |",
     7 * "| --- " + "|",
 )
 DISTANCES = (
-    "\n| way | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
+    "\n| method | relative L2 to Winslow's solution, median / 90 % | CPU ms, median |",
     3 * "| --- " + "|",
 )
 
@@ -62,7 +62,7 @@ def gains(title: str, boundaries: Sequence[Boundary], ways: Mapping[str, Way]) -
             f"| {name} | {percent(folds == 0)} | {percent(low)} | {largest.mean():.1f} / {mean.mean():.2f} "
             f"| {100 * of_mean:.0f} / {100 * each:.0f} | {100 * of_max:.0f} | {1e3 * np.median(spent):.1f} |"
         )
-    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; gains are over these.")
+    lines.append(f"\nWinslow's own grid is valid in {int(valid.sum())}; the gains are over these.")
     return "\n".join(lines)
 
 

@@ -108,7 +108,7 @@ def around(edges: Boundary, goal: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
 
 TABLE = (
-    "| way | valid % | near the wall, median / worst | all nodes, median | max angle, median / worst "
+    "| method | valid % | near the wall, median / worst | all nodes, median | max angle, median / worst "
     "| mean angle | ms |",
     "| --- | --- | --- | --- | --- | --- | --- |",
 )
@@ -151,8 +151,9 @@ def as_good(found: Mapping[str, Floats]) -> str:
         ]
         if rivals:
             told.setdefault("; ".join(rivals), []).append(ours)
-    lines = [
-        f"- as good as {'; '.join(ours)}, in no more time, is: {rivals}".replace("**", "")
-        for rivals, ours in told.items()
-    ]
-    return "\n".join(["\nWithout a network,", *lines]) + "\n" if lines else ""
+    lines = [f"- for {'; '.join(ours)}: {rivals}".replace("**", "") for rivals, ours in told.items()]
+    return (
+        "\n".join(["\nMethods without a network that are as good, in no more time:\n", *lines]) + "\n"
+        if lines
+        else ""
+    )

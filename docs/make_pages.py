@@ -14,21 +14,43 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from PIL import Image
+
 from meshonet.formats.catalogue import page as formats_page
 from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.solvers.neural.weights import SECOND, described, shipped
 from meshonet_cli.reference import reference
 
 DOCS = Path(__file__).parent
-GRIDS = {"o": "O-grids", "quad": "Grids of four-sided domains"}
+GRIDS = {"o": "O grids", "quad": "Grids of four-sided domains"}
 
+MODELS_HEAD = """# Shipped models
+
+<!-- made by python docs/make_pages.py; a test keeps it current -->
+
+Look here for the training recipe and the held-out error of a model. When to use which model is said in
+[operators](operators.md). `meshonet models` prints the same data.
+
+Each model is a safetensors file in `solvers/neural/pretrained/` that carries its recipe and its figures.
+`make train` trains them again. The losses of every epoch are in `docs/curves`; `quad-first` is the first of
+two runs for `quad-general`.
+"""
 C_GRIDS = """## C grids: no model
 
-No network serves C grids, since none measures as good as what needs none. The network for four-sided
-domains alone is worse there than transfinite interpolation, and after five steps of descent still behind the
-variational grid ([figures](body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, and a
-wake cuts it open. `infer` marches C grids from wall and wake ([how](viscous.md)), minimises where the march
-does not suit, and its report says which; `--model`, `--polish` and `--device` are refused.
+No model for C grids is shipped, because none is as good as marching. The network for four-sided domains is
+worse there than transfinite interpolation; after five iterations it is still behind the variational grid
+([figures](benchmarks/body-operator.md#c-grids-no-model)). The strip of `airfoil-o` is periodic, which a wake
+does not allow. `infer` therefore [marches](marching.md) C grids from wall and wake and uses the variational
+method where marching does not suit. The report says which. `--model`, `--polish` and `--device` are refused.
+"""
+
+FAMILIES_HEAD = """# The six test families
+
+<!-- made by python docs/make_pages.py -->
+
+Use these families to train and compare operators. They are the test cases of the MeshONet paper; one number
+varies each shape. `sample-boundary --family NAME --count N` draws N members over the range, `--range A:B`
+chooses another range, and `solve-pde` makes their grids.
 """
 
 
@@ -44,19 +66,13 @@ def main() -> None:
 
 def models_page() -> str:
     """Return docs/models.md."""
-    lines = [
-        "# Shipped models\n",
-        "<!-- made by python docs/make_pages.py; a test keeps it current -->\n",
-        "`meshonet models` lists them. Each is a safetensors file in `solvers/neural/pretrained/` that",
-        "carries its recipe and held-out figures; `make train` makes it again, and its curve of losses\n"
-        "(`docs/curves`; quad-first is the first of two runs for `quad-general`).\n",
-    ]
+    lines = [MODELS_HEAD]
     for name in shipped():
         if name in SECOND:
-            lines += [f"## {name}\n", f"The Winslow grid of the network of {SECOND[name]}.\n"]
+            lines += [f"## {name}\n", f"Winslow's grid, predicted by the network of `{SECOND[name]}`.\n"]
             continue
         facts = described(name)
-        held_out = strip_figures if "strips" in facts["figures"] else quad_figures
+        errors = strip_figures if "strips" in facts["figures"] else quad_figures
         lines += [
             f"## {name}\n",
             f"{GRIDS[facts['topology']]}, {facts['parameters']:,} parameters.\n",
@@ -64,33 +80,32 @@ def models_page() -> str:
             "```json",
             json.dumps(facts["recipe"], indent=1),
             "```\n",
-            *held_out(facts["figures"], facts["topology"]),
+            *errors(facts["figures"], facts["topology"]),
             *curve(name),
             "",
         ]
-    lines.append(C_GRIDS)
-    lines.append("What that means for grids is on [the benchmark page](benchmarks.md).\n")
+    lines += [C_GRIDS, "The quality of the grids is on [the benchmark pages](benchmarks/README.md).\n"]
     return "\n".join(lines)
 
 
 def curve(name: str) -> list[str]:
-    """Return what the log of a model's training tells, where it was kept: docs/curves/NAME.csv."""
+    """Return a line about the losses of a model's training, where docs/curves/NAME.csv exists."""
     path = DOCS / "curves" / f"{name}.csv"
     if not path.exists():
         return []
     with path.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    told = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
-    losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in told)
+    some = [rows[k] for k in sorted({0, len(rows) // 4, len(rows) // 2, len(rows) - 1})]
+    losses = ", ".join(f"{float(row['held_out_loss']):.3g} after {row['epoch']}" for row in some)
     return [f"\nHeld-out loss by epoch: {losses} ([every epoch](curves/{name}.csv))."]
 
 
 def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
-    """Return what an airfoil operator's file says of strips it was not trained on."""
+    """Return the held-out errors of the airfoil operator."""
     lines = [
-        f"Held out: {figures['strips']} procedural airfoils, never trained on. Stored in float16.",
+        f"Held out: {figures['strips']} procedural airfoils, not used in training. Weights are in float16.",
         f"Error: {figures['error']}.\n",
-        "| way | median | 90 % | worst |",
+        "| method | median | 90 % | worst |",
         "| --- | --- | --- | --- |",
     ]
     for way, q in figures.items():
@@ -100,12 +115,13 @@ def strip_figures(figures: dict[str, Any], _: str) -> list[str]:
 
 
 def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
-    """Return what a quad network's file says of domains it was not trained on."""
+    """Return the held-out errors of a network for four-sided domains or bodies."""
     counts = "33 x 33" if topology == "quad" else "65 x 33"
     lines = [
-        f"Held out: {figures['domains']} random domains, never trained on. One network has both answers.",
-        f"Relative L2 to the grid it was taught, and grids without folds, on {counts} nodes, no polish.\n",
-        "| answer | median | 90 % | what it starts from | without folds |",
+        f"Held out: {figures['domains']} random domains, not used in training. One network predicts both",
+        f"grids. Errors are relative L2 distances to the solver's grid on {counts} nodes, without polish.",
+        "*start* is the grid that the network corrects, *valid* the share of grids without folded cells.\n",
+        "| predicted grid | median | 90 % | start | valid |",
         "| --- | --- | --- | --- | --- |",
     ]
     for answer, q in figures.items():
@@ -115,29 +131,23 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
                 f"| {answer} | {error['median']:.1e} | {error['p90']:.1e} | {q['base']:.1e} "
                 f"| {100 * q['fold_free']:.1f} % |"
             )
-    told = figures["variational"]
+    gain = figures["variational"]
     lines += [
         "",
-        f"Of what the variational grid improves on Winslow's: {100 * told['mean_gain']:.0f} % in the mean, "
-        f"{100 * told['max_gain']:.0f} % in the largest angle.",
+        "Share of the variational grid's improvement over Winslow's: "
+        f"{100 * gain['mean_gain']:.0f} % in the mean angle, {100 * gain['max_gain']:.0f} % in the largest.",
     ]
     return lines
 
 
 def families_page() -> str:
     """Return docs/families.md."""
-    lines = [
-        "# The six families\n",
-        "<!-- made by python docs/make_pages.py -->\n",
-        "The test cases of the MeshONet paper, each a shape that one number varies.",
-        "`sample-boundary --family NAME --count N` spreads N members over the range; `--range A:B`",
-        "chooses another. Grids: `solve-pde`.\n",
-    ]
+    lines = [FAMILIES_HEAD]
     for name in FAMILIES:
-        one = family(name)
+        member = family(name)
         lines += [
             f"## {name}\n",
-            f"{one.parameter}, {one.low:g} to {one.high:g}; topology {one.topology}.\n",
+            f"{member.parameter}, {member.low:g} to {member.high:g}; topology {member.topology}.\n",
             f"![{name}](img/{name}.png)\n",
         ]
     return "\n".join(lines)
@@ -158,6 +168,15 @@ def pictures(folder: Path) -> None:
         meshonet("sample-boundary", "--family", name, "--count", "1", "--res", "61x41", "-o", boundary)
         meshonet("solve-pde", boundary, "-o", grid)
         meshonet("plot", grid, *zoom, "-o", DOCS / "img" / f"{name}.png")
+    for path in (DOCS / "img").glob("*.png"):
+        reduce(path)
+
+
+def reduce(path: Path) -> None:
+    """Rewrite a picture with at most 1320 pixels a row and 96 colours: a fifth of the bytes."""
+    picture = Image.open(path).convert("RGB")
+    picture.thumbnail((1320, 1320), Image.Resampling.LANCZOS)
+    picture.quantize(96, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def meshonet(*words: object) -> None:

@@ -9,34 +9,49 @@ _PAGE = """# Formats
 
 <!-- made by python docs/make_pages.py; a test keeps it current -->
 
-`meshonet convert IN OUT` goes by the endings; `--from` and `--to` name a format where endings do not tell.
-*Names*: parts of the boundary keep their names. *3D*: `--extrude H` (`--planes K`) repeats it in z.
-*Many*: one file holds several.
+Look here for the files that meshonet reads and writes. `meshonet convert IN OUT` chooses by the endings;
+`--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
+table.
+
+*names*: names of boundary parts are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *many*:
+one file can hold several grids or boundaries.
 
 """
 _REST = """
-**Boundaries out of meshes and drawings** (Gmsh, SU2, DXF): their lines are joined to closed curves. One
-curve is a domain (its corners are those of the quadrilaterals, or the four places where names change) or a
-body; two, one in the other, are a body in its far field; several beside each other are a shape each. Names
-of physical groups, markers and layers become names of parts. A mesh of quadrilaterals that is structured
-gives back its nodes bit for bit. Meshes of three dimensions are refused. DXF needs `pip install
-'meshonet[dxf]'`. Of WKT and GeoJSON, a polygon with one hole is a body in its far field.
+## Boundaries from meshes and drawings
 
-**Plot3D** is told apart by its length and its cells: count or none, two or three dimensions, iblank,
-records, byte order, float32 or float64, planes along any index, `r*v`, commas and D exponents. Where two
-readings fit, the one whose cells all turn one way counts; `--plot3d WORDS` (or `--from plot3d:WORDS` in any
-command) says it, and chooses what is written: `--plot3d fortran,big,single`. iblank is told of and not
-kept.
+Lines of Gmsh, SU2 and DXF files are joined to closed curves. Names of physical groups, markers and layers
+become names of boundary parts.
 
-**Planes**: a file of three dimensions is read when it is one plane, or copies of one along any index; a
-truly three-dimensional one is refused with its dims.
+- One curve is a four-sided domain or a body. The corners of a domain are the corners of its quadrilaterals or
+  the four places where names change.
+- Two curves, one inside the other, are a body in its far field. So is a WKT or GeoJSON polygon with a hole.
+- Curves beside each other are separate shapes.
 
-**Not read**: CGNS in ADF containers (`adf2hdf` turns them into HDF5), `.vts` compressed with LZ4 (write it
-with zlib; LZMA is read), Gmsh meshes other than 2.2 and 4.1, binary DXF.
+A structured mesh of quadrilaterals keeps its nodes to the last bit. Three-dimensional meshes are refused. DXF
+needs `pip install 'meshonet[dxf]'`.
+
+## Plot3D
+
+Plot3D files do not state their variant. It is found from the length of the file and the orientation of the
+cells: count of blocks, dimensions, iblank, records, byte order, precision, the index that runs in z, and text
+with repeats, commas or D exponents. `--plot3d WORDS`, or `--from plot3d:WORDS`, overrides this and chooses
+the variant to write, for example `--plot3d fortran,big,single`. iblank is reported but not kept.
+
+## Three-dimensional files
+
+A file is read when it is a plane, or identical planes along any index. Other three-dimensional files are
+refused.
+
+## Not read
+
+- CGNS in ADF containers: convert it with `adf2hdf`.
+- `.vts` compressed with LZ4: write it with zlib or LZMA.
+- Gmsh meshes other than 2.2 and 4.1, and binary DXF.
 
 Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/naca0012-su2`.
 """
-_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it is")
+_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it is", "options")
 
 
 def rows() -> list[dict[str, str]]:
@@ -74,6 +89,7 @@ def _row(found: Format) -> tuple[str, ...]:
         "yes" if found.write_extruded is not None else "",
         "yes" if found.many else "",
         found.description,
+        " ".join("/".join(row) for row in found.choices),
     )
 
 

@@ -1,11 +1,12 @@
-"""The record that describes a file format; every format module ends in one."""
+"""The record that describes a file format; every room of formats holds one or more."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+import importlib
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
@@ -15,6 +16,8 @@ from meshonet.geometry.shapes.shape import Shape
 
 Heights: TypeAlias = tuple[float, ...]
 """z of each plane of a grid that is repeated in z, increasing from 0."""
+Options: TypeAlias = frozenset[str]
+"""Words behind a format's name, ``plot3d:big,float32``."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,7 @@ class Format:
 
     Parameters
     ----------
-    name : what ``--from`` and ``--to`` call it.
+    name : what users call it.
     suffixes : file endings, lower case with the dot.
     description : a few words for help texts and tables.
     read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
@@ -31,12 +34,15 @@ class Format:
     read_grids, write_grids, write_boundaries : None when the format cannot.
     write_extruded : writes grids as layers of cells between planes at the given heights, two or more.
     sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
-    names_patches : whether names of parts and the topology survive in it.
+    names_patches : whether names of patches and the topology survive in it.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that a stream holds none.
     fills_folder : whether the file is the mark of a folder whose other files are written with it, so that a
         folder holds one and a stream none.
+    choices : rows of options, of each of which one word may stand behind the name.
+    variant : returns the format with options.
+    suffix_options : the options that an ending stands for when a file is written.
     """
 
     name: str
@@ -53,6 +59,51 @@ class Format:
     one_size: bool = False
     beside: bool = False
     fills_folder: bool = False
+    choices: tuple[tuple[str, ...], ...] = ()
+    variant: Callable[[Options], Format] | None = None
+    suffix_options: Mapping[str, str] = field(default_factory=dict)
+
+    def with_options(self, text: str) -> Format:
+        """Return the format with options: words divided by commas; those behind a colon replace earlier ones.
+
+        Raises
+        ------
+        InputError
+            a word that is not known, or two that exclude each other.
+        """
+        words: Options = frozenset()
+        for group in text.split(":"):
+            new = self._options(group)
+            excluded = {word for row in self.choices if new & set(row) for word in row}
+            words = words - excluded | new
+        if self.variant is None or not words:
+            return self
+        ordered = ",".join(word for row in self.choices for word in row if word in words)
+        return replace(self.variant(words), name=f"{self.name}:{ordered}")
+
+    def _options(self, text: str) -> Options:
+        words = [word.strip() for word in text.lower().split(",") if word.strip()]
+        known = [word for row in self.choices for word in row]
+        for word in words:
+            if not known:
+                raise InputError(f"{self.name} files have no options", "leave them out", source=text)
+            if word not in known:
+                raise InputError(f"{word!r} is no option of {self.name} files", "use " + " ".join(known))
+        for row in self.choices:
+            both = [word for word in row if word in words]
+            if len(both) > 1:
+                raise InputError(" and ".join(both) + " exclude each other", "give one")
+        return frozenset(words)
+
+
+def later(function: str, **settings: Any) -> Callable[..., Any]:
+    """Return what loads the module of `function`, ``package.module:name``, and calls it with `settings`."""
+
+    def call(*args: Any) -> Any:
+        module, _, name = function.partition(":")
+        return getattr(importlib.import_module(module), name)(*args, **settings)
+
+    return call
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:
@@ -63,13 +114,25 @@ def only_one(grids: Iterable[Grid], what: str) -> Grid:
     InputError
         there is none, or more than one.
     """
-    given = iter(grids)
-    first = next(given, None)
-    if first is None:
-        raise InputError("there is no grid to write", "check the input")
-    if next(given, None) is not None:
+    several = iter(grids)
+    first = at_least_one(several)
+    if next(several, None) is not None:
         raise InputError(
             f"{what} holds one grid and there are several",
             "write one file each ({output} 'name-{{index}}'), or one .h5",
         )
+    return first
+
+
+def at_least_one(grids: Iterator[Grid]) -> Grid:
+    """Return the next of `grids`.
+
+    Raises
+    ------
+    InputError
+        there is none.
+    """
+    first = next(grids, None)
+    if first is None:
+        raise InputError("there is no grid to write", "check the input")
     return first

@@ -6,71 +6,61 @@ shorter diagonal. https://github.com/nschloe/meshio
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import partial
+from collections.abc import Iterable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.formats.format import Format, only_one
+from meshonet.formats.format import Format, Options, later, only_one
 from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured
 from meshonet.geometry.blocks.grid import Grid
 
-
-class _Kind(NamedTuple):
-    """meshio's name, file ending, whether it holds triangles only, what it is."""
-
-    name: str
-    suffix: str
-    triangles: bool
-    told: str
-
-
-_KINDS = (
-    _Kind("stl", ".stl", True, "STL surface of triangles, binary"),
-    _Kind("ply", ".ply", False, "PLY surface, binary"),
-    _Kind("obj", ".obj", False, "Wavefront OBJ surface, text"),
-    _Kind("off", ".off", True, "OFF surface of triangles, text"),
-    _Kind("abaqus", ".inp", False, "Abaqus deck, text"),
-    _Kind("medit", ".mesh", False, "Medit mesh, text"),
-)
-_OPTIONS: dict[str, dict[str, object]] = {
+_KINDS = {
+    ".stl": "stl", ".ply": "ply", ".obj": "obj", ".off": "off", ".inp": "abaqus", ".mesh": "medit",
+    ".avs": "avsucd", ".tec": "tecplot",
+    ".dato": "permas", ".post": "permas", ".mdpa": "mdpa", ".med": "med", ".vol": "netgen",
+    ".xdmf": "xdmf", ".xmf": "xdmf",
+}  # fmt: skip
+"""meshio's names of what it writes for each ending."""
+_TRIANGLES = {"stl", "off"}
+_SETTINGS: dict[str, dict[str, object]] = {
     "stl": {"binary": True}, "ply": {"binary": True}, "abaqus": {"float_fmt": ".16e"},
     "medit": {"float_fmt": ".16e"},
+    "xdmf": {"data_format": "XML"},
 }  # fmt: skip
 
 
-def _write(path: Path, grids: Iterable[Grid], kind: _Kind) -> None:
-    """Write the one grid of `grids`."""
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options) -> None:
+    """Write the one grid of `grids` as `options`, one of meshio's names, says."""
     import meshio
 
-    mesh = unstructured(only_one(grids, f"a {kind.suffix} file"))
+    (kind,) = options or {"stl"}
+    mesh = unstructured(only_one(grids, f"a file of {kind}"))
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    cells = (
-        [("triangle", _triangles(mesh).astype(np.int32))]
-        if kind.triangles
-        else [("quad", mesh.quads.astype(np.int32))]
-    )
-    writer: Callable[..., None] = getattr(meshio, kind.name).write
-    writer(str(path), meshio.Mesh(points, cells), **_OPTIONS.get(kind.name, {}))
+    cells, nodes = ("triangle", _triangles(mesh)) if kind in _TRIANGLES else ("quad", mesh.quads)
+    writer = getattr(meshio, kind).write
+    writer(str(path), meshio.Mesh(points, [(cells, nodes.astype(np.int32))]), **_SETTINGS.get(kind, {}))
 
 
 def _triangles(mesh: Unstructured) -> Indices:
     """Return two triangles (2m, 3) for each quadrilateral."""
     quads = mesh.quads
     corner = mesh.points[quads]
-    one, other = (np.hypot(*(corner[:, k] - corner[:, k + 2]).T) for k in (0, 1))
-    turned = np.where((one <= other)[:, None], quads, np.roll(quads, -1, axis=1))
+    first, second = (np.hypot(*(corner[:, k] - corner[:, k + 2]).T) for k in (0, 1))
+    turned = np.where((first <= second)[:, None], quads, np.roll(quads, -1, axis=1))
     return np.stack([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
 
 
-FORMATS = tuple(
-    Format(
-        name=kind.name,
-        suffixes=(kind.suffix,),
-        description=kind.told,
-        write_grids=partial(_write, kind=kind),
+def _meshio(options: Options = frozenset()) -> Format:
+    return Format(
+        name="meshio",
+        suffixes=tuple(_KINDS),
+        description="surfaces of viewers, decks of solid mechanics, without patches",
+        write_grids=later(f"{__name__}:write_grids", options=options),
+        choices=(tuple(dict.fromkeys(_KINDS.values())),),
+        variant=_meshio,
+        suffix_options=_KINDS,
     )
-    for kind in _KINDS
-)
+
+
+FORMATS = (_meshio(),)

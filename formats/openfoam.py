@@ -190,12 +190,14 @@ def _head(kind: str, name: str, note: str = "", place: str = "constant/polyMesh"
     )
 
 
-FORMAT = Format(
-    name="openfoam",
-    suffixes=(".foam",),
-    description="OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-    write_grids=write_grids,
-    write_extruded=write_extruded,
-    names_patches=True,
-    fills_folder=True,
+FORMATS = (
+    Format(
+        name="openfoam",
+        suffixes=(".foam",),
+        description="OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
+        write_grids=write_grids,
+        write_extruded=write_extruded,
+        names_patches=True,
+        fills_folder=True,
+    ),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import functools
 import os
 import re
 import stat
@@ -18,9 +19,8 @@ from meshonet.geometry.errors import InputError
 PART_SUFFIX = ".meshonet-part"
 """Ending of unfinished files, so that one left by a killed process can be recognised and removed."""
 
-_HOST = os.uname().nodename.split(".")[0]
 _PART = re.compile(
-    rf"\.(?P<final>.*)\.{re.escape(_HOST)}-(?P<process>\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}"
+    rf"\.(?P<final>.*)\.(?P<machine>[0-9a-f]*-\d*)-(?P<process>\d+)-[0-9a-f]{{8}}{re.escape(PART_SUFFIX)}"
 )
 _swept: set[Path] = set()
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS}
@@ -162,18 +162,36 @@ def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
 
 
 def _part_name(target: Path) -> Path:
-    return target.with_name(f".{target.name[:150]}.{_HOST}-{os.getpid()}-{os.urandom(4).hex()}{PART_SUFFIX}")
+    own = f"{_machine()}-{os.getpid()}-{os.urandom(4).hex()}"
+    return target.with_name(f".{target.name[:150]}.{own}{PART_SUFFIX}")
+
+
+@functools.cache
+def _machine() -> str:
+    """Return what tells the processes that this one can see from all others: boot and process namespace.
+
+    Host names do not: machines that share a disc may be called alike, and so may containers. Empty where the
+    system does not say (it is Linux that does).
+    """
+    try:
+        boot = Path("/proc/sys/kernel/random/boot_id").read_text(encoding="ascii").strip().replace("-", "")
+        return f"{boot}-{Path('/proc/self/ns/pid').stat().st_ino}"
+    except OSError:
+        return "-"
 
 
 def _sweep(folder: Path) -> None:
-    """Remove what killed processes of this machine left unfinished in `folder`, once a process and folder."""
-    if folder in _swept:
+    """Remove what killed processes of this machine left unfinished in `folder`, once a process and folder.
+
+    Files of other machines and of earlier boots stay: whether their writers live cannot be seen from here.
+    """
+    if folder in _swept or _machine() == "-":
         return
     _swept.add(folder)
     with contextlib.suppress(OSError):  # a folder that may be written but not listed stays as it is
         for entry in folder.iterdir():
             match = _PART.fullmatch(entry.name)
-            if match and not _alive(int(match["process"])):
+            if match and match["machine"] == _machine() and not _alive(int(match["process"])):
                 _remove(entry)
 
 

@@ -1,15 +1,17 @@
-"""Which format a file is in: by ``--from``/``--to``, by its ending, by its content.
+"""Which format a file is in: by its name, by its ending, by its content.
 
-The table below is all that is known without loading a format's module, so that starting the program
-costs nothing for formats that are not used.
+The table below is all that is known without loading a format's room, so that starting the program costs
+nothing for formats that are not used.
 """
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 from meshonet.formats.format import Format
 from meshonet.formats.mesh.recover_topology import boundary_of
@@ -19,90 +21,85 @@ from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.shapes.shape import Shape
 
 Kind = Literal["grids", "boundaries"]
+T = TypeVar("T")
 
 
 class Row(NamedTuple):
-    """A format's module and file endings; the endings repeat its record's, and a test holds them equal."""
+    """A format's room and file endings; the endings repeat its record's, and a test holds them equal."""
 
-    module: str
+    room: str
     suffixes: tuple[str, ...]
 
 
 TABLE: dict[str, Row] = {
-    "hdf5": Row("meshonet.formats.hdf5.dataset", (".h5", ".hdf5")),
-    "vts": Row("meshonet.formats.vtk.vts", (".vts",)),
-    "vtm": Row("meshonet.formats.vtk.vtm", (".vtm",)),
-    "vtk": Row("meshonet.formats.vtk.legacy", (".vtk",)),
-    "vtk-ascii": Row("meshonet.formats.vtk.legacy", (".vtk",)),
-    "vtu": Row("meshonet.formats.vtk.vtu", (".vtu",)),
-    "gmsh": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "gmsh-ascii": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "gmsh41": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "gmsh41-ascii": Row("meshonet.formats.gmsh.msh", (".msh",)),
-    "cgns": Row("meshonet.formats.cgns.write", (".cgns",)),
-    "openfoam": Row("meshonet.formats.openfoam", (".foam",)),
-    "geo": Row("meshonet.formats.gmsh.geo", (".geo",)),
-    "nmf": Row("meshonet.formats.plot3d.nmf", (".nmf",)),
-    "su2": Row("meshonet.formats.su2.write", (".su2",)),
-    "stl": Row("meshonet.formats.meshio_export", (".stl",)),
-    "ply": Row("meshonet.formats.meshio_export", (".ply",)),
-    "obj": Row("meshonet.formats.meshio_export", (".obj",)),
-    "off": Row("meshonet.formats.meshio_export", (".off",)),
-    "abaqus": Row("meshonet.formats.meshio_export", (".inp",)),
-    "medit": Row("meshonet.formats.meshio_export", (".mesh",)),
-    "plot3d-ascii": Row("meshonet.formats.plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat")),
-    "plot3d-binary": Row("meshonet.formats.plot3d", (".bin", ".xyz", ".p3d")),
-    "plot3d-fortran": Row("meshonet.formats.plot3d", (".ufmt", ".unf")),
-    "dxf": Row("meshonet.formats.outlines.dxf", (".dxf",)),
-    "wkt": Row("meshonet.formats.outlines.vector", (".wkt",)),
-    "geojson": Row("meshonet.formats.outlines.vector", (".geojson", ".json")),
-    "airfoil": Row("meshonet.formats.text.airfoil_dat", (".dat",)),
-    "points": Row("meshonet.formats.text.points", (".csv", ".txt", ".xy")),
-    "png": Row("meshonet.formats.figure.figure", (".png",)),
-    "svg": Row("meshonet.formats.figure.figure", (".svg",)),
-    "pdf": Row("meshonet.formats.figure.figure", (".pdf",)),
-}
+    "hdf5": Row("hdf5", (".h5", ".hdf5")),
+    "vts": Row("vtk", (".vts",)),
+    "vtm": Row("vtk", (".vtm",)),
+    "vtk": Row("vtk", (".vtk",)),
+    "vtu": Row("vtk", (".vtu",)),
+    "gmsh": Row("gmsh", (".msh",)),
+    "cgns": Row("cgns", (".cgns",)),
+    "openfoam": Row("openfoam", (".foam",)),
+    "geo": Row("gmsh", (".geo",)),
+    "nmf": Row("plot3d", (".nmf",)),
+    "su2": Row("su2", (".su2",)),
+    "plot3d": Row("plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat", ".bin", ".ufmt", ".unf")),
+    "dxf": Row("outlines", (".dxf",)),
+    "wkt": Row("outlines", (".wkt",)),
+    "geojson": Row("outlines", (".geojson", ".json")),
+    "airfoil": Row("text", (".dat",)),
+    "points": Row("text", (".csv", ".txt", ".xy")),
+    "png": Row("figure", (".png",)),
+    "svg": Row("figure", (".svg",)),
+    "pdf": Row("figure", (".pdf",)),
+    "meshio": Row(
+        "meshio_export",
+        (
+            ".stl", ".ply", ".obj", ".off", ".inp", ".mesh", ".avs", ".tec", ".dato",
+            ".post", ".mdpa", ".med", ".vol", ".xdmf", ".xmf",
+        ),
+    ),
+}  # fmt: skip
 """Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
 whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
 
+_OLD_NAMES = {
+    "gmsh41": "gmsh:4.1",
+    "gmsh41-ascii": "gmsh:4.1,ascii",
+    **{name: f"meshio:{name}" for name in ("stl", "ply", "obj", "off", "abaqus", "medit")},
+}
 _DESIGNATION = "naca:"
 
 
 def format_named(name: str) -> Format:
-    """Return the format that ``--from`` or ``--to`` names: by its name, its ending, or the start of its name.
-
-    Behind a colon may follow what only Plot3D files need: ``plot3d:big,float32`` (`meshonet.formats.plot3d.variant`).
+    """Return the format of a name: its own, with options (``gmsh:4.1,ascii``), an old name, or an ending.
 
     Raises
     ------
     InputError
-        no such format; the message lists those there are.
+        no such format, or no such option of it; the message lists those there are.
     """
-    word, _, variant = name.lower().lstrip(".").partition(":")
+    word, _, options = name.lower().lstrip(".").partition(":")
+    if word in _OLD_NAMES:
+        word, _, own = _OLD_NAMES[word].partition(":")
+        return _record(word).with_options(f"{own}:{options}")
+    if word in TABLE:
+        return _record(word).with_options(options)
     for known, row in TABLE.items():
-        if word and (known == word or f".{word}" in row.suffixes[:1] or known.startswith(f"{word}-")):
-            return in_variant(_record(known, row), variant) if variant else _record(known, row)
+        if f".{word}" in row.suffixes:
+            record = _record(known)
+            return record.with_options(f"{record.suffix_options.get(f'.{word}', '')}:{options}")
+    family, _, own = word.partition("-")
+    if own and family in TABLE:  # as in plot3d-binary, which was a format of its own that read any other too
+        record = _record(family)
+        found = record.with_options(f"{own}:{options}")
+        return found if options else replace(found, read_grids=record.read_grids)
     raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
 
 
-def in_variant(found: Format, words: str) -> Format:
-    """Return a Plot3D format in the variant that comma-separated words describe.
-
-    Raises
-    ------
-    InputError
-        another format, or words that are not known.
-    """
-    if not found.name.startswith("plot3d"):
-        raise InputError(f"{found.name} files have no variants", "leave the words out", source=words)
-    from meshonet.formats.plot3d import variant_of
-
-    return variant_of(found, words)
-
-
 def formats() -> tuple[Format, ...]:
-    """Return every format; loads their modules, though not the libraries these call."""
-    return tuple(_record(name, row) for name, row in TABLE.items())
+    """Return every format; loads their rooms, though not the libraries these call."""
+    return tuple(map(_record, TABLE))
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
@@ -154,9 +151,10 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
                 f"choose the format with {{to_format}}; {_known()}",
                 source=printable(path_text),
             )
-    for found in claimed:
-        if getattr(found, f"write_{kind}") is not None:
-            return found
+    for record in claimed:
+        if getattr(record, f"write_{kind}") is not None:
+            plain = ":" not in record.name
+            return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
     able = ", ".join(found.name for found in formats() if getattr(found, f"write_{kind}") is not None)
     raise InputError(
         f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
@@ -164,9 +162,10 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
 
 
 def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
-    """Yield what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
+    """Return what can be sampled into boundaries: from a path, from ``-``, or a designation ``naca:2412``.
 
-    The outer edges of a grid are boundaries, so a grid file serves too.
+    The outer edges of a grid are boundaries, so a grid file serves too. Behind a record that cannot be read,
+    for which it raises, the iterator goes on with those that formats can still reach.
 
     Raises
     ------
@@ -178,22 +177,19 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
             format_named(fmt)
         from meshonet.geometry.shapes.airfoil.naca import naca
 
-        yield naca(text[len(_DESIGNATION) :])
-        return
+        return iter([naca(text[len(_DESIGNATION) :])])
     source = open_source(text)
     found = _selectable(source, format_of(source, fmt))
-    with _blamed(source):
-        if found.read_shapes is not None:
-            yield from found.read_shapes(source)
-        elif found.read_grids is not None:
-            for grid in found.read_grids(source):
-                yield boundary_of(grid)
-        else:
-            raise _unreadable(found)
+    if found.read_shapes is not None:
+        return _Blamed(source, partial(found.read_shapes, source))
+    if found.read_grids is not None:
+        read = found.read_grids
+        return _Blamed(source, lambda: map(boundary_of, read(source)))
+    raise _unreadable(found, source)
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
-    """Yield the grids of a path or of ``-``.
+    """Return the grids of a path or of ``-``; the iterator goes on behind a record as `read_shapes` does.
 
     Raises
     ------
@@ -208,37 +204,42 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
         )
     source = open_source(text)
     found = _selectable(source, format_of(source, fmt))
-    with _blamed(source):
-        if found.read_grids is not None:
-            yield from found.read_grids(source)
-        elif found.read_shapes is not None:
-            raise InputError(
-                "holds a boundary, not a grid",
-                f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
-            )
-        else:
-            raise _unreadable(found)
+    if found.read_grids is not None:
+        return _Blamed(source, partial(found.read_grids, source))
+    if found.read_shapes is not None:
+        raise InputError(
+            "holds a boundary, not a grid",
+            f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
+            source=source.name,
+        )
+    raise _unreadable(found, source)
 
 
 def _is_designation(text: str) -> bool:
     return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
 
 
-class _blamed:  # noqa: N801  (a context manager; contextlib's form would swallow the generator's own close)
-    """Names the source in errors that do not, and turns the system's errors into ours."""
+class _Blamed(Iterator[T]):
+    """The records of a source: names it in errors that do not, and turns the system's errors into ours."""
 
-    def __init__(self, source: Source) -> None:
-        self.source = source
+    def __init__(self, source: Source, records: Callable[[], Iterator[T]]) -> None:
+        self._source, self._read = source, records
+        self._records: Iterator[T] | None = None
 
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, InputError):
-            error.source = error.source or self.source.name
-        elif isinstance(error, (OSError, MemoryError)) and not isinstance(error, MeshonetError):
+    def __next__(self) -> T:
+        try:
+            if self._records is None:
+                self._records = self._read()
+            return next(self._records)
+        except InputError as error:
+            error.source = error.source or self._source.name
+            raise
+        except MeshonetError:
+            raise
+        except (OSError, MemoryError) as error:
             told = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            raise InputError(f"cannot be read ({told})", "check the file", source=self.source.name) from error
+            problem = f"cannot be read ({told})"
+            raise InputError(problem, "check the file", source=self._source.name) from error
 
 
 def _selectable(source: Source, found: Format) -> Format:
@@ -251,21 +252,20 @@ def _selectable(source: Source, found: Format) -> Format:
     return found
 
 
-def _record(name: str, row: Row) -> Format:
-    module = importlib.import_module(row.module)
-    records: tuple[Format, ...] = getattr(module, "FORMATS", None) or (module.FORMAT,)
+def _record(name: str) -> Format:
+    room = importlib.import_module(f"meshonet.formats.{TABLE[name].room}")
+    records: tuple[Format, ...] = room.FORMATS
     return next(record for record in records if record.name == name)
 
 
 def _by_suffix(suffix: str) -> tuple[Format, ...]:
-    return tuple(_record(name, row) for name, row in TABLE.items() if suffix and suffix in row.suffixes)
+    return tuple(_record(name) for name, row in TABLE.items() if suffix and suffix in row.suffixes)
 
 
 def _known() -> str:
     return "known endings: " + " ".join(sorted({suffix for row in TABLE.values() for suffix in row.suffixes}))
 
 
-def _unreadable(found: Format) -> InputError:
-    return InputError(
-        f"{found.name} files can only be written", "give a grid or a boundary in another format"
-    )
+def _unreadable(found: Format, source: Source) -> InputError:
+    problem = f"{found.name} files can only be written"
+    return InputError(problem, "give a grid or a boundary in another format", source=source.name)

@@ -97,8 +97,13 @@ class NoValidGridError(MeshonetError):
         self.problem, self.worst = problem, tuple(worst)
 
     def __str__(self) -> str:
+        return self.text(str)
+
+    def text(self, spelling: Callable[[str], str]) -> str:
+        """Return the message, the names of parameters in braces passed through `spelling`."""
         cells = ", ".join(f"(i={c.i}, j={c.j}, x={c.x:.6g}, y={c.y:.6g})" for c in self.worst[:10])
-        return f"{self.problem}; worst cells: {cells}" if cells else self.problem
+        problem = spelled(self.problem, spelling)
+        return f"{problem}; worst cells: {cells}" if cells else problem
 
 
 class SolverError(MeshonetError):

@@ -1,1 +1,74 @@
-"""Structured, body-fitted grids from a boundary."""
+"""Structured, body-fitted grids from a boundary.
+
+    import meshonet
+
+    grid = meshonet.grid("naca:0012", res=(250, 100), y_plus=1, reynolds=6e6)
+    grid.quality()["max_angle"].max
+    grid.write("naca0012.cgns")
+
+Functions are named after the commands of the program, and their parameters after its options, with
+underscores. What is here is loaded when it is first used: importing the package costs nothing.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from meshonet.api.convert import convert as convert
+    from meshonet.api.files import read as read
+    from meshonet.api.files import read_all as read_all
+    from meshonet.api.files import write as write
+    from meshonet.api.grid import grid as grid
+    from meshonet.api.grid import infer as infer
+    from meshonet.api.grid import sample_boundary as sample_boundary
+    from meshonet.api.grid import sample_family as sample_family
+    from meshonet.api.grid import solve_pde as solve_pde
+    from meshonet.api.grid import tfi as tfi
+    from meshonet.api.models import models as models
+    from meshonet.api.plot import plot as plot
+    from meshonet.api.quality import quality as quality
+    from meshonet.geometry.blocks.boundary import Boundary as Boundary
+    from meshonet.geometry.blocks.grid import Grid as Grid
+    from meshonet.geometry.errors import InputError as InputError
+    from meshonet.geometry.errors import MeshonetError as MeshonetError
+    from meshonet.geometry.errors import NoValidGridError as NoValidGridError
+    from meshonet.geometry.errors import SolverError as SolverError
+    from meshonet.geometry.spacing.sampling import Sampling as Sampling
+    from meshonet.solvers.method import METHODS as METHODS
+    from meshonet.solvers.pipeline.make_grid import Result as Result
+    from meshonet.solvers.pipeline.make_grid import make_grid as make_grid
+    from meshonet.solvers.pipeline.make_grid import make_grids as make_grids
+    from meshonet.solvers.pipeline.request import GridRequest as GridRequest
+    from meshonet.solvers.pipeline.request import grid_request as grid_request
+
+__version__ = "0.1.0"
+
+_MODULES = {
+    "meshonet.api.convert": ("convert",),
+    "meshonet.api.files": ("read", "read_all", "write"),
+    "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
+    "meshonet.api.models": ("models",),
+    "meshonet.api.plot": ("plot",),
+    "meshonet.api.quality": ("quality",),
+    "meshonet.geometry.blocks.boundary": ("Boundary",),
+    "meshonet.geometry.blocks.grid": ("Grid",),
+    "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),
+    "meshonet.geometry.spacing.sampling": ("Sampling",),
+    "meshonet.solvers.method": ("METHODS",),
+    "meshonet.solvers.pipeline.make_grid": ("Result", "make_grid", "make_grids"),
+    "meshonet.solvers.pipeline.request": ("GridRequest", "grid_request"),
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+__all__ = ["__version__", *_HOMES]
+
+
+def __getattr__(name: str) -> Any:
+    """Return a public name, loaded now (PEP 562)."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'meshonet' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_HOMES[name]), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

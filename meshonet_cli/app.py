@@ -34,8 +34,8 @@ from meshonet_cli.version import VERSION
 INTERRUPTED, BAD_INPUT = 130, 2
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _version(wanted: bool) -> None:
+    if wanted:
         typer.echo(f"meshonet {VERSION}")
         raise typer.Exit
 
@@ -72,8 +72,11 @@ class Plain(typer.core.TyperCommand):
                     formatter.write_dl(records)
 
 
-def application(commands: Sequence[Command] = COMMANDS) -> Any:
-    """Return the parser of `commands`; of one alone it is made in a tenth of the time."""
+def application(commands: Sequence[Command] = COMMANDS, *, overview: bool = False) -> Any:
+    """Return the parser of `commands`; an `overview` knows no more than their names and summaries.
+
+    Commands are loaded for their options, which takes a tenth of a second for all of them.
+    """
     app = typer.Typer(
         name="meshonet",
         epilog="\b\nStart with:  meshonet infer airfoil.dat --res 200 -o grid.vts\n"
@@ -84,7 +87,10 @@ def application(commands: Sequence[Command] = COMMANDS) -> Any:
     )
     app.callback()(options)
     for command in commands:
-        app.command(command.name, epilog=command.epilog, cls=Plain)(command.function)
+        if overview:
+            app.command(command.name, help=command.summary)(lambda: None)
+        else:
+            app.command(command.name, epilog=command.epilog, cls=Plain)(command.function)
     return typer.main.get_command(app)
 
 
@@ -93,8 +99,10 @@ def run(arguments: Sequence[str]) -> int:
     debug = "--debug" in arguments
     words = list(arguments) or ["--help"]
     meant = [command for command in COMMANDS if command.name == words[0]]
+    overview = not meant and "_MESHONET_COMPLETE" not in os.environ
     try:
-        code: Any = application(meant or COMMANDS).main(words, prog_name="meshonet", standalone_mode=False)
+        program = application(meant or COMMANDS, overview=overview)
+        code: Any = program.main(words, prog_name="meshonet", standalone_mode=False)
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
     except BrokenPipeError:
@@ -109,7 +117,7 @@ def run(arguments: Sequence[str]) -> int:
 
             traceback.print_exc()
         name = f"meshonet {meant[0].name}" if meant else "meshonet"
-        print(f"error: {_told(error, name)}", file=sys.stderr)  # noqa: T201
+        print(f"error: {_explained(error, name)}", file=sys.stderr)  # noqa: T201
         return int(getattr(error, "exit_code", BAD_INPUT))
     return _interrupted() if code == INTERRUPTED else int(code or 0)
 
@@ -127,16 +135,16 @@ def main() -> NoReturn:
     sys.exit(code)
 
 
-def _told(error: Exception, name: str) -> str:
-    from meshonet_cli.report import explained
+def _explained(error: Exception, name: str) -> str:
+    from meshonet_cli.errors import explained
 
     usage = getattr(error, "format_message", None)
     if usage is None:
         return explained(error)
     context = getattr(error, "ctx", None)
-    asked = f"{context.command_path} --help" if context else f"{name} --help"
+    page = f"{context.command_path} --help" if context else f"{name} --help"
     message = " ".join(usage().split()).rstrip(".")
-    return f"{message[:1].lower()}{message[1:]}; see {asked}"
+    return f"{message[:1].lower()}{message[1:]}; see {page}"
 
 
 def _interrupted() -> int:

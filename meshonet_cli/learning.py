@@ -14,7 +14,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.split import WAYS, split
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet_cli.learning_log import Log
+from meshonet_cli.report.training import Log
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
-from meshonet_cli.report import explained
+from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stopping import check
 
 GATE_NOT_MET = 1
@@ -36,6 +36,14 @@ class Brief(Told, Protocol):
 
     def line(self) -> str:
         """Return it on one line."""
+        ...
+
+
+class Written(Brief, Protocol):
+    """A report of something that is in a file."""
+
+    def finished(self, path: str | None) -> None:
+        """Note where the result is."""
         ...
 
 
@@ -89,7 +97,7 @@ class Session:
         """Tell of gates that a member did not meet."""
         for problem in problems:
             self.worst = max(self.worst, GATE_NOT_MET)
-            self._write(f"gate not met: {name}: {problem}")
+            self._write(f"gate not met: {name}: {with_options(problem)}")
 
     def warn(self, text: str) -> None:
         """Tell of something the user should know even when quiet."""
@@ -102,6 +110,11 @@ class Session:
             self.result(report.as_json())
         else:
             self.note(report.line() if self.batch else report.lines())
+
+    def written(self, report: Written, path: str) -> None:
+        """Tell of a member whose result is in the file `path`."""
+        report.finished(path)
+        self.tell(report)
 
     def show(self, report: Told) -> None:
         """Print a report that is itself the result: on standard output, in full, even when quiet."""

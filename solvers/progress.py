@@ -1,13 +1,19 @@
-"""What iterations tell while they run, to whoever listens. Usually nobody does, and it costs nothing."""
+"""Cycles of iterations, for whoever listens while they run. Usually nobody does, and it costs nothing."""
 
 from __future__ import annotations
 
 import contextlib
+import time
 from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+
+if TYPE_CHECKING:
+    from meshonet.solvers.solution import Solution
 
 
 @dataclass(frozen=True)
@@ -37,22 +43,22 @@ class Cycle:
 
 
 Listener = Callable[[Cycle], None]
-_listeners: list[Listener] = []
+_listeners: ContextVar[tuple[Listener, ...]] = ContextVar("listeners", default=())
 
 
 @contextlib.contextmanager
 def listening(listener: Listener) -> Iterator[None]:
-    """Have `listener` called after every cycle that runs inside the block."""
-    _listeners.append(listener)
+    """Have `listener` called after every cycle that runs inside the block, in its thread."""
+    token = _listeners.set((*_listeners.get(), listener))
     try:
         yield
     finally:
-        _listeners.remove(listener)
+        _listeners.reset(token)
 
 
 def heard() -> bool:
     """Return whether anybody listens."""
-    return bool(_listeners)
+    return bool(_listeners.get())
 
 
 def tell(
@@ -63,10 +69,69 @@ def tell(
     change: float | None = None,
     functional: float | None = None,
 ) -> None:
-    """Tell the listeners of a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
-    if not _listeners:
+    """Call the listeners after a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
+    listeners = _listeners.get()
+    if not listeners:
         return
     counts = nodes.shape[0], nodes.shape[1]
     cycle = Cycle(method, *counts, number, residual, change, count_folded(nodes), functional)
-    for listener in tuple(_listeners):
+    for listener in listeners:
         listener(cycle)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A cycle of a history.
+
+    Parameters
+    ----------
+    method : that iterated.
+    ni, nj : nodes of the grid.
+    attempt : counted from 1; the next one begins where the one before diverged.
+    cycle : its number, None for the result of a method without cycles.
+    residual, change, folded, functional : as of `Cycle`; None where a method has none.
+    seconds : since the solve began.
+    """
+
+    method: str
+    ni: int
+    nj: int
+    attempt: int
+    cycle: int | None
+    residual: float | None
+    change: float | None
+    seconds: float
+    folded: int | None
+    functional: float | None = None
+
+
+class History:
+    """A listener that keeps the cycles of one solve."""
+
+    def __init__(self) -> None:
+        self._rows: list[Row] = []
+        self._begun = time.perf_counter()
+        self._attempt = 0
+
+    def __call__(self, cycle: Cycle) -> None:
+        """Keep a cycle."""
+        last = self._rows[-1] if self._rows else None
+        if last is None or (last.ni, last.nj) != (cycle.ni, cycle.nj):
+            self._attempt = 0
+        self._attempt += cycle.number == 0
+        place = cycle.method, cycle.ni, cycle.nj, self._attempt, cycle.number
+        self._rows.append(
+            Row(*place, cycle.residual, cycle.change, self._spent(), cycle.folded, cycle.functional)
+        )
+
+    def of(self, solution: Solution) -> tuple[Row, ...]:
+        """Return the rows of the method of `solution`; for one without cycles, a row of its result."""
+        rows = tuple(row for row in self._rows if row.method == solution.method)
+        if rows:
+            return rows
+        method, grid = solution.method, solution.grid
+        result = solution.cycles, solution.residual, None, self._spent(), None
+        return (Row(method, grid.ni, grid.nj, 1, *result),)
+
+    def _spent(self) -> float:
+        return round(time.perf_counter() - self._begun, 6)

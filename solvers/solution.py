@@ -1,29 +1,46 @@
-"""What a solver returns: the grid, how it was reached and what that took."""
+"""What a solver returns: the grid, how the solve ended and what it took."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import spelled
+
+
+class Outcome(Enum):
+    """How a solve ended; the value is what to try next, empty when nothing is amiss."""
+
+    DONE = ""
+    UNCONVERGED = "the iteration stopped short of its tolerance: allow more {max_cycles} or a larger {tol}"
+    FOLDED = "cells are folded: use more nodes, another topology or other corners"
+
+    @property
+    def message(self) -> str:
+        """What to try next, with parameters by their names in Python."""
+        return spelled(self.value)
 
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """A grid and the story of its making.
+    """A grid and how it was made.
 
     Parameters
     ----------
     grid : the grid.
-    method : what made it: ``tfi``, ``winslow``, ``neural`` ...
+    method : what made it: ``tfi``, ``winslow``, ``operator`` ...
     model : name of the operator, when one was used.
+    outcome : how the solve ended.
     residual : norm of the residual over that of the TFI start, when the method has one.
     cycles : cycles on the finest level, when the method has them.
     path : the stages after the method itself, e.g. the guard's ``("repair",)``.
     seconds : wall-clock seconds by stage.
     notes : sentences a user should read, e.g. that a restart was needed.
     boundary : of the grid, when it is not the one that was given: a march ends at a far field of its own.
+    first_cells : heights of first cells that were asked for, by side, in the unit of the boundary.
     """
 
     grid: Grid
@@ -35,3 +52,5 @@ class Solution:
     seconds: Mapping[str, float] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     boundary: Boundary | None = None
+    outcome: Outcome = Outcome.DONE
+    first_cells: Mapping[str, float] = field(default_factory=dict)

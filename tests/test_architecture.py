@@ -1,10 +1,14 @@
 """What the house promises about its own build: light imports, documented commands, examples that run."""
 
+import graphlib
 import os
+import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import grimp
 import numpy as np
 import pytest
 
@@ -72,6 +76,68 @@ def test_help_loads_no_numpy_and_no_rich() -> None:
     assert not {"numpy", "rich", "pydantic", *HEAVY} & set(python(code).stderr.split())
 
 
+def test_the_overview_says_what_the_commands_say() -> None:
+    from meshonet_cli.app import application
+
+    for command in COMMANDS:
+        assert (command.function.__doc__ or "").splitlines()[0] == command.summary
+    assert list(application(overview=True).commands) == list(application().commands)
+
+
+def test_the_overview_loads_no_command() -> None:
+    run = "from meshonet_cli.app import run; run(['--help'])"
+    loaded = python(f"import sys; {run}; print(*sys.modules, file=sys.stderr)").stderr.split()
+    assert "meshonet_cli.app" in loaded
+    assert not [name for name in loaded if name.startswith(("meshonet_cli.commands.", "meshonet.geometry"))]
+
+
+def test_importing_the_package_loads_nothing_heavy() -> None:
+    loaded = set(python("import meshonet, sys; print(*sys.modules)").stdout.split())
+    assert "meshonet" in loaded
+    assert not {"numpy", "shapely", "vtk", "pyvista", "typer", *HEAVY} & loaded
+
+
+def circles() -> Iterator[str]:
+    """Packages among whose modules and folders are some that import each other, at first or second hand."""
+    graph = grimp.build_graph("meshonet", "meshonet_cli")
+    for package in sorted(graph.modules):
+        children = graph.find_children(package)
+        owner = {m: child for child in children for m in (child, *graph.find_descendants(child))}
+        imports: dict[str, set[str]] = {child: set() for child in children}
+        for module, child in owner.items():
+            targets = graph.find_modules_directly_imported_by(module)
+            imports[child] |= {owner[target] for target in targets if target in owner} - {child}
+        try:
+            graphlib.TopologicalSorter(imports).prepare()
+        except graphlib.CycleError:
+            yield package
+
+
+KNOWN = {
+    "meshonet.formats", "meshonet.formats.cgns", "meshonet.formats.gmsh", "meshonet.geometry",
+    "meshonet.geometry.blocks", "meshonet.solvers", "meshonet.solvers.hyperbolic", "meshonet.solvers.neural",
+}  # fmt: skip
+"""Packages that have one today."""
+
+
+def test_no_room_imports_in_a_circle() -> None:
+    assert set(circles()) <= KNOWN
+
+
+def test_a_circle_would_be_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = grimp.build_graph("meshonet_cli")
+    graph.add_import(importer="meshonet_cli.text", imported="meshonet_cli.app")
+    monkeypatch.setattr(grimp, "build_graph", lambda *_: graph)
+    assert list(circles()) == ["meshonet_cli"]
+
+
+def test_layers_import_one_way() -> None:
+    """The contract of pyproject.toml, read here so that the test fails where the lint would."""
+    program = shutil.which("lint-imports", path=str(Path(sys.executable).parent)) or "lint-imports"
+    done = subprocess.run([program], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stdout
+
+
 def test_reading_the_registry_loads_no_format_library() -> None:
     loaded = python("import meshonet.formats.registry, sys; print(*sorted(sys.modules))").stdout.split()
     assert not set(HEAVY) & set(loaded)
@@ -95,7 +161,10 @@ def test_every_command_is_thin(command: object) -> None:
 
 
 def test_the_version_is_that_of_the_package() -> None:
-    assert f'\nversion = "{VERSION}"\n' in (ROOT / "pyproject.toml").read_text()
+    import meshonet
+
+    assert meshonet.__version__ == VERSION
+    assert 'version = { attr = "meshonet.__version__" }' in (ROOT / "pyproject.toml").read_text()
 
 
 def test_choices_of_options_are_those_of_the_library() -> None:
@@ -105,3 +174,14 @@ def test_choices_of_options_are_those_of_the_library() -> None:
 
     assert get_args(SpacingName) == SPACINGS
     assert set(get_args(TopologyName)) <= {"auto", "quad", "o", "c"}
+
+
+def test_solve_pde_offers_every_method_that_solves() -> None:
+    from meshonet.solvers.method import METHODS, method_named
+
+    told = (ROOT / "docs" / "cli.md").read_text()
+    section = told[told.index("meshonet solve-pde") :]
+    offered = section[section.index("--method auto|") :].split()[1].split("|")
+    assert offered == ["auto", *(name for name, row in METHODS.items() if row.solves)]
+    for name in METHODS:
+        assert method_named(name).name == name

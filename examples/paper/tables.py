@@ -21,11 +21,11 @@ SPLITS = ("interpolation", "extrapolation", "random")
 WAYS = (
     ("tfi", "TFI"),
     ("pde", "PDE (Winslow)"),
-    ("meshonet.raw", "MeshONet, as it answers"),
-    ("meshonet.pasted", "MeshONet, walls pasted"),
-    ("meshonet.valid", "MeshONet, as `infer` delivers it"),
-    ("meshonet-hard.raw", "MeshONet-hard, as it answers"),
-    ("meshonet-hard.valid", "MeshONet-hard, as `infer` delivers it"),
+    ("meshonet.raw", "MeshONet, network output"),
+    ("meshonet.pasted", "MeshONet, boundary pasted"),
+    ("meshonet.valid", "MeshONet, repaired (`infer`)"),
+    ("meshonet-hard.raw", "MeshONet-hard, network output"),
+    ("meshonet-hard.valid", "MeshONet-hard, repaired (`infer`)"),
 )
 DELIVERED = ("meshonet.valid", "meshonet-hard.valid")
 RACERS = ("meshonet", "meshonet-hard", "deeponet", "pod-deeponet", "fno1d", "fno2d", "mionet")
@@ -69,9 +69,9 @@ def quality(results: Path) -> Iterable[str]:
         if rows:
             head = [
                 "split",
-                "way",
+                "method",
                 "relative L2, median / worst",
-                "boundary off by",
+                "boundary error",
                 "max angle, mean / worst",
             ]
             head += ["mean angle", "folded cells (grids)"]
@@ -105,10 +105,10 @@ def claims(results: Path) -> str:
         "split",
         "max angle against TFI",
         "against PDE",
-        "folded, walls pasted",
+        "folded, boundary pasted",
         "folded, MeshONet-hard",
-        "delivered, MeshONet",
-        "delivered, MeshONet-hard",
+        "repaired, MeshONet",
+        "repaired, MeshONet-hard",
     ]
     if not rows:
         return ""
@@ -197,7 +197,7 @@ def physics(results: Path) -> str:
             error, away = told["relative_l2"]["median"], told["boundary"]["max"]
             folded, angle = told["folded"]["sum"], told["max_angle"]["max"]
             rows.append([learns, f"{error:.1e}", f"{away:.0e}", f"{angle:.1f}", f"{folded:.0f}", *spent])
-    head = ["learns from", "relative L2", "boundary off by", "max angle", "folded cells", "steps", "seconds"]
+    head = ["learns from", "relative L2", "boundary error", "max angle", "folded cells", "steps", "seconds"]
     return table(head, rows) if rows else ""
 
 
@@ -244,7 +244,7 @@ def times(results: Path) -> str:
         rows.append([words.TIMED[way], *cells])
         if paper:
             rows.append([f"{paper}, the paper's", *(words.SECONDS[paper].get(n, "-") for n in sizes)])
-    return table(["way", *(f"{n}²" for n in sizes)], rows) if sizes else ""
+    return table(["method", *(f"{n}²" for n in sizes)], rows) if sizes else ""
 
 
 def maps(pages: Path) -> str:
@@ -258,7 +258,7 @@ def maps(pages: Path) -> str:
         ]
         if any(cell != "-" for cell in found):
             rows.append([family, *found])
-    return table(["", "TFI", "PDE", "MeshONet, walls pasted", "MeshONet-hard"], rows) if rows else ""
+    return table(["", "TFI", "PDE", "MeshONet, boundary pasted", "MeshONet-hard"], rows) if rows else ""
 
 
 def budgets(results: Path) -> str:

@@ -1,44 +1,47 @@
 """What the pages of docs/paper say around their tables, and the paper's own figures."""
 
 HEAD = """
-# The MeshONet paper, done again
+# The MeshONet paper, reproduced
 
 <!-- made by make paper -->
 
 Xiao, Chen, Peng, Wang, Liu, *MeshONet: A Generalizable and Efficient Operator Learning Method for Structured Mesh
-Generation*, arXiv 2501.11937. Every figure here comes from `meshonet` commands: `make paper` samples the six
-families, solves, trains, infers and judges; `examples/paper/Makefile` is the recipe. The models are described in
-[paper-models.md](../paper-models.md). The paper's quality figure is the largest included angle, shown as colour maps;
-it gives no numbers for it, so what it *claims* stands beside what we measure.
+Generation*, arXiv 2501.11937.
+
+Read this page to see which claims of the paper are confirmed. All figures come from `meshonet` commands: `make paper`
+samples the six families, solves, trains, infers and measures; `examples/paper/Makefile` is the recipe. The models are
+described in [paper models](../paper-models.md). The paper measures quality by the largest included angle and shows it
+as colour maps without numbers. Its claims are therefore quoted in words beside our figures.
 """
 
 STANDS = """
-## What stands and what falls
+## Which claims are confirmed
 """
 
 CLAIMS = """
-**Quality**: the largest included angle of MeshONet's grids (the paper's way: true walls pasted over the answer), mean over the test
-grids, against the classical ways; lower is better. Pasting puts the true wall over a row of nodes that is off by the
-error of the network's own boundary, and folds the cells between wherever that error exceeds the first row's height;
-`meshonet-hard` has nothing to paste. *Delivered* is what `infer` gives unless told otherwise: the same answer, its
-folded cells repaired by the guard that every command has.
+**Quality**: the largest included angle of MeshONet's grids, averaged over the test grids, compared with TFI and the PDE
+solver. Lower is better. As in the paper, the true boundary is pasted over the network's output. The network's boundary
+has an error, and where it exceeds the height of the first row, pasting folds the cells there. `meshonet-hard` meets the
+boundary exactly and needs no pasting. *Repaired* is the output of `infer` with its defaults, in which folded cells are
+repaired.
 """
 
 LOWEST = """The paper claims that MeshONet's loss is below that of its four modified baselines by orders of magnitude.
-Here every model has the same shapes, as often, with the same schedule; mean and spread over the seeds.
+Here all models see the same shapes equally often, with the same schedule. Values are mean and spread over the seeds.
 
 """
 
 QUALITY = """
 ## Quality, case by case
 
-36 shapes of 101 x 101 nodes a case: 30 trained on, 6 kept for tests (the paper's counts). Interpolation tests the
-middle of the range and trains on both ends, extrapolation tests one end, random tests random positions. Everything
-is measured on test grids only, against the converged Winslow solution. *Boundary off by* is the largest distance of
-a boundary node from its place before anything is pasted. Angles in degrees. The PDE rows are the grids the models
-learn from, repaired where Winslow's equations fold them: the wrench, 4 to 18 cells a grid at the two corners of 270
-degrees, more on finer ones. `meshonet-hard` has a trained trunk, on wrench and airfoil modes of the training
-grids ([why](../paper-models.md#meshonet-hard)).
+Each case has 36 shapes of 101 x 101 nodes: 30 for training and 6 for tests, as in the paper. *Interpolation* tests the
+middle of the range and trains on both ends. *Extrapolation* tests one end. *Random* tests random positions. All figures
+are of test grids, compared with the converged Winslow solution. *Boundary error* is the largest distance of a boundary
+node from its place before pasting. Angles are in degrees.
+
+The PDE rows are the grids from which the models learn. On the wrench, Winslow's equations fold 4 to 18 cells of each
+grid at the two corners of 270 degrees, and these are repaired. `meshonet-hard` has a trained trunk, and on wrench and
+airfoil modes of the training grids ([why](../paper-models.md#meshonet-hard)).
 """
 
 PAPER = {
@@ -51,29 +54,30 @@ PAPER = {
 }
 
 RACE = """
-## Loss, on one budget
+## Loss on one budget
 
-Every model sees the same shapes as often, with the same schedule and the same places drawn for each step; mean ± spread
-over the seeds. The paper reports (a figure, 100,000 iterations) that MeshONet's loss is lowest by orders of magnitude.
-The loss of `meshonet-hard` is of the difference from its base, relative to it, and cannot be compared; its error can.
-`fno2d` learns from every second node of either direction (51 x 51), since the whole square takes it four times as
-long; its answers are splined to 101 x 101 and judged there.
+All models see the same shapes equally often, with the same schedule and the same random points in each step. Values are
+mean ± spread over the seeds. The paper reports, in a figure over 100,000 iterations, that MeshONet's loss is lowest by
+orders of magnitude. The loss of `meshonet-hard` is relative to the correction that it learns and cannot be compared; its
+error can. `fno2d` learns from every second node in each direction, because the full square takes four times as long; its
+output is interpolated to 101 x 101 nodes by splines.
 """
 
 PHYSICS = """
 ## Physics-informed networks
 
-One network for each geometry (5,122 parameters), so this one learns the arch of the refinement table, 101 x 101 nodes,
-and answers no other; its training is its generation time. As it answers, against the converged Winslow solution.
-The paper gives no figures for this line; it calls it as good as the PDE solver in quality and not general.
+Each geometry needs its own network (5,122 parameters), so its training time is its generation time. This one learns the
+arch of the refinement table at 101 x 101 nodes. Its output is compared with the converged Winslow solution. The paper
+gives no figures for these networks; it calls them as good as the PDE solver, and not general.
 """
 
 TIME = """
 ## Mesh refinement
 
-Seconds from boundary nodes in memory to grid nodes in memory, one arch that no model was trained on, one thread on
-{machine}. The paper's MeshONet ran on an RTX 4090. The paper's factor of four orders of magnitude is against a
-PDE solver that takes 140 s for 100 x 100 nodes; against a multigrid solver it does not hold.
+Seconds from boundary nodes in memory to grid nodes in memory. The shape is an arch that no model was trained on; one
+thread on {machine}. The paper's MeshONet ran on an RTX 4090. The paper's
+speed-up of four orders of magnitude is over a PDE solver that takes 140 s for 100 x 100 nodes. Over a multigrid solver
+there is no such speed-up.
 """
 
 MAPS = """
@@ -85,9 +89,9 @@ The first test shape of each case.
 SETTINGS = """
 ## Training
 
-Adam, rate 0.001 times 0.9 every fifteenth of the epochs (0.003 falling as a cosine for `meshonet-hard` on wrenches); 30
-shapes a step; 1000 places inside and 200 on the boundary drawn for each step (a quarter of that for the modes of
-`meshonet-hard`); weights 900 and 1000 (`meshonet`). What each run was given:
+Adam with a rate of 0.001, multiplied by 0.9 every fifteenth of the epochs (for `meshonet-hard` on wrenches: 0.003 with a
+cosine schedule). A step has 30 shapes and 1000 random points inside and 200 on the boundary (a quarter of that for the
+modes of `meshonet-hard`). The weights of the loss are 900 and 1000 (`meshonet`). The budget of each run:
 """
 
 SECONDS = {

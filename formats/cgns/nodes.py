@@ -30,6 +30,11 @@ _DENSEST = 1032
 """Most that deflate can shrink; a claim beyond it is a lie."""
 
 
+def is_adf(head: bytes) -> bool:
+    """Say whether `head` is of the container that CGNS used before HDF5."""
+    return b"ADF Database Version" in head[:32]
+
+
 def root(file: h5py.File) -> Node:
     """Make the root node of a new file, opened with ``track_order=True``."""
     _label(file, "HDF5 MotherNode", "Root Node of HDF5 File", "MT")

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.formats.cgns.nodes import Node, array, children, text
-from meshonet.formats.cgns.write import is_adf
+from meshonet.formats.cgns.nodes import Node, array, children, is_adf, text
 from meshonet.formats.hdf5.check import opened
 from meshonet.formats.mesh.metadata import grid_with
 from meshonet.formats.mesh.slices import planar

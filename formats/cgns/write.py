@@ -1,7 +1,7 @@
 """CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, the cut joined one to one.
 
 Written so that libraries from 3.4 on read it. Topology, name, parts and provenance are Descriptor_t
-nodes of the zone, which others pass over. Reading is in `meshonet.formats.cgns.read`.
+nodes of the zone, which others pass over.
 https://cgns.org/standard/SIDS/SIDS.html
 """
 
@@ -15,16 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child, root
-from meshonet.formats.format import Format, Heights
+from meshonet.formats.format import Heights, at_least_one
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.names import words
-from meshonet.formats.source import Source
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.errors import InputError
 
 Integers = NDArray[np.int32]
 
@@ -50,41 +48,16 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
     _write(path, grids, heights)
 
 
-def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of every structured zone.
-
-    Raises
-    ------
-    InputError
-        a container of the old kind, no HDF5, no structured zone, a zone that is not right.
-    """
-    from meshonet.formats.cgns.read import read_grids as read
-
-    yield from read(source)
-
-
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is of a CGNS file, of either kind of container."""
-    return is_adf(head) or (head.startswith(b"\x89HDF\r\n\x1a\n") and b"HDF5 MotherNode" in head)
-
-
-def is_adf(head: bytes) -> bool:
-    """Say whether `head` is of the container that CGNS used before HDF5."""
-    return b"ADF Database Version" in head[:32]
-
-
 def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> None:
-    given = iter(grids)
-    first = next(given, None)
-    if first is None:
-        raise InputError("there is no grid to write", "check the input")
+    rest = iter(grids)
+    first = at_least_one(rest)
     dimension = 3 if heights else 2
     with created(path, track_order=True, libver=("earliest", "v108")) as file:
         base = child(root(file), "Base", "CGNSBase_t", np.full(2, dimension, np.int32))
         child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
         zones: set[str] = set()
         families: dict[str, Role] = {}
-        for grid in chain([first], given):
+        for grid in chain([first], rest):
             title = grid.name or "Zone"
             zone = words([title], NAME_LENGTH, {"DataClass", *zones, *families})[title]
             zones.add(zone)
@@ -170,16 +143,3 @@ def _range(part: Patch, grid: Grid, planes: int) -> Integers:
         i = 1 if part.side == "west" else grid.ni
         span = [[i, start], [i, stop]]
     return np.array([[*span[0], 1], [*span[1], planes]] if planes else span, np.int32)
-
-
-FORMAT = Format(
-    name="cgns",
-    suffixes=(".cgns",),
-    description="CGNS structured zones in HDF5, with boundary conditions and families",
-    read_grids=read_grids,
-    write_grids=write_grids,
-    write_extruded=write_extruded,
-    sniff=sniff,
-    names_patches=True,
-    many=True,
-)

@@ -1,4 +1,4 @@
-"""Pictures of a grid: ``.png``, ``.svg``, ``.pdf``; with `meshonet.formats.figure.layers` all that imports matplotlib.
+"""Pictures of a grid: ``.png``, ``.svg``, ``.pdf``. Only this room imports matplotlib.
 
 A picture has far fewer pixels than a fine grid has cells, so cells are coloured in blocks of about a
 pixel, each with the worst value in it, and only every k-th grid line is drawn.
@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.figure.layers import INK, Box, Part, body, in_view, outline, paint, rule
-from meshonet.formats.format import Format, only_one
+from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -218,22 +217,6 @@ def _note(ax: Axes, text: str) -> None:
         bbox=paper,
         zorder=5,
     )
-
-
-def _format(kind: str, description: str) -> Format:
-    return Format(
-        name=kind,
-        suffixes=(f".{kind}",),
-        description=description,
-        write_grids=partial(write_grids, kind=kind),
-    )
-
-
-FORMATS = (
-    _format("png", "picture of a grid"),
-    _format("svg", "picture of a grid, lines as vectors"),
-    _format("pdf", "picture of a grid, lines as vectors"),
-)
 
 
 def _drawn_lines(xi: int, eta: int) -> str:

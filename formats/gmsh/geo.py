@@ -13,9 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.format import Format, only_one
-from meshonet.formats.gmsh.msh import quotable
-from meshonet.formats.gmsh.msh41 import INTERIOR
+from meshonet.formats.format import only_one
+from meshonet.formats.gmsh.msh import INTERIOR, quotable
 from meshonet.formats.mesh.unstructured import Indices, node_numbers, unstructured
 from meshonet.geometry.blocks.grid import Grid
 
@@ -74,12 +73,3 @@ def _named(grid: Grid, number: Indices, lines: Indices) -> dict[str, Indices]:
 
 def _listed(numbers: Indices) -> str:
     return ", ".join(map(str, numbers.tolist()))
-
-
-FORMAT = Format(
-    name="geo",
-    suffixes=(".geo",),
-    description="Gmsh geometry: the outer edges as transfinite curves, parts as physical groups",
-    write_grids=write_grids,
-    names_patches=True,
-)

@@ -1,67 +1,48 @@
-"""Gmsh ``.msh`` 2.2 and 4.1: quadrilaterals with merged seams, and the boundary's parts as physical groups.
+"""Writing Gmsh's ``.msh`` 2.2 and 4.1: quadrilaterals with merged seams, patches as physical groups.
 
-2.2 is written through meshio, binary unless asked otherwise; text is what converters such as OpenFOAM's
-insist on. 4.1 is in `meshonet.formats.gmsh.msh41`. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format-version-2
+2.2 goes through meshio; of 4.1 every patch is an entity, which meshio would not write. Text is what
+converters such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from functools import partial
+import struct
+from collections.abc import Iterable
 from pathlib import Path
-from types import ModuleType
+from typing import BinaryIO, TypeAlias
 
 import numpy as np
 
-from meshonet.formats.format import Format, Heights, only_one
-from meshonet.formats.gmsh import msh41 as gmsh41
-from meshonet.formats.gmsh.msh41 import INTERIOR
-from meshonet.formats.gmsh.read import read_shapes, sniff
+from meshonet.formats.format import Heights, Options, only_one
 from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
 from meshonet.formats.source import printable
+from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 
+INTERIOR = "fluid"
+"""Name of the group of all cells."""
+_KINDS = {"line": 1, "quad": 3, "hexahedron": 5}
 
-def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:
-    """Write the one grid of `grids`: quads, and lines in groups named as its parts."""
+Group: TypeAlias = "tuple[str, str, Indices]"
+"""Kind of cells, name, and their nodes (m, k) counted from 0."""
+
+
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
+    """Write the one grid of `grids`: quads, and lines in groups named as its patches."""
     mesh = unstructured(only_one(grids, "a .msh file"))
     points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    groups = [("line", name, edges) for name, edges in mesh.edges.items()]
-    _write(path, points, 1, groups, ("quad", mesh.quads), text=text)
+    groups: list[Group] = [("line", name, edges) for name, edges in mesh.edges.items()]
+    _write(path, points, groups, ("quad", mesh.quads), 2, options)
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights, *, text: bool = False) -> None:
-    """Write the one grid of `grids` repeated in z: hexahedra, and faces in groups."""
-    mesh = unstructured(only_one(grids, "a .msh file"))
-    points, faces, hexahedra = extruded(mesh, heights)
-    groups = [("quad", name, quads) for name, quads in faces.items()]
-    _write(path, points, 2, groups, ("hexahedron", hexahedra), text=text)
-
-
-def _write(
-    path: Path,
-    points: Floats,
-    dimension: int,
-    groups: list[tuple[str, str, Indices]],
-    interior: tuple[str, Indices],
-    *,
-    text: bool,
+def write_extruded(
+    path: Path, grids: Iterable[Grid], heights: Heights, *, options: Options = frozenset()
 ) -> None:
-    """Write groups (cell kind, name, cells) of `dimension`, and the interior one dimension up."""
-    import meshio
-
-    inside = INTERIOR if all(name != INTERIOR for _, name, _ in groups) else f"{INTERIOR}-cells"
-    cells = [(kind, block) for kind, _, block in groups] + [interior]
-    names = [(quotable(name), dimension) for _, name, _ in groups] + [(inside, dimension + 1)]
-    tags = [np.full(len(block), tag) for tag, (_, block) in enumerate(cells, start=1)]
-    mesh = meshio.Mesh(
-        points,
-        cells,
-        field_data={name: np.array([tag, dim]) for tag, (name, dim) in enumerate(names, start=1)},
-        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
-    )
-    meshio.gmsh.write(str(path), mesh, fmt_version="2.2", binary=not text, float_fmt=".16e")
+    """Write the one grid of `grids` repeated in z: hexahedra, and faces in groups."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .msh file")), heights)
+    groups: list[Group] = [("quad", name, quads) for name, quads in faces.items()]
+    _write(path, points, groups, ("hexahedron", hexahedra), 3, options)
 
 
 def quotable(name: str) -> str:
@@ -69,21 +50,92 @@ def quotable(name: str) -> str:
     return printable(name).replace('"', "'")
 
 
-def _formats(number: str, one: ModuleType | None, version: str) -> Iterator[Format]:
-    """Yield the binary and the text format of a version; `one` has its writers, or this module."""
-    grids = one.write_grids if one else write_grids
-    layers = one.write_extruded if one else write_extruded
-    for text, kind in ((False, "binary"), (True, "text")):
-        yield Format(
-            name=f"gmsh{number}{'-ascii' if text else ''}",
-            suffixes=(".msh",),
-            description=f"Gmsh {version} mesh, {kind}, parts as physical groups; read as a boundary",
-            read_shapes=read_shapes,
-            write_grids=partial(grids, text=text),
-            write_extruded=partial(layers, text=text),
-            sniff=sniff,
-            names_patches=True,
-        )
+def _write(
+    path: Path, points: Floats, groups: list[Group], cells: tuple[str, Indices], dim: int, options: Options
+) -> None:
+    inside = INTERIOR if all(name != INTERIOR for _, name, _ in groups) else f"{INTERIOR}-cells"
+    write = _write_41 if "4.1" in options else _write_22
+    write(path, points, groups, (cells[0], inside, cells[1]), dim, text="ascii" in options)
 
 
-FORMATS = (*_formats("", None, "2.2"), *_formats("41", gmsh41, "4.1"))
+def _write_22(path: Path, points: Floats, groups: list[Group], cells: Group, dim: int, *, text: bool) -> None:
+    """Write the groups, of dimension `dim` - 1, and the cells."""
+    import meshio
+
+    blocks = [(dim - 1, group) for group in groups] + [(dim, cells)]
+    tags = [np.full(len(nodes), tag) for tag, (_, (_, _, nodes)) in enumerate(blocks, start=1)]
+    mesh = meshio.Mesh(
+        points,
+        [(kind, nodes) for _, (kind, _, nodes) in blocks],
+        field_data={
+            quotable(name): np.array([tag, dimension])
+            for tag, (dimension, (_, name, _)) in enumerate(blocks, start=1)
+        },
+        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+    )
+    meshio.gmsh.write(str(path), mesh, fmt_version="2.2", binary=not text, float_fmt=".16e")
+
+
+def _write_41(path: Path, points: Floats, groups: list[Group], cells: Group, dim: int, *, text: bool) -> None:
+    """Write the groups, entities 1, 2 ... of dimension `dim` - 1, and the cells, entity 1 of `dim`."""
+    blocks = [(dim - 1, tag, group) for tag, group in enumerate(groups, start=1)] + [(dim, 1, cells)]
+    with path.open("wb") as stream:
+        stream.write(f"$MeshFormat\n4.1 {int(not text)} 8\n".encode())
+        stream.write(b"" if text else struct.pack("<i", 1) + b"\n")
+        stream.write(f"$EndMeshFormat\n$PhysicalNames\n{len(blocks)}\n".encode())
+        for k, (dimension, _, (_, name, _)) in enumerate(blocks, start=1):
+            stream.write(f'{dimension} {k} "{quotable(name)}"\n'.encode())
+        stream.write(b"$EndPhysicalNames\n$Entities\n")
+        _write_entities(stream, points, blocks, dim, text=text)
+        stream.write(b"$EndEntities\n$Nodes\n")
+        count = len(points)
+        _numbers(stream, "q", (1, count, 1, count), text=text)
+        _numbers(stream, "i", (dim, 1, 0), text=text, end=b" ")
+        _numbers(stream, "q", (count,), text=text)
+        _rows(stream, np.arange(1, count + 1)[:, None], text=text)
+        _rows(stream, points, text=text)
+        stream.write(b"$EndNodes\n$Elements\n")
+        total = sum(len(nodes) for _, _, (_, _, nodes) in blocks)
+        _numbers(stream, "q", (len(blocks), total, 1, total), text=text)
+        first = 1
+        for dimension, tag, (kind, _, nodes) in blocks:
+            _numbers(stream, "i", (dimension, tag, _KINDS[kind]), text=text, end=b" ")
+            _numbers(stream, "q", (len(nodes),), text=text)
+            _rows(stream, np.column_stack([np.arange(first, first + len(nodes)), nodes + 1]), text=text)
+            first += len(nodes)
+        stream.write(b"$EndElements\n")
+
+
+def _write_entities(
+    stream: BinaryIO, points: Floats, blocks: list[tuple[int, int, Group]], dim: int, *, text: bool
+) -> None:
+    """Write the box and the physical group of each entity, without what bounds it."""
+    counts = [0, 0, 0, 0]
+    counts[dim - 1], counts[dim] = len(blocks) - 1, 1
+    _numbers(stream, "q", tuple(counts), text=text)
+    for group, (_, tag, (_, _, nodes)) in enumerate(blocks, start=1):
+        own = points[nodes.ravel()]
+        box = (*own.min(axis=0).tolist(), *own.max(axis=0).tolist())
+        _numbers(stream, "i", (tag,), text=text, end=b" ")
+        _numbers(stream, "d", box, text=text, end=b" ")
+        _numbers(stream, "q", (1,), text=text, end=b" ")
+        _numbers(stream, "i", (group,), text=text, end=b" ")
+        _numbers(stream, "q", (0,), text=text)
+
+
+def _numbers(
+    stream: BinaryIO, kind: str, values: tuple[float, ...], *, text: bool, end: bytes = b"\n"
+) -> None:
+    """Write a few numbers: in text blank-separated, then `end`."""
+    if text:
+        stream.write(" ".join(f"{v:.17g}" if kind == "d" else str(v) for v in values).encode() + end)
+    else:
+        stream.write(struct.pack(f"<{len(values)}{kind}", *values))
+
+
+def _rows(stream: BinaryIO, rows: Floats | Indices, *, text: bool) -> None:
+    if text:
+        field = "%e" if rows.dtype.kind == "f" else "%d"
+        write_rows(stream, " ".join([field] * rows.shape[1]), rows)
+    else:
+        stream.write(np.ascontiguousarray(rows, "<f8" if rows.dtype.kind == "f" else "<i8").data)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from meshonet.formats.gmsh.sections import Elements, Nodes, elements, nodes
+from meshonet.formats.gmsh.sections import Elements, Nodes, elements, nodes, physical_tags
 from meshonet.formats.mesh.surface import Surface, flat, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import Source, printable
@@ -39,8 +39,6 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     names = _names(_section(data, b"PhysicalNames", needed=False))
     tags = {}
     if version == "4.1":
-        from meshonet.formats.gmsh.sections import physical_tags
-
         tags = physical_tags(_section(data, b"Entities", needed=False), binary, order)
     try:
         numbered = nodes(_section(data, b"Nodes"), version, binary, order)
@@ -48,11 +46,6 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     except (ValueError, OverflowError, IndexError) as error:
         raise InputError(f"cannot be read ({printable(str(error))[:80]})", _AGAIN) from None
     yield from shapes_of(_surface(numbered, found, names), source.stem)
-
-
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is of a Gmsh mesh."""
-    return b"$MeshFormat" in head[:4096]
 
 
 def _format(data: bytes) -> tuple[str, bool, str]:

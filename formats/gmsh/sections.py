@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.text.free_numbers import parsed
+from meshonet.formats.text.number_table import parsed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 

@@ -17,14 +17,15 @@ repeated as attributes of the file, for reading by eye. https://docs.h5py.org
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from operator import call
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.hdf5.check import Checked, checked
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.metadata import plain
@@ -40,6 +41,7 @@ from meshonet.geometry.errors import InputError
 if TYPE_CHECKING:
     import h5py
 
+T = TypeVar("T")
 VERSION = 1
 BLOCK = 1 << 22
 """Bytes of samples that are held back to be written together."""
@@ -205,44 +207,56 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def read_shapes(source: Source) -> Iterator[Boundary]:
-    """Yield the boundaries; of a grid dataset, the grids' outer edges as they were stored."""
-    with checked(source) as data:
-        for k in data.kept(source.split):
-            with data.place(k):
-                south, north, west, east = (
-                    data.sample(side, k) for side in ("south", "north", "west", "east")
-                )
-                name = data.text("names", k)
-                parts, origin = _parts(data, k), _origin(data, k)
-                yield Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
+    """Return an iterator over the boundaries; of a grid dataset, the grids' outer edges as they were stored.
+
+    It goes on behind a sample that is not right and raised InputError.
+    """
+    return map(call, _samples(source, _boundary))
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grids.
+    """Return an iterator over the grids; it goes on behind a sample that is not right.
 
     Raises
     ------
     InputError
         the dataset holds boundaries only, or is not right.
     """
+    return map(call, _samples(source, _grid))
+
+
+def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Callable[[], T]]:
+    """Yield functions that read one sample each: what they raise does not end the generator."""
     with checked(source) as data:
-        if "nodes" not in data:
+        if read is _grid and "nodes" not in data:
             raise InputError(
                 "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
             )
         for k in data.kept(source.split):
-            with data.place(k):
-                facts = json.loads(data.text("provenance", k) or "{}")
-                if not isinstance(facts, dict):
-                    raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
-                yield Grid.from_nodes(
-                    usable(data.sample("nodes", k)),
-                    data.topology,
-                    _parts(data, k),
-                    data.text("names", k),
-                    facts,
-                    _origin(data, k),
-                )
+            yield partial(read, data, k)
+
+
+def _boundary(data: Checked, k: int) -> Boundary:
+    with data.place(k):
+        south, north, west, east = (data.sample(side, k) for side in ("south", "north", "west", "east"))
+        name = data.text("names", k)
+        parts, origin = _parts(data, k), _origin(data, k)
+        return Boundary(south, north, west, east, data.topology, parts, name, origin=origin)
+
+
+def _grid(data: Checked, k: int) -> Grid:
+    with data.place(k):
+        facts = json.loads(data.text("provenance", k) or "{}")
+        if not isinstance(facts, dict):
+            raise InputError("provenance is not a JSON object", "remove the dataset 'provenance'")
+        return Grid.from_nodes(
+            usable(data.sample("nodes", k)),
+            data.topology,
+            _parts(data, k),
+            data.text("names", k),
+            facts,
+            _origin(data, k),
+        )
 
 
 def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str, ...]]:
@@ -253,11 +267,6 @@ def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str,
             return (), np.empty((data.count, 0)), tuple(data.text("split", k) for k in count)
         rows = np.array([data.sample("parameters", k) for k in count])
         return data.parameter_names(), rows, tuple(data.text("split", k) for k in count)
-
-
-def sniff(head: bytes) -> bool:
-    """Say whether `head` starts as HDF5 files do; those of CGNS have a reader of their own."""
-    return head.startswith(b"\x89HDF\r\n\x1a\n") and b"HDF5 MotherNode" not in head
 
 
 def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
@@ -287,18 +296,3 @@ def _parts(data: Checked, k: int) -> tuple[Patch, ...]:
         raise InputError(
             "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
         ) from None
-
-
-FORMAT = Format(
-    name="hdf5",
-    suffixes=(".h5", ".hdf5"),
-    description="HDF5 dataset of boundaries or grids",
-    read_shapes=read_shapes,
-    read_grids=read_grids,
-    write_grids=write_grids,
-    write_boundaries=write_boundaries,
-    sniff=sniff,
-    names_patches=True,
-    many=True,
-    one_size=True,
-)

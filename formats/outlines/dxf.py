@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.mesh.surface import MOST_EDGES, Surface, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
@@ -69,11 +68,6 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     yield from shapes_of(_joined(lines), source.stem)
 
 
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is of a DXF drawing."""
-    return head.split()[:2] == [b"0", b"SECTION"] or head.startswith(b"AutoCAD Binary DXF")
-
-
 def _lines(found: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     """Return layer and points (n, 2) of each curve, chords in place of what is curved."""
     corners = [np.array([(v.x, v.y) for v in curve.control_vertices()]) for _, curve in found if len(curve)]
@@ -123,13 +117,3 @@ def _joined(lines: list[tuple[str, Floats]]) -> Surface:
         nodes = same[start:stop]
         edges.setdefault(layer, []).append(np.stack([nodes[:-1], nodes[1:]], axis=1))
     return Surface(points, {layer: np.concatenate(pieces) for layer, pieces in edges.items()})
-
-
-FORMAT = Format(
-    name="dxf",
-    suffixes=(".dxf",),
-    description="DXF drawing, layers as names (needs the extra dxf)",
-    read_shapes=read_shapes,
-    sniff=sniff,
-    many=True,
-)

@@ -8,13 +8,11 @@ https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.points import one_curve
@@ -28,7 +26,6 @@ from meshonet.geometry.shapes.shape import Shape
 if TYPE_CHECKING:
     from shapely.geometry.base import BaseGeometry
 
-_WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 _ASK = "give a POLYGON or a closed LINESTRING"
 
 
@@ -77,16 +74,6 @@ def read_geojson(source: Source) -> Iterator[Shape]:
         ) as error:
             raise InputError(f"is not a GeoJSON geometry ({_short(error)})", _ASK, place=place) from None
     yield from _named(found)
-
-
-def sniff_wkt(head: bytes) -> bool:
-    """Say whether `head` starts with the name of a WKT geometry."""
-    return bool(_WKT.match(head))
-
-
-def sniff_geojson(head: bytes) -> bool:
-    """Say whether `head` starts as a JSON object that names a GeoJSON type."""
-    return head.lstrip()[:1] == b"{" and b'"type"' in head
 
 
 def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
@@ -185,23 +172,3 @@ def _text(source: Source) -> str:
 
 def _short(error: Exception) -> str:
     return printable(str(error).split("\n")[0])[:100] or type(error).__name__
-
-
-FORMATS = (
-    Format(
-        name="wkt",
-        suffixes=(".wkt",),
-        description="outlines as well-known text",
-        read_shapes=read_wkt,
-        sniff=sniff_wkt,
-        many=True,
-    ),
-    Format(
-        name="geojson",
-        suffixes=(".geojson", ".json"),
-        description="outlines as GeoJSON",
-        read_shapes=read_geojson,
-        sniff=sniff_geojson,
-        many=True,
-    ),
-)

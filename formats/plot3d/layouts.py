@@ -86,7 +86,7 @@ class Candidate:
     layout : the layout.
     arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
     told : the number type and byte order, for messages.
-    kind : words of `meshonet.formats.plot3d.variant` for these.
+    kind : options of the format for these.
     """
 
     layout: Layout
@@ -96,7 +96,7 @@ class Candidate:
 
     @property
     def traits(self) -> frozenset[str]:
-        """The words of `meshonet.formats.plot3d.variant` that describe it."""
+        """The options of the format that describe it."""
         layout = self.layout
         words = {
             "multi" if layout.counted else "single",

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.format import Heights, only_one
 from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
 from meshonet.formats.mesh.names import words
 from meshonet.geometry.arrays import Side
@@ -63,13 +63,3 @@ def _range(part: Patch, planes: int, *, turned: bool = False) -> str:
     if part.side in ("south", "north"):
         spans.reverse()
     return f"1 {_FACES[part.side]} {' '.join(spans)}"
-
-
-FORMAT = Format(
-    name="nmf",
-    suffixes=(".nmf",),
-    description="NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
-    write_grids=write_grids,
-    write_extruded=write_extruded,
-    names_patches=True,
-)

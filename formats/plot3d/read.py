@@ -1,29 +1,35 @@
-"""Reading Plot3D grids of any kind, told apart without being told."""
+"""Reading Plot3D grids of any layout, which their length and their cells tell."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import NoReturn
 
+import numpy as np
+
+from meshonet.formats.format import Options
 from meshonet.formats.mesh.recover_topology import recovered
 from meshonet.formats.plot3d import binary, text
 from meshonet.formats.plot3d.layouts import Candidate, best
-from meshonet.formats.plot3d.sniff import is_text
-from meshonet.formats.plot3d.variant import ANY, Variant
 from meshonet.formats.source import HEAD_BYTES, Source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
+_WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
+_INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
+_INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 
-def read_grids(source: Source, variant: Variant = ANY) -> Iterator[Grid]:
+
+def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
     """Yield the grid of every block, right-handed, its topology recovered from its nodes.
 
     Where there is an iblank array, the provenance says how many nodes have which value.
 
     Parameters
     ----------
-    variant : what is known of the layout; the rest is found out.
+    options : what is known of the layout; the rest is found out.
 
     Raises
     ------
@@ -32,8 +38,8 @@ def read_grids(source: Source, variant: Variant = ANY) -> Iterator[Grid]:
     """
     data = source.read_bytes()
     every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)
-    asked = variant.for_reading()
-    found = best([candidate for candidate in every if asked <= candidate.traits] or _misfit(every, asked))
+    wanted = options - _WRITTEN_ONLY
+    found = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
     blocks = len(found.layout.dims)
     for block in range(blocks):
         name = source.stem if blocks == 1 else f"{source.stem}-{block + 1}"
@@ -46,9 +52,33 @@ def read_grids(source: Source, variant: Variant = ANY) -> Iterator[Grid]:
             raise
 
 
-def _misfit(every: list[Candidate], asked: frozenset[str]) -> NoReturn:
+def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:
     fitting = " or ".join(" ".join(sorted(candidate.traits)) for candidate in every[:3])
     raise InputError(
-        f"is not {' '.join(sorted(asked))}: it fits {fitting}",
-        "correct or leave out the words of the variant",
+        f"is not {' '.join(sorted(wanted))}: it fits {fitting}",
+        "correct or leave out the options",
     )
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` starts with the dims of a Plot3D grid and, when it is a whole file, fits one."""
+    textual = is_text(head)
+    if textual and not _INTEGER_FIRST.match(head):
+        return False
+    if len(head) == HEAD_BYTES:
+        return bool(_INTEGER_LINE.match(head)) if textual else _could_be_binary(head)
+    try:
+        return bool(text.candidates(head) if textual else binary.candidates(head))
+    except InputError:
+        return False
+
+
+def is_text(head: bytes) -> bool:
+    """Say whether `head` is text; binary integers below 2^24 always have a zero byte."""
+    return b"\0" not in head[:64]
+
+
+def _could_be_binary(head: bytes) -> bool:
+    """Say whether the first integers of a long file can be dims, or the length of a record of them."""
+    words = np.frombuffer(head, "<i4", 3), np.frombuffer(head, ">i4", 3)
+    return any(bool(((first >= 1) & (first <= 100_000)).all()) for first in words)

@@ -9,7 +9,7 @@ from math import prod
 import numpy as np
 
 from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
-from meshonet.formats.text.free_numbers import parsed
+from meshonet.formats.text.number_table import parsed
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 

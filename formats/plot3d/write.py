@@ -10,7 +10,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.plot3d.variant import Variant
+from meshonet.formats.format import Heights, Options
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
@@ -27,12 +27,12 @@ class Block:
     ----------
     grid : the grid.
     heights : z of each plane; none of them makes a two-dimensional block without z.
-    variant : which index runs in z, whether there is an iblank array.
+    options : which index runs in z, whether there is an iblank array.
     """
 
-    def __init__(self, grid: Grid, heights: tuple[float, ...], variant: Variant) -> None:
-        self.grid, self.heights, self.iblank = grid, heights, variant.has("iblank")
-        self._span = {"span-i": 0, "span-j": 1}.get(variant.one_of("span-i", "span-j", default=""), 2)
+    def __init__(self, grid: Grid, heights: tuple[float, ...], options: Options) -> None:
+        self.grid, self.heights, self.iblank = grid, heights, "iblank" in options
+        self._span = 0 if "span-i" in options else 1 if "span-j" in options else 2
         dims = [grid.ni, grid.nj]
         if heights:
             dims.insert(self._span, len(heights))
@@ -61,29 +61,41 @@ class Block:
         return int(np.prod(self.dims))
 
 
-def write_blocks(path: Path, grids: Iterable[Grid], variant: Variant, heights: tuple[float, ...]) -> None:
-    """Write the blocks of `grids`; `heights` is empty for blocks of two dimensions without z.
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
+    """Write a block for each of `grids`, of one plane; raises as `write_extruded`."""
+    # C binary with z and nk = 1: VTK takes a counted flat file of float64 for a solid one of float32
+    flat = "2d" in options or ("3d" not in options and "binary" not in options)
+    write_extruded(path, grids, () if flat else (0.0,), options=options)
+
+
+def write_extruded(
+    path: Path, grids: Iterable[Grid], heights: Heights, *, options: Options = frozenset()
+) -> None:
+    """Write a block for each of `grids`; without heights, one of two dimensions without z.
 
     Raises
     ------
     InputError
         there is no grid; several in a file without a count; a block that no Fortran record can hold.
     """
-    blocks = [Block(grid, heights, variant) for grid in grids]
+    if "planes" in options:
+        raise InputError("planes are read and not written", "leave the word out")
+    blocks = [Block(grid, heights, options) for grid in grids]
     if not blocks:
         raise InputError("there is no grid to write", "check the input")
-    if variant.has("single") and len(blocks) > 1:
+    if "single" in options and len(blocks) > 1:
         raise InputError(
             f"{len(blocks)} grids do not fit in a file without a count", "leave out the word single"
         )
     put = {"ascii": _put_text, "binary": _put_binary, "fortran": _put_fortran}
+    kind = next((kind for kind in put if kind in options), "ascii")
     with path.open("wb") as stream:
-        put[variant.one_of(*put, default="ascii")](stream, blocks, variant)
+        put[kind](stream, blocks, options)
 
 
-def _put_text(stream: BinaryIO, blocks: Sequence[Block], variant: Variant) -> None:
+def _put_text(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
     """Write text: the count of blocks, the dims of each on a line, then the numbers."""
-    head = [] if variant.has("single") else [str(len(blocks))]
+    head = [] if "single" in options else [str(len(blocks))]
     head += [" ".join(map(str, block.dims)) for block in blocks]
     stream.write(("\n".join(head) + "\n").encode())
     for block in blocks:
@@ -100,51 +112,51 @@ def _put_lines(stream: BinaryIO, field: str, values: NDArray[Any]) -> None:
             write_rows(stream, " ".join([field] * width), part.reshape(-1, width))
 
 
-def _put_binary(stream: BinaryIO, blocks: Sequence[Block], variant: Variant) -> None:
+def _put_binary(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
     """Write C binary."""
-    for record in _head(blocks, variant):
+    for record in _head(blocks, options):
         stream.write(record)
     for block in blocks:
-        for data in _body(block, variant):
+        for data in _body(block, options):
             stream.write(data)
 
 
-def _put_fortran(stream: BinaryIO, blocks: Sequence[Block], variant: Variant) -> None:
+def _put_fortran(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
     """Write Fortran records: count, dims, one record a block."""
-    word = struct.Struct(_order(variant) + "i")
-    for record in _head(blocks, variant):
+    word = struct.Struct(_order(options) + "i")
+    for record in _head(blocks, options):
         stream.write(word.pack(len(record)) + record + word.pack(len(record)))
     for block in blocks:
-        size = block.nodes * (len(block.dims) * _real(variant).itemsize + 4 * int(block.iblank))
+        size = block.nodes * (len(block.dims) * _real(options).itemsize + 4 * int(block.iblank))
         if size >= 1 << 31:
             raise InputError(
-                "a block of 2 GiB or more does not fit in a Fortran record", "write plot3d-binary"
+                "a block of 2 GiB or more does not fit in a Fortran record", "write it as plot3d:binary"
             )
         stream.write(word.pack(size))
-        for data in _body(block, variant):
+        for data in _body(block, options):
             stream.write(data)
         stream.write(word.pack(size))
 
 
-def _head(blocks: Sequence[Block], variant: Variant) -> Iterator[bytes]:
+def _head(blocks: Sequence[Block], options: Options) -> Iterator[bytes]:
     """Yield the count, where there is one, and the dims."""
     sizes = [size for block in blocks for size in block.dims]
-    if not variant.has("single"):
-        yield struct.pack(f"{_order(variant)}i", len(blocks))
-    yield struct.pack(f"{_order(variant)}{len(sizes)}i", *sizes)
+    if "single" not in options:
+        yield struct.pack(f"{_order(options)}i", len(blocks))
+    yield struct.pack(f"{_order(options)}{len(sizes)}i", *sizes)
 
 
-def _body(block: Block, variant: Variant) -> Iterator[memoryview]:
+def _body(block: Block, options: Options) -> Iterator[memoryview]:
     """Yield the coordinates and iblank of a block."""
     for values in block.arrays():
-        yield values.astype(_real(variant), copy=False).data
+        yield values.astype(_real(options), copy=False).data
     if block.iblank:
-        yield np.ones(block.nodes, _order(variant) + "i4").data
+        yield np.ones(block.nodes, _order(options) + "i4").data
 
 
-def _order(variant: Variant) -> str:
-    return ">" if variant.has("big") else "<"
+def _order(options: Options) -> str:
+    return ">" if "big" in options else "<"
 
 
-def _real(variant: Variant) -> np.dtype[Any]:
-    return np.dtype(_order(variant) + ("f4" if variant.has("float32") else "f8"))
+def _real(options: Options) -> np.dtype[Any]:
+    return np.dtype(_order(options) + ("f4" if "float32" in options else "f8"))

@@ -15,9 +15,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.source import Source, printable
-from meshonet.formats.text.rows import Line, decode, read_lines, table
+from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -53,11 +52,13 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
     """
     try:
         lines = read_lines(text)
-        rows, blocks = _data(lines)
-        points, order = _once_around(*_columns(rows), blocks)
+        rows, blocks, counts = _data(lines)
+        points, order, upper = _once_around(*_columns(rows), blocks)
         _check_run(points, [rows[k].number for k in order])
         places = [f"line {rows[k].number}" for k in order]
-        return Airfoil(points, _name(lines, rows[0].number) or stem or source, places)
+        airfoil = Airfoil(points, _name(lines, rows[0].number) or stem or source, places)
+        airfoil.notes = (*left_out(lines), *_wrong_counts(counts, len(rows), upper), *airfoil.notes)
+        return airfoil
     except InputError as error:
         error.source = error.source or source
         raise
@@ -83,8 +84,8 @@ def _name(lines: list[Line], first: int) -> str:
     return ""
 
 
-def _data(lines: list[Line]) -> tuple[list[Line], list[int]]:
-    """Return the rows that are coordinates, and where among them a new block starts."""
+def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
+    """Return the rows that are coordinates, where among them a new block starts, and Lednicer's counts."""
     blocks = table(lines)
     count = sum(map(len, blocks))
     if count > MOST_POINTS:
@@ -139,19 +140,21 @@ def _outside(point: Floats, points: Floats, by: float = 1.0) -> bool:
     return bool((point < low - reach).any() or (point > high + reach).any())
 
 
-def _without_heading(rows: list[Line], starts: list[int], width: int) -> tuple[list[Line], list[int]]:
+def _without_heading(
+    rows: list[Line], starts: list[int], width: int
+) -> tuple[list[Line], list[int], Line | None]:
     """Return rows and starts of blocks without rows of numbers above the data that are no coordinates.
 
-    Those are Lednicer's counts, and names or conditions that happen to be numbers: they lie far outside the
-    rest, or are whole numbers, unlike the rest, and begin with 0 or stand far from the points next to them.
+    Those are Lednicer's counts, which are returned too, and names or conditions that happen to be numbers:
+    they lie far outside the rest, or are whole numbers, unlike the rest, and begin with 0 or stand far from
+    the points next to them.
     """
+    counts = None
     if width != 2:
-        return rows, starts
+        return rows, starts, counts
     for k in reversed(range(min(4, len(rows) - 4))):
-        upper, lower = rows[k].values[:2]
-        whole = upper == int(upper) and lower == int(lower)
-        if whole and min(upper, lower) >= 2 and upper + lower == len(rows) - k - 1:
-            return rows[k + 1 :], [0, int(upper)]
+        if _are_counts(rows[k], len(rows) - k - 1, len(rows) - k - 1):
+            return rows[k + 1 :], [0, int(rows[k].values[0])], rows[k]
     while len(rows) > 4:
         rest = np.array([line.values[:2] for line in rows[1:]])
         point = np.array(rows[0].values[:2])
@@ -161,8 +164,32 @@ def _without_heading(rows: list[Line], starts: list[int], width: int) -> tuple[l
         named = any(re.fullmatch(r"0\d+", word) for word in rows[0].text.split())
         if not (_outside(point, rest) or (whole and (named or apart > 0.2 * extent))):
             break
+        if not named and _are_counts(rows[0], len(rest) // 2, 2 * len(rest)):
+            counts = rows[0]
         rows, starts = rows[1:], sorted({max(start - 1, 0) for start in starts})
-    return rows, starts
+    return rows, starts, counts
+
+
+def _are_counts(line: Line, least: int, most: int) -> bool:
+    """Say whether `line` can be Lednicer's: two whole numbers from 2 on whose sum lies in the given range."""
+    upper, lower = line.values[:2]
+    return (
+        upper == int(upper)
+        and lower == int(lower)
+        and min(upper, lower) >= 2
+        and least <= upper + lower <= most
+    )
+
+
+def _wrong_counts(counts: Line | None, points: int, upper: int) -> tuple[str, ...]:
+    """Return a note when a file announces other counts of points than its two surfaces have."""
+    if counts is None or (upper or int(counts.values[0]), points) == (
+        counts.values[0],
+        sum(counts.values[:2]),
+    ):
+        return ()
+    surfaces = f"{upper} and {points - upper} follow" if upper else f"{points} follow"
+    return (f"line {counts.number} announces {counts.text.strip()} points and {surfaces}, which are read",)
 
 
 def _columns(rows: list[Line]) -> tuple[Floats, list[int]]:
@@ -196,26 +223,27 @@ def _monotone(x: Floats) -> bool:
     return bool((step >= 0).mean() > 0.95 or (step <= 0).mean() > 0.95)
 
 
-def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[Floats, list[int]]:
-    """Return the points in one run around the section, and the row of each.
+def _once_around(points: Floats, index: list[int], starts: list[int]) -> tuple[Floats, list[int], int]:
+    """Return the points in one run around the section, the row of each, and how many the first surface has.
 
-    Either they run so already, or they are two surfaces that both start at the same edge, the first of
-    which is then to be reversed. The division is where a block starts or at the widest step; what gives
-    the shortest way round is right. It starts at the edge where both end, the trailing one in Lednicer's
-    order; where that lies ahead, at smaller x, at the other: only a sharp edge would tell it without.
+    Either they run so already, and 0 stands for the first surface, or they are two surfaces that both start
+    at the same edge, the first of which is then to be reversed. The division is where a block starts or at
+    the widest step; what gives the shortest way round is right. It starts at the edge where both end, the
+    trailing one in Lednicer's order; where that lies ahead, at smaller x, at the other: only a sharp edge
+    would tell it without.
     """
     n = len(points)
     steps = np.hypot(*np.diff(points, axis=0).T)
     half = [n // 2] if n == 2 * len(set(index)) else []  # two surfaces side by side
     breaks = {k for k in (*starts, *half, int(np.argmax(steps)) + 1) if 2 <= k <= n - 2}
-    best, order = 0.98 * _way_round(points), np.arange(n)
+    best, order, first = 0.98 * _way_round(points), np.arange(n), 0
     for k in sorted(breaks):
         turned = np.concatenate([np.arange(k)[::-1], np.arange(k, n)])
         length = _way_round(points[turned])
         if length < best:
             ahead = points[turned[[0, -1]], 0].max() < points[[0, k], 0].min()
-            best, order = length, np.roll(turned, -k) if ahead else turned
-    return points[order], [index[k] for k in order]
+            best, order, first = length, np.roll(turned, -k) if ahead else turned, k
+    return points[order], [index[k] for k in order], first
 
 
 def _way_round(points: Floats) -> float:
@@ -252,12 +280,3 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
             f"the points go more than once around: widest step, line {numbers[k]} to {numbers[(k + 1) % n]}",
             "give one element alone, " + _ASK.removeprefix("give an airfoil "),
         )
-
-
-FORMAT = Format(
-    name="airfoil",
-    suffixes=(".dat",),
-    description="airfoil coordinates, Selig or Lednicer",
-    read_shapes=read_shapes,
-    sniff=sniff,
-)

@@ -1,13 +1,19 @@
-"""Rows of numbers as text, many at a time: what mesh files of solvers mostly consist of."""
+"""Many numbers as text, and back: what mesh files of solvers mostly consist of.
+
+Compiled, since Python's own formatting takes longer than all the rest: an 800 x 800 grid is written as SU2's
+text in 0.4 s instead of 2.5 s, as Plot3D's in 0.1 s instead of 1.2 s.
+"""
 
 from __future__ import annotations
 
+import warnings
 from itertools import accumulate
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import FLOAT_BYTES, INTEGER_BYTES, put_rows
 
 _ROWS = 1 << 13
@@ -39,3 +45,20 @@ def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
     for start in range(0, len(rows), _ROWS):
         part = np.ascontiguousarray(rows[start : start + _ROWS], dtype)
         stream.write(buffer[: put_rows(buffer, part, text, at)].data)
+
+
+def parsed(text: bytes) -> Floats | None:
+    """Return the numbers of blank-separated `text`, or None when there is something else in it.
+
+    Examples
+    --------
+    >>> parsed(b"1 2.5 -3e2").tolist(), parsed(b"1 two")
+    ([1.0, 2.5, -300.0], None)
+    """
+    with warnings.catch_warnings():
+        # numpy announces text it cannot parse by a DeprecationWarning that is to become a ValueError
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, dtype=np.float64, sep=" ") if text.strip() else np.empty(0)
+        except (DeprecationWarning, ValueError):
+            return None

@@ -11,13 +11,13 @@ A single curve that ends in one trailing edge is taken for an airfoil.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.format import Format
 from meshonet.formats.source import Source
-from meshonet.formats.text.rows import Line, decode, read_lines, table
+from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
@@ -61,21 +61,22 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
     """
     name = stem or Path(source).stem
     try:
-        blocks = [[line for line in block if len(line.values) >= 2] for block in table(read_lines(text))]
+        lines = read_lines(text)
+        blocks = table(lines)
         count = sum(map(len, blocks))
         if count > MOST_POINTS:
             raise InputError(f"{count} points", f"give at most {MOST_POINTS}")
         if len(blocks) > 4 and max(map(len, blocks)) == 1:
             blocks = [[line for block in blocks for line in block]]  # a blank line behind each
         if len(blocks) == 4 and min(map(len, blocks)) >= 2:
-            return _four_edges(blocks, name)
+            return _with_notes(_four_edges(blocks, name), left_out(lines))
         if len(blocks) != 1:
             raise InputError(
                 f"{len(blocks)} blocks of points",
                 "give one closed curve, or four edges divided by blank lines",
                 place=f"line {blocks[1][0].number}" if len(blocks) > 1 else "",
             )
-        return _one_curve(blocks[0], name)
+        return _with_notes(_one_curve(blocks[0], name), left_out(lines))
     except InputError as error:
         error.source = error.source or source
         raise
@@ -92,12 +93,19 @@ def sniff(head: bytes) -> bool:
     return few >= 3 and few >= 0.8 * len(rows)
 
 
-def _one_curve(rows: list[Line], name: str) -> Shape:
+def _with_notes(shape: Boundary | Outline | Airfoil, notes: tuple[str, ...]) -> Shape:
+    if isinstance(shape, Boundary):
+        return replace(shape, notes=(*notes, *shape.notes))
+    shape.notes = (*notes, *shape.notes)
+    return shape
+
+
+def _one_curve(rows: list[Line], name: str) -> Outline | Airfoil:
     points = np.array([line.values[:2] for line in rows])
     return one_curve(points, name, [f"line {line.number}" for line in rows])
 
 
-def one_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Shape:
+def one_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
     """Return the airfoil or the outline through `points` (n, 2), repeated neighbours left out.
 
     Parameters
@@ -134,7 +142,7 @@ def _ends_in_one_edge(points: Floats) -> bool:
     return base < 0.25 * length and area < 0.5 * length**2
 
 
-def _four_edges(blocks: list[list[Line]], name: str) -> Shape:
+def _four_edges(blocks: list[list[Line]], name: str) -> Boundary | Outline:
     """Return the domain of four edges, chained end to end from the first."""
     chain = _chained([_edge(block) for block in blocks])
     ring = np.concatenate([edge[:-1] for edge in chain])
@@ -187,12 +195,3 @@ def _chained(edges: list[Floats]) -> list[Floats]:
         raise InputError(f"the four edges do not close: {gap:.3g} are left open", "make the four edges meet")
     chain[3][-1, :2] = chain[0][0, :2]
     return chain
-
-
-FORMAT = Format(
-    name="points",
-    suffixes=(".csv", ".txt", ".xy"),
-    description="points of a closed curve or of four edges",
-    read_shapes=read_shapes,
-    sniff=sniff,
-)

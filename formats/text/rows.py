@@ -1,4 +1,4 @@
-"""Lines of a text file of coordinates: which are numbers, which are prose, which are broken.
+"""Lines of a text file of coordinates: which are numbers, which are prose, which are damaged.
 
 One number may be written as ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` (with blanks, tabs or
 semicolons between columns) or run into the next one, ``0.5-0.01``. Columns are separated by anything of
@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.geometry.errors import InputError
 
-Kind = Literal["blank", "text", "row", "noted", "gap", "broken"]
+Kind = Literal["blank", "text", "row", "noted", "gap", "broken", "damaged"]
 
 MOST_BYTES = 16 * 2**20
 """A larger file is not read: an outline of a million points is a mistake."""
@@ -30,8 +30,12 @@ _ONE = re.compile(_NUMBER)
 _FUSED = re.compile(r"([+-]?\d*\.\d+(?:[eEdD][+-]?\d+)?)([+-]\d*\.\d+(?:[eEdD][+-]?\d+)?)")
 _COMMA = re.compile(r"[+-]?(?:\d*,)?\d+(?:[eEdD][+-]?\d+)?")
 _SPLIT = re.compile(r"[\s,;]+")
-_PLACEHOLDER = re.compile(r"[.*_?-]{2,}|-")
-_NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE)
+_PLACEHOLDER = re.compile(r"[._?-]{2,}|-")
+_MEANT = re.compile(
+    r"[+-]?(?:nan|inf(?:inity)?|\*{2,}|(?=[^.]*\.?\w*\d)[\dOolI]*\.[\w.]*(?:e[+-]?\w+)?|\d+(?:_\d+)+)",
+    re.IGNORECASE,
+)
+"""A word that was meant as a number: not finite, Fortran's stars, digits and a point with something else."""
 _REMARK = re.compile(r"\s(?:#|!|//|<-).*$|^\s*(?:#|!|//).*$")
 
 
@@ -39,8 +43,9 @@ class Line(NamedTuple):
     """One line: its number from 1, what it is, its values when it is a row, its text.
 
     Kinds: ``row`` is numbers only, two or more; ``noted`` is two numbers and then words; ``gap`` begins with
-    a number and has dots or stars where the next should be; ``broken`` begins with a number and has nothing
-    or something else there; the rest is ``text``.
+    a number and has dots where the next should be; ``damaged`` begins with two words that were meant as
+    numbers, and one cannot be read (``1.0 nan``, ``1.0 ****``, ``1.0 O.O0``); ``broken`` begins with a number
+    and has nothing or something else there, or the other way round; the rest is ``text``.
     """
 
     number: int
@@ -104,21 +109,23 @@ def _lines(text: str) -> tuple[Line, ...]:
 def table(lines: list[Line]) -> list[list[Line]]:
     """Return the rows of a text in blocks, as blank lines and prose divide them.
 
-    Two numbers with words behind them are a row where they stand beside one. A line with a missing value
-    (dots, stars) is left out.
+    Two numbers with words behind them are a row where they stand beside one. `left_out` names the lines
+    beside rows that are not among them.
 
     Raises
     ------
     InputError
-        a broken line between two rows, with its number.
+        a damaged line with no prose between it and the next row, or a broken one between two rows.
     """
-    near = ["blank", *(line.kind for line in lines), "blank"]
+    kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
     blocks: list[list[Line]] = [[]]
     for k, line in enumerate(lines):
-        beside = near[k], near[k + 2]
+        beside = kinds[k], kinds[k + 2]
         if line.kind == "row" or (line.kind == "noted" and "row" in beside):
             blocks[-1].append(line)
-        elif line.kind == "broken" and beside == ("row", "row"):
+        elif (line.kind == "broken" and beside == ("row", "row")) or (
+            line.kind == "damaged" and "row" in (_next_kind(kinds, k + 1, -1), _next_kind(kinds, k + 1, 1))
+        ):
             raise InputError(
                 f"{line.text.strip()[:40]!r} is no pair of numbers",
                 "correct or remove the line",
@@ -127,6 +134,24 @@ def table(lines: list[Line]) -> list[list[Line]]:
         elif line.kind != "gap" and blocks[-1]:
             blocks.append([])
     return blocks if blocks[-1] else blocks[:-1]
+
+
+def _next_kind(kinds: list[Kind], k: int, step: int) -> Kind:
+    """Return the kind of the next line above or below `k` that is a row or prose."""
+    while 0 < (k := k + step) < len(kinds) - 1:
+        if kinds[k] in ("row", "text"):
+            return kinds[k]
+    return "blank"
+
+
+def left_out(lines: list[Line]) -> tuple[str, ...]:
+    """Return a note for each line beside a row that begins like one and has no second number."""
+    kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
+    return tuple(
+        f"line {line.number}, {line.text.strip()[:40]!r}, is no pair of numbers and is left out"
+        for k, line in enumerate(lines)
+        if line.kind in ("gap", "broken") and "row" in (kinds[k], kinds[k + 2])
+    )
 
 
 def _line(number: int, text: str) -> Line:
@@ -166,20 +191,21 @@ def _difficult(number: int, text: str, words: list[str]) -> Line:
         word.strip("()[]{}\"'") if word[0] in "([{\"'" or word[-1] in ")]}\"'" else word for word in words
     ]
     values: list[float] = []
-    for place, word in enumerate(bare):
-        if _ONE.fullmatch(word):
-            value = float(re.sub("[dDqQ]", "e", word))
-            if not abs(value) < LARGEST:
-                return Line(number, "broken", (), text)
-            values.append(value)
-        elif place == 0:
-            return Line(number, "broken" if _NOT_FINITE.fullmatch(word) else "text", (), text)
-        elif len(values) == 1 and _PLACEHOLDER.fullmatch(word):
-            return Line(number, "gap", (), text)
-        elif len(values) == 2 and not re.search(r"[\d>=:/]", " ".join(words[2:])):
-            return Line(number, "noted", tuple(values), text)
-        else:
-            return Line(number, "broken" if len(values) == 1 else "text", (), text)
-    if len(values) > 1:
+    for word in bare:
+        value = float(re.sub("[dDqQ]", "e", word)) if _ONE.fullmatch(word) else LARGEST
+        if not abs(value) < LARGEST:
+            break
+        values.append(value)
+    if len(values) == len(bare) > 1:
         return Line(number, "row", tuple(values), text)
-    return Line(number, "broken" if "." in text else "text", (), text)
+    meant = bare[:2] if len(values) < 2 else bare
+    if len(bare) > 1 and all(_MEANT.fullmatch(word) or _ONE.fullmatch(word) for word in meant):
+        return Line(number, "damaged", (), text)
+    if len(values) == 2 and not re.search(r"[\d>=:/]", " ".join(words[2:])):
+        return Line(number, "noted", tuple(values), text)
+    if len(values) == 1 and len(bare) == 1:
+        return Line(number, "broken" if "." in text else "text", (), text)
+    if len(values) == 1:
+        return Line(number, "gap" if _PLACEHOLDER.fullmatch(bare[1]) else "broken", (), text)
+    begun = len(bare) == 2 and bare[0][:1] in "0123456789.+-" and _ONE.fullmatch(bare[1])
+    return Line(number, "broken" if begun and not values else "text", (), text)

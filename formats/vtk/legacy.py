@@ -1,4 +1,4 @@
-"""Legacy VTK structured grids, ``.vtk``, binary (big endian) or text.
+"""Legacy VTK structured grids, ``.vtk``, binary (big endian) or text; read with or without field data.
 
 Topology, name, parts and provenance go into a FIELD of bytes, which VTK and meshio pass over.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
@@ -6,20 +6,32 @@ https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from functools import partial
+import re
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
+from urllib.parse import unquote
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshonet.formats.format import Format, Heights, only_one
-from meshonet.formats.mesh.metadata import facts_of
+from meshonet.formats.format import Heights, Options, only_one
+from meshonet.formats.mesh.metadata import facts_of, grid_with
+from meshonet.formats.mesh.slices import planar
+from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import write_rows
-from meshonet.formats.vtk.legacy_read import read_grids, sniff
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 
 _BLOCK_NODES = 1 << 15
+_KINDS = {
+    "double": "f8", "float": "f4", "int": "i4", "unsigned_int": "u4", "long": "i8", "unsigned_long": "u8",
+    "vtktypeint64": "i8", "vtkidtype": "i8",
+    "short": "i2", "unsigned_short": "u2", "char": "i1", "unsigned_char": "u1",
+}  # fmt: skip
+_LINE = 4096
+_WORD = re.compile(rb"\S")
 
 
 def write(path: Path, grid: Grid, heights: tuple[float, ...] = (0.0,), *, text: bool = False) -> None:
@@ -37,14 +49,16 @@ def write(path: Path, grid: Grid, heights: tuple[float, ...] = (0.0,), *, text: 
         stream.write(b"\n")
 
 
-def write_grids(path: Path, grids: Iterable[Grid], *, text: bool = False) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the one grid of `grids`."""
-    write(path, only_one(grids, "a .vtk file"), text=text)
+    write(path, only_one(grids, "a .vtk file"), text="ascii" in options)
 
 
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights, *, text: bool = False) -> None:
+def write_extruded(
+    path: Path, grids: Iterable[Grid], heights: Heights, *, options: Options = frozenset()
+) -> None:
     """Write the one grid of `grids`, repeated in z."""
-    write(path, only_one(grids, "a .vtk file"), heights, text=text)
+    write(path, only_one(grids, "a .vtk file"), heights, text="ascii" in options)
 
 
 def _write_points(stream: BinaryIO, grid: Grid, height: float, *, text: bool) -> None:
@@ -73,25 +87,142 @@ def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
         stream.write(b"\n")
 
 
-FORMATS = (
-    Format(
-        name="vtk",
-        suffixes=(".vtk",),
-        description="legacy VTK structured grid, binary",
-        read_grids=read_grids,
-        write_grids=write_grids,
-        write_extruded=write_extruded,
-        sniff=sniff,
-        names_patches=True,
-    ),
-    Format(
-        name="vtk-ascii",
-        suffixes=(".vtk",),
-        description="legacy VTK structured grid, text",
-        read_grids=read_grids,
-        write_grids=partial(write_grids, text=True),
-        write_extruded=partial(write_extruded, text=True),
-        sniff=sniff,
-        names_patches=True,
-    ),
-)
+class _Cursor:
+    """Bytes read front to back.
+
+    Parameters
+    ----------
+    data : the whole file.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        self.data, self.at = data, 0
+
+    def line(self) -> str:
+        """Return the next line that is not blank, without its end."""
+        start = _WORD.search(self.data, self.at)
+        if start is None:
+            raise InputError("ends before its points", "the file is cut short: write it again")
+        end = self.data.find(b"\n", start.start(), start.start() + _LINE)
+        end = end if end >= 0 else min(start.start() + _LINE, len(self.data))
+        self.at = end + 1
+        return self.data[start.start() : end].decode("latin-1").strip()
+
+    def words(self, count: int) -> list[bytes]:
+        """Return the next `count` blank-separated words."""
+        if 2 * count - 1 > len(self.data) - self.at:
+            raise InputError(
+                f"should have {count} more numbers and is too short", "the file is cut short: write it again"
+            )
+        rest = self.data[self.at :].split(None, count)
+        if len(rest) < count:
+            raise InputError(
+                f"should have {count} more numbers and has {len(rest)}",
+                "the file is cut short: write it again",
+            )
+        self.at = len(self.data) - len(rest[count]) if len(rest) > count else len(self.data)
+        return rest[:count]
+
+    def bytes(self, count: int) -> bytes:
+        """Return the next `count` bytes."""
+        if count > len(self.data) - self.at:
+            raise InputError(
+                f"should have {count} more bytes and is too short", "the file is cut short: write it again"
+            )
+        self.at += count
+        return self.data[self.at - count : self.at]
+
+    @property
+    def place(self) -> str:
+        """Where the cursor is, for messages."""
+        return f"byte {self.at}"
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grid of a legacy ``.vtk`` file.
+
+    Raises
+    ------
+    InputError
+        not such a file, another dataset than STRUCTURED_GRID, damaged, three-dimensional.
+    """
+    cursor = _Cursor(source.read_bytes())
+    try:
+        nodes, facts = _read(cursor)
+    except (ValueError, OverflowError, IndexError) as error:
+        raise InputError(printable(str(error))[:100], "write the file again", place=cursor.place) from None
+    except InputError as error:
+        error.place = error.place or cursor.place
+        raise
+    yield grid_with(nodes, facts, source.stem)
+
+
+def _read(cursor: _Cursor) -> tuple[Floats, dict[str, list[str]]]:
+    if not cursor.line().startswith("# vtk DataFile"):
+        raise InputError("does not start with '# vtk DataFile'", "give a legacy VTK file")
+    cursor.at = cursor.data.find(b"\n", cursor.at) + 1  # the title, which may be blank
+    text = cursor.line().upper() == "ASCII"
+    dataset = cursor.line().split()
+    if [word.upper() for word in dataset] != ["DATASET", "STRUCTURED_GRID"]:
+        raise InputError(f"holds {' '.join(dataset)[:60]!r}", "give a DATASET STRUCTURED_GRID")
+    facts: dict[str, list[str]] = {}
+    dims = (0, 0, 0)
+    while True:
+        words = cursor.line().split()
+        key = words[0].upper()
+        if key == "DIMENSIONS":
+            dims = (int(words[1]), int(words[2]), int(words[3]))
+        elif key == "FIELD":
+            facts |= _field(cursor, int(words[2]), text=text)
+        elif key == "POINTS":
+            break
+    if min(dims) < 1 or dims[0] * dims[1] * dims[2] != int(words[1]):
+        raise InputError(
+            f"has {words[1][:20]!r} points and DIMENSIONS {'x'.join(map(str, dims))[:60]}", "make them agree"
+        )
+    points = _numbers(cursor, words[2], 3 * int(words[1]), text=text).reshape(*dims[::-1], 3)
+    return planar([points[..., k].T for k in range(3)]), facts
+
+
+def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:
+    """Return the texts of a FIELD, which are strings or UTF-8 bytes, and pass over its numbers."""
+    facts: dict[str, list[str]] = {}
+    for _ in range(count):
+        name, components, tuples, kind = cursor.line().split()
+        total = int(components) * int(tuples)
+        if not 0 <= total <= len(cursor.data):
+            raise InputError(f"field {name[:40]!r} claims {total} values", "write the file again")
+        if kind.lower() != "string":
+            codes = _numbers(cursor, kind, total, text=text)
+            if kind.lower() == "unsigned_char":
+                with np.errstate(invalid="ignore"):  # text may hold NaN here, which then is no name
+                    facts[name] = codes.astype(np.uint8).tobytes().decode("utf-8", "replace").split("\n")
+        elif text:
+            facts[name] = [unquote(_raw_line(cursor)) for _ in range(total)]
+        else:
+            facts[name] = [_counted(cursor).decode("utf-8", "replace") for _ in range(total)]
+    return facts
+
+
+def _numbers(cursor: _Cursor, kind: str, count: int, *, text: bool) -> NDArray[Any]:
+    if kind.lower() not in _KINDS:
+        raise InputError(f"number type {kind[:40]!r} is not known", "write double or float")
+    if text:
+        return np.array(cursor.words(count), dtype=np.float64)
+    dtype = np.dtype(">" + _KINDS[kind.lower()])
+    return np.frombuffer(cursor.bytes(count * dtype.itemsize), dtype)
+
+
+def _raw_line(cursor: _Cursor) -> str:
+    """Return the next line even when it is blank: an empty string."""
+    end = cursor.data.find(b"\n", cursor.at)
+    start, cursor.at = cursor.at, (end if end >= 0 else len(cursor.data)) + 1
+    return cursor.data[start : cursor.at - 1].decode("latin-1").strip()
+
+
+def _counted(cursor: _Cursor) -> bytes:
+    """Return a string behind its length in 1, 2, 4 or 8 bytes; the first two bits say in how many."""
+    first = cursor.bytes(1)
+    width = {3: 1, 2: 2, 1: 4, 0: 8}[first[0] >> 6]
+    length = int.from_bytes(first + cursor.bytes(width - 1), "big") & ((1 << (8 * width - 2)) - 1)
+    return cursor.bytes(length)

@@ -10,10 +10,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
-from meshonet.formats.format import Format, Heights
+from meshonet.formats.format import Heights
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
-from meshonet.formats.vtk import vts
+from meshonet.formats.vtk.arrays import escaped
+from meshonet.formats.vtk.vts import write
+from meshonet.formats.vtk.vts_read import read_grids as read_block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -41,10 +43,10 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
     lines = []
     with whole_folder(folder) as part:
         for k, grid in enumerate(grids):
-            vts.write(part / f"block-{k}.vts", grid, heights=heights)
-            title = _escaped(grid.name or f"block-{k}")
+            write(part / f"block-{k}.vts", grid, heights=heights)
+            title = escaped(grid.name or f"block-{k}")
             lines.append(
-                f'    <DataSet index="{k}" name="{title}" file="{_escaped(folder.name)}/block-{k}.vts"/>'
+                f'    <DataSet index="{k}" name="{title}" file="{escaped(folder.name)}/block-{k}.vts"/>'
             )
         if not lines:
             raise InputError("there is no grid to write", "check the input")
@@ -82,11 +84,6 @@ def read_grids(source: Source) -> Iterator[Grid]:
             yield from _block(source.path.parent, block.get("file", ""), block.get("name", ""))
 
 
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is the start of a ``.vtm`` file."""
-    return b"<VTKFile" in head[:2048] and b"vtkMultiBlockDataSet" in head[:4096]
-
-
 def _block(folder: Path, name: str, title: str) -> Iterator[Grid]:
     told = printable(name)[:60]
     parts = PurePosixPath(name)
@@ -98,28 +95,8 @@ def _block(folder: Path, name: str, title: str) -> Iterator[Grid]:
     if not path.is_file():
         raise InputError(f"names {told!r}, which is not there", "keep the blocks beside it")
     try:
-        for grid in vts.read_grids(Source(printable(str(path)), path=path)):
+        for grid in read_block(Source(printable(str(path)), path=path)):
             yield replace(grid, name=printable(title)) if title and grid.name == path.stem else grid
     except InputError as error:
         error.place = error.place or told
         raise
-
-
-def _escaped(text: str) -> str:
-    for plain, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
-        text = text.replace(plain, entity)
-    return printable(text)
-
-
-FORMAT = Format(
-    name="vtm",
-    suffixes=(".vtm",),
-    description="VTK multi-block file: an index and a folder of .vts",
-    read_grids=read_grids,
-    write_grids=write_grids,
-    write_extruded=write_extruded,
-    sniff=sniff,
-    names_patches=True,
-    many=True,
-    beside=True,
-)

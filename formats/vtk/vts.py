@@ -1,24 +1,24 @@
-"""VTK XML structured grids, ``.vts``.
+"""Writing VTK XML structured grids, ``.vts``.
 
 Written raw appended, little endian, float64, with 64-bit lengths: the form that is quickest to write
 and that every VTK reads. Topology, name, parts and provenance go into FieldData, which VTK shows and
-nothing stumbles over. Read in every encoding VTK writes (`meshonet.formats.vtk.vts_read`).
+nothing stumbles over.
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.format import Heights, only_one
 from meshonet.formats.mesh.metadata import facts_of
-from meshonet.formats.source import Source, printable
+from meshonet.formats.vtk.arrays import escaped
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -70,24 +70,6 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
     write(path, only_one(grids, "a .vts file"), heights=heights)
 
 
-def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a ``.vts`` file in any encoding; writing does not load what that takes.
-
-    Raises
-    ------
-    InputError
-        not such a file, damaged, compressed with LZ4, three-dimensional.
-    """
-    from meshonet.formats.vtk.vts_read import read_grids as read
-
-    yield from read(source)
-
-
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is the start of a ``.vts`` file."""
-    return b"<VTKFile" in head[:2048] and b"StructuredGrid" in head[:4096]
-
-
 def _write_points(stream: BinaryIO, grid: Grid, height: float) -> None:
     """Write a plane's points, i fastest, a few rows at a time so that no second grid is ever in memory."""
     rows = max(1, _BLOCK_NODES // grid.ni)
@@ -107,7 +89,7 @@ def _head(grid: Grid, planes: int, cells: Mapping[str, NDArray[Any]]) -> str:
     for name, values in cells.items():
         kind = "Float64" if values.dtype.kind == "f" else "Int64"
         arrays.append(
-            f'        <DataArray type="{kind}" Name="{_escaped(name)}" format="appended" offset="{offset}"/>'
+            f'        <DataArray type="{kind}" Name="{escaped(name)}" format="appended" offset="{offset}"/>'
         )
         offset += 8 + values.nbytes
     return "\n".join(
@@ -142,13 +124,6 @@ def _field_data(grid: Grid) -> list[str]:
     return [*lines, "    </FieldData>"]
 
 
-def _escaped(text: str) -> str:
-    """Return `text` for an XML attribute; xml.sax has this too, behind 30 ms of network modules."""
-    for plain, entity in (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;")):
-        text = text.replace(plain, entity)
-    return printable(text)
-
-
 def _cell_values(name: str, values: NDArray[Any], grid: Grid) -> NDArray[Any]:
     """Return per-cell `values` as VTK lays them out: (nj-1, ni-1), i fastest, 8 bytes each."""
     if values.shape != (grid.ni - 1, grid.nj - 1):
@@ -156,15 +131,3 @@ def _cell_values(name: str, values: NDArray[Any], grid: Grid) -> NDArray[Any]:
             f"cell array {name!r} has shape {values.shape}", f"give ({grid.ni - 1}, {grid.nj - 1})"
         )
     return np.ascontiguousarray(values.T, dtype="<f8" if values.dtype.kind == "f" else "<i8")
-
-
-FORMAT = Format(
-    name="vts",
-    suffixes=(".vts",),
-    description="VTK XML structured grid",
-    read_grids=read_grids,
-    write_grids=write_grids,
-    write_extruded=write_extruded,
-    sniff=sniff,
-    names_patches=True,
-)

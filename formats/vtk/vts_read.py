@@ -1,4 +1,4 @@
-"""Reading ``.vts``: the XML around the arrays; `meshonet.formats.vtk.arrays` decodes the arrays themselves."""
+"""Reading ``.vts``: the XML around the arrays, which `meshonet.formats.vtk.arrays` decodes."""
 
 from __future__ import annotations
 

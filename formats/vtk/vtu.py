@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.format import Heights, only_one
 from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
@@ -39,12 +39,3 @@ def _write(
     cells = [inside, *((kind, nodes) for nodes in parts.values())]
     numbers = [np.full(len(nodes), k) for k, (_, nodes) in enumerate(cells)]
     meshio.vtu.write(str(path), meshio.Mesh(points, cells, cell_data={"part": numbers}))
-
-
-FORMAT = Format(
-    name="vtu",
-    suffixes=(".vtu",),
-    description="VTK XML unstructured grid, seams merged, parts by number",
-    write_grids=write_grids,
-    write_extruded=write_extruded,
-)

@@ -15,7 +15,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +27,9 @@ from meshonet.geometry.blocks.connection import Connected, Connection, connectio
 from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.measure import Quality
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,3 +171,29 @@ class Grid(Connected):
     def with_provenance(self, **facts: Any) -> Grid:
         """Return the same grid with `facts` added to its provenance."""
         return replace(self, provenance={**self.provenance, **facts})
+
+    def quality(self) -> Quality:
+        """Return the summaries of all metrics (`meshonet.geometry.quality.measure.measure`)."""
+        # by name: what is measured needs grids
+        return import_module("meshonet.geometry.quality.measure").measure(self, percentiles=True)
+
+    def write(self, path: str | Path, *, to_format: str | None = None) -> None:
+        """Write the grid to a file, whole or not at all; the ending says the format (`meshonet.write`)."""
+        # by name: this room knows no formats
+        import_module("meshonet").write(self, path, to_format=to_format)
+
+    def to_pyvista(self) -> Any:
+        """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
+
+        Raises
+        ------
+        InputError
+            pyvista is not installed.
+        """
+        try:
+            from pyvista import StructuredGrid
+        except ImportError:
+            remedy = "install it: pip install 'meshonet[pyvista]'"
+            raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
+        planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
+        return StructuredGrid(*planes)

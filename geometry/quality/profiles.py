@@ -27,6 +27,7 @@ import numpy as np
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh import Faces, faces
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
 from meshonet.geometry.quality.measure import Quality
@@ -60,8 +61,8 @@ class Check:
 
 
 @dataclass(frozen=True)
-class Checked:
-    """What a check found: the figure (None: this grid has none), the node or cell it is at, the verdict."""
+class CheckResult:
+    """The outcome of a check: the figure (None: this grid has none), its node or cell, the verdict."""
 
     check: Check
     value: float | None
@@ -70,16 +71,27 @@ class Checked:
 
 
 @dataclass(frozen=True)
-class Judgement:
-    """A profile's checks on one grid."""
+class ProfileReport:
+    """The results of a profile's checks on one grid."""
 
-    profile: str
-    checked: tuple[Checked, ...]
+    name: str
+    results: tuple[CheckResult, ...]
 
     @property
     def passed(self) -> bool:
         """Whether no check failed; warnings pass."""
-        return all(checked.verdict != "fail" for checked in self.checked)
+        return all(result.verdict != "fail" for result in self.results)
+
+    def failures(self) -> list[str]:
+        """Return a line for each check that failed."""
+        return [
+            f"profile {self.name}: {result.check.figure} is {result.value:.6g}, and it must "
+            + " nor ".join(
+                f"not be {x.compare} {x.value:g}" for x in result.check.limits if x.level == "fail"
+            )
+            for result in self.results
+            if result.verdict == "fail" and result.value is not None
+        ]
 
 
 def _check(figure: str, *limits: tuple[Level, Literal[">", ">=", "<"], float]) -> Check:
@@ -177,15 +189,24 @@ class Figures:
         return float(np.hypot(*(self.grid.nodes[:, -1] - middle).T).min()) / chord, None
 
 
-def judge(figures: Figures, profile: str) -> Judgement:
-    """Return what `profile`, one of `PROFILES`, says of a grid."""
-    checked = []
+def profile_report(figures: Figures, profile: str) -> ProfileReport:
+    """Return the results of `profile`, one of `PROFILES`, for a grid.
+
+    Raises
+    ------
+    InputError
+        there is no such profile.
+    """
+    if profile not in PROFILES:
+        known = "use one of " + ", ".join(PROFILES)
+        raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
+    results = []
     for check in PROFILES[profile]:
         figure = figures.value(check.figure, low=check.limits[0].compare == "<")
         if figure is None:
-            checked.append(Checked(check, None, None, "none"))
+            results.append(CheckResult(check, None, None, "none"))
             continue
         broken = [limit.level for limit in check.limits if limit.broken(figure[0])]
         verdict: Verdict = "fail" if "fail" in broken else "warn" if broken else "pass"
-        checked.append(Checked(check, *figure, verdict))
-    return Judgement(profile, tuple(checked))
+        results.append(CheckResult(check, *figure, verdict))
+    return ProfileReport(profile, tuple(results))

@@ -47,6 +47,9 @@ class Outline:
         too few points, repeated ones, an outline that crosses itself or has no area.
     """
 
+    notes: tuple[str, ...] = ()
+    """What a reader passed over in its file, for those who sample it."""
+
     def __init__(
         self,
         points: Floats,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Protocol
 
 from meshonet.geometry.blocks.boundary import Boundary
@@ -23,7 +24,7 @@ class Shape(Protocol):
 
 
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
-    """Return the boundary of `shape`, looked through before anything is made of it.
+    """Return the boundary of `shape`, looked through before anything is made of it, with the notes of both.
 
     Raises
     ------
@@ -35,4 +36,5 @@ def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
     boundary = shape.boundary(sampling)
     if boundary is not shape:
         check_edges(boundary)
-    return boundary
+    notes = tuple(note for note in getattr(shape, "notes", ()) if note not in boundary.notes)
+    return replace(boundary, notes=(*notes, *boundary.notes)) if notes else boundary

@@ -3,42 +3,50 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any, NamedTuple
-
-from meshonet_cli.commands import (
-    convert,
-    infer,
-    models,
-    plot,
-    quality,
-    sample_boundary,
-    solve_pde,
-    tfi,
-    train,
-)
 
 
 class Command(NamedTuple):
-    """A command: its name, the function that does it, and examples of its use (run by a test)."""
+    """A command by its name and the first line of its help; its module is loaded when it is needed.
+
+    The module of ``solve-pde`` is ``solve_pde``. It holds the function ``solve_pde`` and its ``EXAMPLES``,
+    which a test runs.
+    """
 
     name: str
-    function: Callable[..., Any]
-    examples: tuple[str, ...]
+    summary: str
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """What does it."""
+        function: Callable[..., Any] = getattr(self._module, self.name.replace("-", "_"))
+        return function
+
+    @property
+    def examples(self) -> tuple[str, ...]:
+        """Examples of its use."""
+        examples: tuple[str, ...] = self._module.EXAMPLES
+        return examples
 
     @property
     def epilog(self) -> str:
         r"""The examples as the end of the help text; ``\b`` keeps their lines."""
         return "\b\nExamples:\n" + "\n".join(f"  {example}" for example in self.examples)
 
+    @property
+    def _module(self) -> Any:
+        return import_module(f"{__name__}.{self.name.replace('-', '_')}")
+
 
 COMMANDS: tuple[Command, ...] = (
-    Command("sample-boundary", sample_boundary.sample_boundary, sample_boundary.EXAMPLES),
-    Command("tfi", tfi.tfi, tfi.EXAMPLES),
-    Command("solve-pde", solve_pde.solve_pde, solve_pde.EXAMPLES),
-    Command("train", train.train, train.EXAMPLES),
-    Command("infer", infer.infer, infer.EXAMPLES),
-    Command("quality", quality.quality, quality.EXAMPLES),
-    Command("convert", convert.convert, convert.EXAMPLES),
-    Command("plot", plot.plot, plot.EXAMPLES),
-    Command("models", models.models, models.EXAMPLES),
+    Command("sample-boundary", "Turn geometry into boundaries of four edges."),
+    Command("tfi", "Make grids by transfinite interpolation."),
+    Command("solve-pde", "Make grids by elliptic equations, a variational method, or marching."),
+    Command("train", "Fit a neural operator to datasets (needs the extra `train`)."),
+    Command("infer", "Make the grid that measures best: conformal, marched or variational."),
+    Command("quality", "Measure grids: folded cells, angles, skewness."),
+    Command("convert", "Turn files from one format into another."),
+    Command("plot", "Draw grids, coloured by a quality metric."),
+    Command("models", "List the operators that are shipped."),
 )

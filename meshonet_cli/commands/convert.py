@@ -22,7 +22,7 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 # fmt: off
 @o.expanded
 def convert(
-    reading: o.FileOptions,
+    formats: o.FileOptions,
     printing: o.PrintOptions,
     files: Annotated[
         list[str] | None,
@@ -86,21 +86,20 @@ def convert(
     ] = False,
 ) -> int:
     """Turn files from one format into another."""
+    from meshonet.formats.convert import Conversion
     from meshonet.geometry.errors import InputError
-    from meshonet_cli.converting import Change, convert_files, in_plot3d, print_formats
+    from meshonet_cli.convert_batch import convert_files, print_formats
 
     session = printing.session()
     if list_formats:
-        return print_formats(session, as_json=printing.as_json)
-    given = [*(files or []), *([output] if output else [])]
-    if len(given) < 2:
-        remedy = f"name it: meshonet convert {given[0] if given else 'IN'} OUT"
+        return print_formats(session)
+    *sources, target = names = [*(files or []), *([output] if output else [])] or [""]
+    if not sources:
+        remedy = f"name it: meshonet convert {names[0] or 'IN'} OUT"
         raise InputError("there is no file to write", remedy, source="convert")
-    *sources, target = given
-    from_format, to_format = in_plot3d(plot3d, target, reading.from_format, reading.to_format)
     return convert_files(
-        sources, target, session,
-        from_format=from_format, to_format=to_format, skip_existing=reading.skip_existing,
-        change=Change(extrude, planes, swap=swap, normalise=normalise, coarsen=coarsen or 1),
+        sources, target, Conversion(extrude, planes, swap, normalise, coarsen or 1), session,
+        from_format=formats.from_format, to_format=formats.to_format, plot3d=plot3d,
+        skip_existing=formats.skip_existing,
     )
 # fmt: on

@@ -2,9 +2,7 @@
 
 from typing import Annotated, Literal
 
-from meshonet_cli import layers as layer
 from meshonet_cli import options as o
-from meshonet_cli import walls as wall
 
 EXAMPLES = (
     "meshonet infer airfoil.dat --res 800 -o grid.vts",
@@ -71,42 +69,8 @@ def infer(
     marched from the wall; in a four-sided domain the variational method. A neural operator is used where
     --model, --polish or --device asks for one.
     """
-    from functools import partial
+    from meshonet_cli.grid_batch import request_of, write_grids
 
-    from meshonet.geometry.errors import InputError
-    from meshonet.solvers.neural.inference import infer as operate
-    from meshonet.solvers.neural.inference import infer_many, many_of
-    from meshonet_cli.batch import Destination
-    from meshonet_cli.gates import parse_gates
-    from meshonet_cli.gridding import Recipe, make_grids
-    from meshonet_cli.together import Together
-
-    if checks.repair and answer == "raw":
-        raise InputError("{repair} would change a raw answer", "leave one of {repair} and {answer} out")
-    layers = layer.read_layers(first, sampling.res)
-    unused = {
-        "--model": model,
-        "--polish": None if polish == "auto" else polish,
-        "--answer": None if answer == "valid" else answer,
-        "--device": device,
-    }
-    edges = wall.read_edges(None, first, sampling.res, layers)
-    steps = o.polish_steps(polish)
-    solver = Together(
-        partial(operate, model=model, polish=steps, answer=answer, device=device),
-        partial(infer_many, model=model, polish=steps, device=device),
-        many_of(model, device, steps),
-    )
-    recipe = Recipe(
-        sampling.settings(spacing=layer.spacing_along(layers, sampling.spacing), viscous=layers is not None),
-        wall.WithWalls("auto", solver, layers, edges, unused),
-        checks.allow_invalid,
-        parse_gates(checks.fail_on),
-        repair=answer == "valid" if checks.repair is None else checks.repair,
-        together=solver if solver.topology else None,
-    )
-    destination = Destination(output, files.to_format, "grids")
-    return make_grids(
-        boundary, recipe, destination, printing.session(),
-        fmt=files.from_format, skip_existing=files.skip_existing, jobs=jobs,
-    )  # fmt: skip
+    settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
+    request = request_of("best", sampling, checks, first, settings=settings)
+    return write_grids(boundary, output, request, checks, files, printing.session(), jobs=jobs)

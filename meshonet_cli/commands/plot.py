@@ -53,12 +53,25 @@ def plot(
     skip_existing: o.SkipExisting = False,
 ) -> int:
     """Draw grids, coloured by a quality metric."""
-    from meshonet_cli.drawing import Picture, metric_named, picture_file, zoom_box
-    from meshonet_cli.plotting import plot_grids
+    from meshonet.formats.figure.picture import Picture
+    from meshonet_cli.plot_batch import plot_grids
 
-    picture = Picture(metric_named(metric), zoom_box(zoom), every)
-    destination = picture_file(output, to_format, picture)
+    picture = Picture(None if metric == "none" else metric, _box(zoom), every)
     return plot_grids(
-        grid, destination, picture.metric, printing.session(), fmt=from_format, skip_existing=skip_existing
+        grid, output, picture, printing.session(),
+        from_format=from_format, to_format=to_format, skip_existing=skip_existing,
     )
 # fmt: on
+
+
+def _box(text: str | None) -> tuple[float, float, float, float] | None:
+    """Return the box ``x0,x1,y0,y1``."""
+    if text is None:
+        return None
+    try:
+        x0, x1, y0, y1 = (float(word) for word in text.split(","))
+    except ValueError:
+        from meshonet.geometry.errors import InputError
+
+        raise InputError(f"{text!r} is not a box", "use x0,x1,y0,y1", parameter="zoom") from None
+    return x0, x1, y0, y1

@@ -35,7 +35,7 @@ def quality(
     per_cell: Annotated[
         str | None, _output("--per-cell", metavar="F.vts", help="Write every metric of every cell.")
     ] = None,
-    other: Annotated[
+    compare: Annotated[
         str | None,
         _check(
             "--compare", metavar="OTHER",
@@ -57,16 +57,12 @@ def quality(
     from_format: o.From = None,
 ) -> int:
     """Measure grids: folded cells, angles, skewness."""
-    from meshonet_cli.drawing import Picture, metrics_file, picture_file
-    from meshonet_cli.gates import parse_gates
-    from meshonet_cli.grading import COMPARED, grade_grids
+    from meshonet_cli.quality_batch import measure_grids
 
-    o.only_with("compare", other is not None, pair=pair)
-    outputs = [picture_file(plot, None, Picture())] if plot else []
-    outputs += [metrics_file(per_cell)] if per_cell else []
-    return grade_grids(
-        grid, printing.session(), parse_gates(fail_on, COMPARED if other else ()),
-        fmt=from_format, other=other, pairing=pair or "auto", profile=profile, summary=summary,
-        outputs=outputs,
+    o.only_with("compare", compare is not None, pair=pair)
+    return measure_grids(
+        grid, printing.session(),
+        fmt=from_format, fail_on=fail_on, profile=profile, compare=compare, pairing=pair or "auto",
+        summary=summary, plot=plot, per_cell=per_cell,
     )
 # fmt: on

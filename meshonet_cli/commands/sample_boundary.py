@@ -81,7 +81,7 @@ def sample_boundary(
 ) -> int:
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
-    from meshonet_cli.bounding import from_family, from_files, sample
+    from meshonet_cli.boundary_batch import from_family, from_files, sample
 
     if bool(source) == bool(family):
         problem = "both a source and {family}" if source else "neither a source nor {family}"

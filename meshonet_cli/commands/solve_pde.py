@@ -1,7 +1,9 @@
 """``meshonet solve-pde``."""
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
+from meshonet.geometry.errors import spelled
+from meshonet.solvers.method import METHODS
 from meshonet_cli import options as o
 
 EXAMPLES = (
@@ -18,18 +20,22 @@ EXAMPLES = (
 
 _option = o.option_of(o.METHOD)
 
+SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves}
+AUTO = (
+    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless {coarse}, "
+    "{refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+)
+if TYPE_CHECKING:
+    MethodName: TypeAlias = str
+else:
+    MethodName = Literal[("auto", *SOLVERS)]
+
 # fmt: off
 Method = Annotated[
-    Literal["auto", "winslow", "thomas-middlecoff", "steger-sorenson", "variational", "hyperbolic"],
+    MethodName,
     _option(
-        "--method", metavar="auto|winslow|thomas-middlecoff|steger-sorenson|variational|hyperbolic",
-        show_default=True,
-        help="winslow: elliptic, without control functions. thomas-middlecoff: with control functions that "
-        "carry the spacing of the edges inside. steger-sorenson: with sources at walls that turn grid lines "
-        "to --wall-angle there. variational: minimises a functional of angles and edge lengths; better "
-        "angles, no folds. hyperbolic: marches from the wall. auto: hyperbolic around bodies with a first "
-        "cell and on C grids (with a first cell of its own), unless --coarse, --refine, --tol, --max-cycles "
-        "or --initial is given; else winslow.",
+        "--method", metavar="|".join(("auto", *SOLVERS)), show_default=True,
+        help=spelled(" ".join(f"{name}: {summary}." for name, summary in {**SOLVERS, "auto": AUTO}.items()), o.spelling),
     ),
 ]
 Tolerance = Annotated[
@@ -108,44 +114,16 @@ def solve_pde(
     repair_margin: RepairMargin = None,
     jobs: o.Jobs = 1,
 ) -> int:
-    """Make grids by elliptic equations, a variational method, or marching from the wall."""
-    from functools import partial
+    """Make grids by elliptic equations, a variational method, or marching."""
+    from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
 
-    from meshonet_cli import layers as layer
-    from meshonet_cli import walls as wall
-    from meshonet_cli.batch import Destination
-    from meshonet_cli.gates import parse_gates
-    from meshonet_cli.gridding import Recipe, initial_grid, make_grids
-    from meshonet_cli.solving import at_any_resolution, given, solver_of
-
-    layers = layer.read_layers(first, sampling.res)
-    edges = wall.read_edges(sides, first, sampling.res, layers, slide, wall_angle)
-    settings = given(tol=o.tolerance(tol), max_cycles=max_cycles, initial=initial_grid(initial))
-    solver = partial(solver_of(method), **settings)
-    recipe = Recipe(
-        sampling.settings(spacing=layer.spacing_along(layers, sampling.spacing), viscous=layers is not None),
-        wall.WithWalls(
-            method,
-            at_any_resolution(solver, o.coarse_nodes(coarse), refine, method),
-            layers,
-            edges,
-            {
-                "--tol": tol,
-                "--max-cycles": max_cycles,
-                "--initial": initial,
-                "--coarse": None if coarse == "auto" else coarse,
-                "--refine": refine or None,
-            },
-        ),
-        checks.allow_invalid,
-        parse_gates(checks.fail_on),
-        checks.repair is not False,
-        margin=repair_margin,
-        refine=refine,
-        history=history,
-    )
-    destination = Destination(output, files.to_format, "grids")
-    return make_grids(
-        boundary, recipe, destination, printing.session(),
-        fmt=files.from_format, skip_existing=files.skip_existing, jobs=jobs,
+    request = request_of(
+        method, sampling, checks, first, sides,
+        settings={"tol": tol, "max_cycles": max_cycles},
+        coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
+        history=history is not None,
+        slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
     )  # fmt: skip
+    return write_grids(
+        boundary, output, request, checks, files, printing.session(), history=history, jobs=jobs
+    )

@@ -35,25 +35,7 @@ def tfi(
     jobs: o.Jobs = 1,
 ) -> int:
     """Make grids by transfinite interpolation."""
-    from functools import partial
+    from meshonet_cli.grid_batch import request_of, write_grids
 
-    from meshonet_cli import layers as layer
-    from meshonet_cli import walls as wall
-    from meshonet_cli.batch import Destination
-    from meshonet_cli.gates import parse_gates
-    from meshonet_cli.gridding import Recipe, interpolated, make_grids
-
-    layers = layer.read_layers(first, sampling.res)
-    edges = wall.read_edges(sides, first, sampling.res, layers)
-    recipe = Recipe(
-        sampling.settings(),
-        wall.WithWalls("tfi", partial(interpolated, blending=blending), layers, edges),
-        checks.allow_invalid,
-        parse_gates(checks.fail_on),
-        bool(checks.repair),
-    )
-    destination = Destination(output, files.to_format, "grids")
-    return make_grids(
-        boundary, recipe, destination, printing.session(),
-        fmt=files.from_format, skip_existing=files.skip_existing, jobs=jobs,
-    )  # fmt: skip
+    request = request_of("tfi", sampling, checks, first, sides, settings={"blending": blending})
+    return write_grids(boundary, output, request, checks, files, printing.session(), jobs=jobs)

@@ -18,7 +18,7 @@ def expanded(function: Callable[..., Any]) -> Callable[..., Any]:
         def tfi(boundary: Boundaries, output: Output, sampling: SamplingOptions, checks: CheckOptions): ...
     """
     hints = get_type_hints(function, include_extras=True)
-    blocks = {name: kind for name, kind in hints.items() if dataclasses.is_dataclass(kind)}
+    blocks: dict[str, Any] = {name: kind for name, kind in hints.items() if dataclasses.is_dataclass(kind)}
     signature = inspect.signature(function)
 
     def parameters() -> Iterator[inspect.Parameter]:

@@ -9,7 +9,7 @@ from meshonet_cli.options.groups import BOUNDARY_LAYER, option_of
 
 _option = option_of(BOUNDARY_LAYER)
 
-WallSpacing = Annotated[
+FirstCell = Annotated[
     float | None,
     _option(
         "--first-cell",
@@ -20,7 +20,6 @@ WallSpacing = Annotated[
         "the wall.",
     ),
 ]
-WallHeight = WallSpacing
 YPlus = Annotated[
     float | None,
     _option(
@@ -104,7 +103,7 @@ SpacingEast = Annotated[
 class LayerOptions:
     """First cells at walls."""
 
-    wall_spacing: WallSpacing = None
+    first_cell: FirstCell = None
     y_plus: YPlus = None
     reynolds: Reynolds = None
     chord_fraction: ChordFraction = 0.5

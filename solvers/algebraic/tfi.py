@@ -15,6 +15,7 @@ Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the crossing: Soni
 
 from __future__ import annotations
 
+import time
 from typing import Literal, get_args
 
 import numpy as np
@@ -24,6 +25,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import tfi as fill
+from meshonet.solvers.solution import Solution
 
 Blending = Literal["linear", "arclength"]
 Four = tuple[Floats, Floats, Floats, Floats]
@@ -54,6 +56,13 @@ def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     interpolate(nodes[..., 0], nodes[..., 1], edges, parameters(edges, blending))
     facts = {"method": "tfi", "blending": blending}
     return boundary.grid(nodes, facts)
+
+
+def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
+    """Return the transfinite interpolation of `boundary` as a solution (`tfi`)."""
+    begun = time.perf_counter()
+    grid = tfi(boundary, blending)
+    return Solution(grid, "tfi", seconds={"grid": time.perf_counter() - begun})
 
 
 def parameters(edges: Four, blending: Blending) -> Four:

@@ -20,7 +20,7 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.elliptic.control import Controls, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
 from meshonet.solvers.progress import tell
-from meshonet.solvers.solution import Solution
+from meshonet.solvers.solution import Outcome, Solution
 
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
 """Settings tried in turn when the residual grows, stalls or is not finite.
@@ -77,6 +77,7 @@ def solve(
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
     notes: tuple[str, ...] = ()
+    outcome = Outcome.DONE
     for k, (settings, steps) in enumerate(_attempts(controls)):
         start = initial if k == 0 else None
         try:
@@ -88,11 +89,14 @@ def solve(
             notes += (f"attempt {k + 1} diverged ({error})",)
             continue
         if tol is not None and residual > tol:
+            outcome = Outcome.UNCONVERGED
             notes += (f"stopped after {cycles} cycles at residual {residual:.1e}, short of {tol:g}",)
         facts = {"method": method, "residual": residual, "cycles": cycles}
         grid = boundary.grid(nodes, facts)
         spent = {"grid": time.perf_counter() - begun}
-        return Solution(grid, method, residual=residual, cycles=cycles, seconds=spent, notes=notes)
+        return Solution(
+            grid, method, residual=residual, cycles=cycles, seconds=spent, notes=notes, outcome=outcome
+        )
     name = "Winslow's equations" if controls is None else f"the equations of {method}"
     problem = f"{name} diverged from every start ({'; '.join(notes)})"
     raise SolverError(f"{problem}; use more nodes, variational or tfi")

@@ -24,11 +24,11 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import check_settings, solve
 from meshonet.solvers.elliptic.wall_control import ControlledEdge, layers_at
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
 from meshonet.solvers.solution import Solution
 
 FEW = 129

@@ -18,12 +18,13 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
 from meshonet.kernels._native import variational_energy, variational_workspace
+from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.elliptic.kinks import sweep_kinks
 from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
 from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of
 from meshonet.solvers.energy.local_descent import REACH, unfold
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
-from meshonet.solvers.pipeline.coarse import divided, evaluate, sweep_kinks, thinned
 from meshonet.solvers.solution import Solution
 
 COARSEST = 17

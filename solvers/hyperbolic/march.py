@@ -147,11 +147,14 @@ def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
     """Raise InputError unless `wall_spacing` (chords) and `growth` are values that `hyperbolic` takes."""
     if not 1e-9 <= wall_spacing <= 0.1:
-        raise InputError(f"a wall spacing of {wall_spacing:g} chords", "use 1e-9 to 0.1")
+        raise InputError(
+            f"a first cell of {wall_spacing:g} chords", "use 1e-9 to 0.1", parameter="first_cell"
+        )
     if growth is not None and not 1.0 < growth <= _MOST_GROWTH:
         raise InputError(
             f"a growth of {growth:g}",
             f"give the ratio of neighbouring cells, such as 1.15, at most {_MOST_GROWTH:g}",
+            parameter="growth",
         )
 
 
@@ -268,6 +271,7 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
         seconds={"grid": time.perf_counter() - begun},
         notes=(_told(boundary, nodes, first),),
         boundary=edges,
+        first_cells={"south": first},
     )
 
 

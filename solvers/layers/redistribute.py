@@ -32,7 +32,6 @@ from meshonet.solvers.layers.first_cells import (
     check_fit,
     edge_in_layers,
 )
-from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
 FADE = 12.0
@@ -53,7 +52,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
 
     Parameters
     ----------
-    solution : a quad or O grid, best with even rows.
+    solution : a quad or O grid, valid and best with even rows.
     boundary : what it was made for.
     heights : of the first cells.
 
@@ -68,7 +67,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         heights that the boundary cannot have, or more growth than allowed.
     """
     check_fit(heights, boundary)
-    grid, path = guard(solution.grid, boundary, allow_invalid=True)
+    grid = solution.grid
     nodes = grid.nodes
     if heights.west or heights.east:
         nodes = _along_xi(nodes, boundary, heights)
@@ -85,13 +84,13 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
     )
-    asked = {f"spacing_{side}": height for side in SIDES if (height := getattr(heights, side))}
-    facts = {**grid.provenance, **asked}
+    first_cells: dict[str, float] = {side: height for side in SIDES if (height := getattr(heights, side))}
+    facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights.told()}, at every node there"
     note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""
     return replace(
         solution,
-        path=(*solution.path, *path),
+        first_cells=first_cells,
         grid=Grid.from_nodes(nodes, grid.topology, edges.patches, grid.name, facts),
         boundary=edges,
         notes=(*solution.notes, note),
@@ -209,11 +208,10 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
     view[..., 0], view[..., 1] = planes
 
 
-def worst_first_cell(grid: Grid) -> float:
-    """Return the largest relative error of the first cells that the making of `grid` asked for."""
-    asked = {side: grid.provenance.get(f"spacing_{side}") for side in SIDES}
-    asked["south"] = asked["south"] or grid.provenance.get("wall_spacing")
-    return max((first_cell_error(grid.nodes, side, float(h)) for side, h in asked.items() if h), default=0.0)
+def worst_first_cell(solution: Solution) -> float:
+    """Return the largest relative error of the first cells that `solution` was to have."""
+    nodes, heights = solution.grid.nodes, solution.first_cells
+    return max((first_cell_error(nodes, side, height) for side, height in heights.items()), default=0.0)
 
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:

@@ -250,11 +250,11 @@ def _evaluated(boundary: Boundary, found: Walls, c: Complexes) -> tuple[Floats, 
 
 def _around(boundary: Boundary, why: str, begun: float) -> Solution | None:
     """Return the grid by `hole-o` of a compact body, None where that has folds."""
+    from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quads.around import compact
     from meshonet.solvers.neural.quads.encoding import LATENT
     from meshonet.solvers.neural.quads.inference import infer_quads
     from meshonet.solvers.neural.quads.unrolled import AROUND
-    from meshonet.solvers.pipeline.coarse import thinned
 
     if boundary.ni < LATENT or not compact(boundary):
         return None

@@ -1,1 +1,1 @@
-"""From a boundary to a checked grid: choice of method, coarse solves, fallbacks."""
+"""From a shape to a checked grid: choice of method, coarse solves, first cells, fallbacks."""

@@ -1,66 +1,126 @@
-"""No folded grid leaves here unseen: repair it, or make another, or say that it cannot be done."""
+"""No folded grid passes here in silence: it is repaired, or made by another method, or refused."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
 from meshonet.geometry.quality.measure import count_folded, worst_cells
+from meshonet.solvers.method import Method, method_named
+from meshonet.solvers.solution import Outcome, Solution
+
+ORDER = ("winslow", "tfi")
+"""Methods that follow where a grid cannot be repaired."""
 
 REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 
-Stage = tuple[str, Callable[[], Floats]]
+
+@dataclass(frozen=True)
+class Fallback:
+    """`first`, and where its grids have folded cells repair, then the `others` (`guard`)."""
+
+    first: Method
+    others: tuple[Method, ...] | None = None
+    allow_invalid: bool = False
+    margin: int | None = None
+
+    @property
+    def name(self) -> str:
+        """That of the first method."""
+        return self.first.name
+
+    @property
+    def together(self) -> Topology | None:
+        """That of the first method."""
+        return self.first.together
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a valid solution for each of the boundaries, or raise as `guard` does."""
+        solutions = self.first.solve(problems, start)
+        return [self.checked(*each) for each in zip(solutions, problems, strict=True)]
+
+    def checked(self, solution: Solution, boundary: Boundary) -> Solution:
+        """Return what `guard` makes of `solution`, with the seconds of stage ``guard``."""
+        begun = time.perf_counter()
+        checked = guard(
+            solution, boundary, others=self.others, allow_invalid=self.allow_invalid, margin=self.margin
+        )
+        return replace(checked, seconds={**checked.seconds, "guard": time.perf_counter() - begun})
 
 
 def guard(
-    grid: Grid, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
-) -> tuple[Grid, tuple[str, ...]]:
-    """Return a valid grid inside `boundary`: `grid` when it is one, else the first way out that works.
+    solution: Solution,
+    boundary: Boundary,
+    *,
+    others: Sequence[Method] | None = None,
+    allow_invalid: bool = False,
+    margin: int | None = None,
+) -> Solution:
+    """Return a valid grid: that of `solution` when it is one, else that of the first way that works.
 
-    Tried in turn: local repair of `grid`; Winslow's solution from that start; transfinite interpolation;
-    each of the latter repaired where it is folded.
+    Tried in turn: local repair; each of the other methods, from the repaired grid where it takes a start; its
+    grid repaired.
 
     Parameters
     ----------
-    grid : what a solver made.
-    boundary : what it was made for.
-    allow_invalid : return `grid` as it is when nothing works.
+    solution : what a method made.
+    boundary : what it was made for; that of the solution takes its place.
+    others : methods to turn to; None for those of `ORDER`.
+    allow_invalid : return the grid as it is when nothing works.
     margin : of `meshonet.solvers.energy.repair.repair`, or None for its own.
 
     Returns
     -------
-    tuple
-        the grid, and the stages that made it from what came in: ``()``, ``("repair",)``,
-        ``("winslow", "repair")``, ``("tfi",)`` ...
+    Solution
+        its path ends with the stages that made the grid from what came in: ``("repair",)``,
+        ``("winslow", "repair")``, ``("tfi",)`` ..., none for a valid one.
 
     Raises
     ------
     NoValidGridError
         every way ends in folded cells; carries the count and the ten worst of the best try.
     """
+    grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:
-        return grid, ()
+        return solution
     failure = _open_corner(grid)
     if failure is None:
         least = grid.nodes
-        for path, nodes in _ways(grid, boundary, margin):
+        if others is None:  # Winslow's equations are not solved again for their own grid
+            others = [method_named(name) for name in ORDER if name != solution.method or name == "tfi"]
+        for path, nodes in _ways(grid, boundary, others, margin):
             if count_folded(nodes) == 0:
                 facts = {**grid.provenance, "path": path}
-                return Grid.from_nodes(nodes, grid.topology, grid.patches, grid.name, facts), path
+                mended = Grid.from_nodes(nodes, grid.topology, grid.patches, grid.name, facts)
+                return replace(solution, grid=mended, path=(*solution.path, *path))
             least = min(least, nodes, key=count_folded)
         left, cells = count_folded(least), (grid.ni - 1) * (grid.nj - 1)
-        told = f"{left} of {cells} cells stay folded after repair, winslow and tfi; {REMEDY}"
-        failure = NoValidGridError(told, worst_cells(least))
+        tried = ", then ".join(["repair", *(method.name for method in others)])
+        problem = f"{left} of {cells} cells stay folded after {tried}; {REMEDY}"
+        failure = NoValidGridError(problem, worst_cells(least))
     if allow_invalid:
-        return grid, ()
+        return replace(solution, outcome=Outcome.FOLDED)
     raise failure
 
 
-def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[tuple[str, ...], Floats]]:
+def refuse_folded(solution: Solution) -> None:
+    """Raise NoValidGridError when cells are folded that nobody is to repair."""
+    grid = solution.grid
+    folded = count_folded(grid.nodes)
+    if folded:
+        cells = (grid.ni - 1) * (grid.nj - 1)
+        remedy = "use {repair}, an elliptic method or {allow_invalid}"
+        raise NoValidGridError(f"{folded} of {cells} cells are folded; {remedy}", worst_cells(grid.nodes))
+
+
+def _ways(
+    grid: Grid, boundary: Boundary, others: Sequence[Method], margin: int | None
+) -> Iterator[tuple[tuple[str, ...], Floats]]:
     """Yield the stages and nodes of one try after another; a valid one ends the search."""
     from meshonet.solvers.energy.repair import MARGIN, repair
 
@@ -69,30 +129,16 @@ def _ways(grid: Grid, boundary: Boundary, margin: int | None) -> Iterator[tuple[
     repaired = grid.nodes.copy(order="K")
     repair(repaired, periodic, margin)
     yield ("repair",), repaired
-    starts: list[Stage] = [("tfi", partial(_interpolated, boundary))]
-    if grid.provenance.get("method") != "winslow":
-        starts.insert(0, ("winslow", partial(_solved, boundary, repaired)))
-    for name, make in starts:
+    start = boundary.grid(repaired)
+    for method in others:
         try:
-            nodes = make()
+            nodes = method.solve([boundary], [start])[0].grid.nodes
         except SolverError:
             continue
-        yield (name,), nodes
+        yield (method.name,), nodes
         nodes = nodes.copy(order="K")
         repair(nodes, periodic, margin)
-        yield (name, "repair"), nodes
-
-
-def _solved(boundary: Boundary, start: Floats) -> Floats:
-    from meshonet.solvers.elliptic.solve import solve
-
-    return solve(boundary, initial=boundary.grid(start)).grid.nodes
-
-
-def _interpolated(boundary: Boundary) -> Floats:
-    from meshonet.solvers.algebraic.tfi import tfi
-
-    return tfi(boundary).nodes
+        yield (method.name, "repair"), nodes
 
 
 def _open_corner(grid: Grid) -> NoValidGridError | None:
@@ -105,7 +151,7 @@ def _open_corner(grid: Grid) -> NoValidGridError | None:
             (ux, uy), (vx, vy) = grid.nodes[i + di, j] - at, grid.nodes[i, j + dj] - at
             if di * dj * (ux * vy - uy * vx) <= 0:
                 x, y = (float(value) for value in at)
-                told = f"the boundary's corner at ({x:.6g}, {y:.6g}) opens by 180 degrees or more"
+                problem = f"the boundary's corner at ({x:.6g}, {y:.6g}) opens by 180 degrees or more"
                 cell = BadCell(min(i, grid.ni - 2), min(j, grid.nj - 2), x, y)
-                return NoValidGridError(f"{told}; choose other corners", [cell])
+                return NoValidGridError(f"{problem}; choose other corners", [cell])
     return None

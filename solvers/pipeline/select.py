@@ -1,60 +1,126 @@
-"""Which method makes a grid, and on how many nodes, when the user leaves that open."""
+"""Which method makes a grid, and on how many nodes, when that is left open."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.pipeline.coarse import solve_coarse
+from meshonet.solvers.method import Each, Method, method_named
+from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.solution import Solution
 
-FEWER = {"auto": (512, 257), "winslow": (512, 257), "variational": (257, 129)}
-"""Nodes along a direction above which a method solves on fewer unless told, and how many.
+FEWER_NODES = {"winslow": (512, 257), "variational": (257, 129)}
+"""Nodes along a direction above which a method solves on fewer unless a number is given, and how many.
 
 Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of the full solve's.
 """
 
 
-def solve_automatic(boundary: Boundary, method: Callable[[Boundary], Solution], name: str) -> Solution:
-    """Solve with `method` in full, or through fewer nodes where that measures as good and takes less time.
+@dataclass(frozen=True)
+class Auto:
+    """A method for each topology.
 
     Parameters
     ----------
-    boundary : only large quads are solved on fewer nodes; where those fold, on twice as many. C boundaries
-        by ``auto`` are marched (`meshonet.solvers.hyperbolic.default_spacing`) or else minimised, on fewer nodes too: Winslow's lines
-        lean by 70 degrees along the wake, where small cells face large ones of the far field.
-    method : a solver of boundary to solution.
-    name : of the method, as in `FEWER`; others solve in full.
-
-    Returns
-    -------
-    Solution
-        that of `method` or of `solve_coarse`, which the provenance of the grid tells.
+    quad, o, c : that solve boundaries of these topologies.
     """
-    if name == "auto" and boundary.topology == "c":
-        return _around_wake(boundary)
-    if boundary.topology != "quad":
-        return method(boundary)
-    return _through_fewer(boundary, method, name)
+
+    quad: Method
+    o: Method
+    c: Method
+    name: str = "auto"
+    together: None = None
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries."""
+        grids = [None] * len(problems) if start is None else [[grid] for grid in start]
+        return [
+            getattr(self, problem.topology).solve([problem], grid)[0]
+            for problem, grid in zip(problems, grids, strict=True)
+        ]
 
 
-def _around_wake(boundary: Boundary) -> Solution:
-    """Return the C grid that is marched, or where that does not suit the one of least energy."""
-    from meshonet.solvers.energy.variational import (
-        solve as minimise,  # which evaluates by `meshonet.solvers.pipeline.coarse`
-    )
-    from meshonet.solvers.hyperbolic.default_spacing import march_unasked
+@dataclass(frozen=True)
+class Fewer:
+    """`method` on fewer nodes where that measures as good; where those fold, on twice as many."""
 
-    return march_unasked(boundary) or _through_fewer(boundary, minimise, "variational")
+    method: Method
+    together: None = None
+
+    @property
+    def name(self) -> str:
+        """That of the method."""
+        return self.method.name
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries."""
+        above, n = FEWER_NODES.get(self.name, (0, 0))
+        if not n or start is not None:
+            return self.method.solve(problems, start)
+        return [self._solve(problem, above, n) for problem in problems]
+
+    def _solve(self, boundary: Boundary, above: int, n: int) -> Solution:
+        if max(boundary.ni, boundary.nj) <= above:
+            return self.method.solve([boundary])[0]
+        solution = Coarse(self.method, n).solve([boundary])[0]
+        if count_folded(solution.grid.nodes) == 0:
+            return solution
+        finer = Coarse(self.method, 2 * n - 1).solve([boundary])[0]
+        return min(finer, solution, key=lambda each: count_folded(each.grid.nodes))
 
 
-def _through_fewer(boundary: Boundary, method: Callable[[Boundary], Solution], name: str) -> Solution:
-    above, n = FEWER.get(name, (0, 0))
-    if not n or max(boundary.ni, boundary.nj) <= above:
-        return method(boundary)
-    solution = solve_coarse(boundary, method, n, smooth=True)
-    if count_folded(solution.grid.nodes) == 0:
-        return solution
-    finer = solve_coarse(boundary, method, 2 * n - 1, smooth=True)
-    return min(finer, solution, key=lambda one: count_folded(one.grid.nodes))
+@dataclass(frozen=True)
+class AroundWake:
+    """C grids: marched with a first cell of its own choice, or where that does not suit variational.
+
+    Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
+
+    Parameters
+    ----------
+    note : begins the notes, before the method's name.
+    """
+
+    note: str = ""
+    name: str = "auto"
+    together: None = None
+
+    def solve(
+        self,
+        problems: Sequence[Boundary],
+        start: Sequence[Grid] | None = None,  # noqa: ARG002 - a march starts from the wall
+    ) -> list[Solution]:
+        """Return a solution for each of the boundaries."""
+        from meshonet.solvers.hyperbolic.default_spacing import march_unasked
+
+        minimise = Fewer(method_named("variational"))
+        found = [march_unasked(problem) or minimise.solve([problem])[0] for problem in problems]
+        if not self.note:
+            return found
+        return [replace(each, notes=(f"{self.note} {each.method}", *each.notes)) for each in found]
+
+
+def elliptic() -> Auto:
+    """Return what ``auto`` is among the equations: Winslow's, and around wakes a march."""
+    winslow = method_named("winslow")
+    return Auto(Fewer(winslow), winslow, AroundWake())
+
+
+def fewer_on_quads(method: Method) -> Auto:
+    """Return `method`, on fewer nodes in large four-sided domains."""
+    return Auto(Fewer(method), method, method, method.name)
+
+
+def best(operator: Method) -> Auto:
+    """Return what measures best: variational grids, `operator` around bodies, marched C grids."""
+    wake = AroundWake("no shipped model makes c grids: this one is")
+    return Auto(Fewer(method_named("variational")), operator, wake, "best")
+
+
+def solve_automatic(boundary: Boundary, solve: Callable[[Boundary], Solution], name: str) -> Solution:
+    """Solve with `solve`, the method `name`, as `elliptic` (``auto``) or `fewer_on_quads` would."""
+    method = Each("winslow" if name == "auto" else name, solve)
+    auto = Auto(Fewer(method), method, AroundWake() if name == "auto" else method)
+    return auto.solve([boundary])[0]

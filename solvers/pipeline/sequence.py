@@ -5,30 +5,58 @@
     res              2 res - 1             4 res - 3
     solve --prolong--> solve --prolong-->  solve
 
-The nodes of each boundary are among those of the next finer one. A solution is carried up as
-`meshonet.solvers.pipeline.coarse` does it: what it adds to the transfinite interpolation of its edges, by cubic splines.
+The nodes of each boundary are among those of the next finer one. A solution is evaluated at the finer nodes
+as a coarse one is (`meshonet.solvers.algebraic.resample.grids`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.pipeline.coarse import evaluate
+from meshonet.solvers.algebraic.resample.grids import evaluate
+from meshonet.solvers.method import Method
 from meshonet.solvers.solution import Solution
 
 
-def solve_refined(boundary: Boundary, method: Callable[..., Solution], levels: int) -> Solution:
+@dataclass(frozen=True)
+class Sequenced:
+    """`method` on every 2^levels-th node, then on twice as many cells until on all (`solve_refined`)."""
+
+    method: Method
+    levels: int
+    together: None = None
+
+    @property
+    def name(self) -> str:
+        """That of the method."""
+        return self.method.name
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries; grids to start from have the coarsest counts."""
+        grids = [None] * len(problems) if start is None else list(start)
+
+        def solve(boundary: Boundary, initial: Grid | None = None) -> Solution:
+            return self.method.solve([boundary], None if initial is None else [initial])[0]
+
+        pairs = zip(problems, grids, strict=True)
+        return [solve_refined(problem, solve, self.levels, grid) for problem, grid in pairs]
+
+
+def solve_refined(
+    boundary: Boundary, solve: Callable[..., Solution], levels: int, initial: Grid | None = None
+) -> Solution:
     """Solve on every 2^levels-th node of `boundary`, and again on twice as many cells until on all of them.
 
     Parameters
     ----------
     boundary : with cells along xi and eta that 2^levels divides.
-    method : a solver of boundary to solution that takes ``initial``, a grid to start from.
+    solve : a function of boundary to solution that takes ``initial``, a grid to start from.
     levels : how often cells are halved.
+    initial : what the coarsest solve starts from.
 
     Returns
     -------
@@ -40,22 +68,20 @@ def solve_refined(boundary: Boundary, method: Callable[..., Solution], levels: i
     InputError
         counts that cannot be halved.
     """
-    solution = method(coarser_boundary(boundary, 2**levels))
-    seconds, counts = dict(solution.seconds), [_told(solution)]
+    solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
+    seconds, counts = dict(solution.seconds), [_counts(solution)]
     for k in range(levels - 1, -1, -1):
         finer = coarser_boundary(boundary, 2**k) if k else boundary
         start = Grid.from_nodes(evaluate(solution.grid.nodes, finer), boundary.topology, finer.patches)
-        solution = method(finer, initial=start)
+        solution = solve(finer, initial=start)
         seconds = {stage: seconds.get(stage, 0.0) + spent for stage, spent in solution.seconds.items()}
-        counts.append(_told(solution))
+        counts.append(_counts(solution))
     grid = solution.grid.with_provenance(refined=levels)
-    return replace(
-        solution, grid=grid, seconds=seconds, notes=(*solution.notes, "refined: " + ", ".join(counts))
-    )
+    notes = (*solution.notes, "refined: " + ", ".join(counts))
+    return replace(solution, grid=grid, seconds=seconds, notes=notes)
 
 
-def _told(solution: Solution) -> str:
+def _counts(solution: Solution) -> str:
     grid, cycles = solution.grid, solution.cycles
-    return f"{grid.ni}x{grid.nj}" + (
-        f" in {cycles} cycle{'' if cycles == 1 else 's'}" if cycles is not None else ""
-    )
+    counts = f"{grid.ni}x{grid.nj}"
+    return counts if cycles is None else f"{counts} in {cycles} cycle{'' if cycles == 1 else 's'}"

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from command_line import ROOT, Process
 
+from meshonet.formats.output import _machine
+
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
 MESHONET = [sys.executable, "-m", "meshonet_cli"]
 OUTPUTS = [
@@ -85,8 +87,7 @@ def test_what_a_killed_program_left_is_swept_by_the_next(
     dead = subprocess.run(
         [sys.executable, "-c", "import os; print(os.getpid())"], capture_output=True, text=True
     )
-    host = os.uname().nodename.split(".")[0]
-    left = tmp_path / f".out.vts.{host}-{dead.stdout.strip()}-0123abcd.meshonet-part"
+    left = tmp_path / f".out.vts.{_machine()}-{dead.stdout.strip()}-0123abcd.meshonet-part"
     left.write_text("half")
     assert process("convert", grid, "next.vts").returncode == 0
     assert not left.exists()

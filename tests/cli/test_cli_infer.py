@@ -103,6 +103,17 @@ def test_c_grids_without_a_first_cell_are_marched_and_the_report_says_so(meshone
     assert any("no first cell was asked for" in note for note in told["notes"])
 
 
+def test_repair_is_a_switch_here_too(meshonet: Meshonet, folding_h5: Path) -> None:
+    words = ("infer", folding_h5, "--model", "quad-winslow", "--polish", "off", "-o", "g.vts")
+    assert meshonet(*words, "--repair").code == 0
+    refused = meshonet(*words, "--no-repair")
+    if refused.code:  # the network's own grid is folded
+        assert "cells are folded; use --repair" in refused.err
+    done = meshonet(*words, "--repair", "--answer", "raw")
+    assert done.code == 2
+    assert "--repair would change a raw answer; leave one of --repair and --answer out" in done.err
+
+
 def test_a_bent_body_by_the_model_for_bodies(meshonet: Meshonet) -> None:
     """Its centroid is outside it. The report says what unfolded the network's answer, if it was folded."""
     bend = np.linspace(-2.2, 2.2, 40)

@@ -82,7 +82,7 @@ def test_large_grids_are_solved_a_few_at_a_time(
     solved: list[int],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("meshonet_cli.together.NODES", 2 * 21 * 17)
+    monkeypatch.setattr("meshonet.solvers.pipeline.make_grid.MOST_NODES", 2 * 21 * 17)
     meshonet("infer", arches, "--model", quad_model, "-o", "{index}.vts")
     assert solved == [2, 2, 1]
 

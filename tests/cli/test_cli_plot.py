@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from command_line import Meshonet, Process
 
-from meshonet_cli.drawing import Picture, picture_file
+from meshonet.formats.figure.picture import picture_format
 
 
 @pytest.fixture
@@ -43,8 +43,8 @@ def test_a_picture_goes_to_standard_output(meshonet: Meshonet, process: Process,
 
 
 def test_standard_output_is_a_png_unless_told() -> None:
-    assert picture_file("-", None, Picture()).format.name == "png"
-    assert picture_file("-", "svg", Picture()).format.name == "svg"
+    assert picture_format("-").name == "png"
+    assert picture_format("-", "svg").name == "svg"
 
 
 def test_a_batch_becomes_one_picture_each(meshonet: Meshonet, three_h5: Path) -> None:

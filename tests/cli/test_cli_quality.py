@@ -9,7 +9,7 @@ from command_line import Meshonet, dataset, duct
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import per_cell
 from meshonet.geometry.quality.metrics import NAMES
-from meshonet_cli.grading import COMPARED
+from meshonet.geometry.quality.report import COMPARED
 
 
 @pytest.fixture

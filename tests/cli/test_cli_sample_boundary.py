@@ -199,3 +199,14 @@ def test_splits_that_cannot_be_are_refused(meshonet: Meshonet) -> None:
     meshonet("tfi", "naca:0012", "--res", "40x20", "-o", "g.vts")
     told = meshonet("quality", "g.vts#test").err
     assert "g.vts: vts files do not say which samples are to test; leave #test out" in told
+
+
+@pytest.mark.parametrize(
+    "words", [("--seed", "0"), ("--count", "1"), ("--range", "0:1"), ("--split", "random")]
+)
+def test_what_only_a_family_needs_is_refused_without(
+    meshonet: Meshonet, duct_h5: Path, words: tuple[str, str]
+) -> None:
+    done = meshonet("sample-boundary", duct_h5, *words, "-o", "b.h5")
+    told = f"error: {words[0]} without --family; give --family as well, or drop {words[0]}\n"
+    assert (done.code, done.err) == (2, told)

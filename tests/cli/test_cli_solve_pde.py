@@ -67,7 +67,7 @@ def test_a_march_needs_a_first_cell_and_takes_no_elliptic_options(meshonet: Mesh
         (
             "--method",
             "hyperbolic",
-        ): "--method hyperbolic without a first cell; give --wall-spacing or --y-plus",
+        ): "--method hyperbolic without a first cell; give --first-cell or --y-plus",
         ("--tol", "1e-6", *given): "--tol is of no use to a grid marched from the wall; drop --tol",
         ("--coarse", "33", *given): "--coarse is of no use to a grid marched from the wall",
     }

@@ -3,6 +3,7 @@
 import importlib.util
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -222,6 +223,80 @@ def test_the_log_of_a_resumed_run_is_that_of_a_whole_one(meshonet: Meshonet, arc
     Path("b.csv").write_text("\n".join([*rows, "5,1,1,1,1,1,1,1,1"]) + "\n")
     meshonet(*words, "-o", "b.safetensors", "--log-csv", "b.csv", "--resume", "--amp", "--device", "cpu")
     assert [row.split(",")[0] for row in Path("b.csv").read_text().splitlines()] == ["epoch", *"1234"]
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_a_cut_run_goes_on_from_its_checkpoint(
+    meshonet: Meshonet, arches_h5: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from meshonet_cli.report.training import Log
+
+    words = ("train", arches_h5, *BRIEF, "--checkpoint-every", "2", "-o", "m.safetensors")
+    assert meshonet(*words, "--quiet").code == 0
+    whole = arrays("m.safetensors")
+    Path("m.safetensors").unlink()
+    report, told = Log.__call__, []
+
+    def cut(log: Log, progress: Any) -> None:
+        told.append(progress.epoch)
+        if progress.epoch == 3 and told.count(3) == 1:
+            raise KeyboardInterrupt
+        report(log, progress)
+
+    monkeypatch.setattr(Log, "__call__", cut)
+    assert meshonet(*words).code == 130
+    assert not Path("m.safetensors").exists()
+    assert meshonet(*words, "--resume").code == 0
+    assert told == [1, 2, 3, 3, 4]
+    assert all(np.array_equal(array, whole[name]) for name, array in arrays("m.safetensors").items())
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_patience_ends_a_run(meshonet: Meshonet, arches_h5: str) -> None:
+    words = ("train", arches_h5, *BRIEF, "--epochs", "60", "--held-out", "2", "--rate", "0.5")
+    done = meshonet(*words, "--patience", "1", "--log-csv", "log.csv", "-o", "m.safetensors")
+    assert done.code == 0
+    assert len(Path("log.csv").read_text().splitlines()) < 61
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_threads_are_those_of_torch(meshonet: Meshonet, arches_h5: str) -> None:
+    import torch
+
+    for count in (2, 1):
+        words = ("train", arches_h5, *BRIEF, "--threads", count, "-o", "m.safetensors")
+        assert meshonet(*words, "--quiet").code == 0
+        assert torch.get_num_threads() == count
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_the_device_is_that_of_torch(meshonet: Meshonet, arches_h5: str) -> None:
+    import torch
+
+    words = ("train", arches_h5, *BRIEF, "-o", "m.safetensors", "--device")
+    assert meshonet(*words, "cpu", "--quiet").code == 0
+    done = meshonet(*words, "cuda")
+    assert done.code == (0 if torch.cuda.is_available() else 2), done.err
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_amp_multiplies_in_bfloat16(
+    meshonet: Meshonet, arches_h5: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import torch
+
+    kinds, autocast = [], torch.autocast
+
+    def noted(*words: object, **settings: Any) -> object:
+        kinds.append((torch.bfloat16 in words, settings.get("enabled", True)))
+        return autocast(*words, **settings)
+
+    monkeypatch.setattr(torch, "autocast", noted)
+    words = ("train", arches_h5, *BRIEF, "-o", "m.safetensors", "--quiet")
+    assert meshonet(*words).code == 0
+    assert (True, True) not in kinds
+    assert meshonet(*words, "--amp").code == 0
+    assert (True, True) in kinds
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")

@@ -14,8 +14,9 @@ from pathlib import Path
 import pytest
 
 from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
-from meshonet_cli.report import aligned, explained, figure, span
+from meshonet_cli.errors import explained
 from meshonet_cli.session import Session
+from meshonet_cli.text import aligned, figure, span
 
 
 def test_the_worst_outcome_of_the_members_is_the_exit_code(capsys: pytest.CaptureFixture[str]) -> None:

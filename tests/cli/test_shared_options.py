@@ -1,4 +1,4 @@
-"""Options that several commands share do in each what they say; and no option goes without a test."""
+"""Options that several commands share do in each what they say."""
 
 from pathlib import Path
 
@@ -8,7 +8,6 @@ import pytest
 from command_line import BOUNDARY_COMMANDS, Meshonet, dataset, duct
 
 from meshonet.formats.registry import read_grids
-from meshonet_cli.app import application
 
 GRID_COMMANDS = ("tfi", "solve-pde", "infer")
 SECTION = "naca:2412"
@@ -163,23 +162,3 @@ def test_debug_shows_the_traceback(meshonet: Meshonet, command: str) -> None:
     plain = meshonet(command, "missing.vts", *output)
     assert (plain.code, plain.err.count("\n")) == (2, 1)
     assert "Traceback" in meshonet(command, "missing.vts", *output, "--debug").err
-
-
-def options() -> list[tuple[str, tuple[str, ...]]]:
-    group = application()
-    return [
-        (name, tuple(word for word in option.opts if word.startswith("--")))
-        for name, command in group.commands.items()
-        for option in command.params
-        if option.opts[-1].startswith("--")
-    ]
-
-
-@pytest.mark.parametrize(("command", "words"), options(), ids=lambda value: str(value))
-def test_no_option_goes_without_a_test(command: str, words: tuple[str, ...]) -> None:
-    """It occurs in a test of its command, or in one of the options that commands share."""
-    own = f"test_cli_{command.replace('-', '_')}"
-    files = [file for file in Path(__file__).parent.glob("test_*.py")
-             if file.stem.startswith(own) or f'"{command}"' in file.read_text()]  # fmt: skip
-    texts = [Path(__file__).read_text(), *(file.read_text() for file in files)]
-    assert any(f'"{word}"' in text for word in words for text in texts), f"meshonet {command} {words}"

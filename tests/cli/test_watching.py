@@ -8,6 +8,7 @@ import select
 import signal
 import subprocess
 import sys
+import threading
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -20,7 +21,7 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.energy.functional import Weights, aspect_of, energy
 from meshonet.solvers.progress import Cycle, listening, tell
-from meshonet_cli.watching import COLUMNS, Live
+from meshonet_cli.convergence import COLUMNS, Live
 
 
 def table(path: str = "h.csv") -> list[dict[str, str]]:
@@ -178,3 +179,21 @@ def test_who_does_not_listen_hears_nothing() -> None:
         tell("winslow", nodes, 2, 0.25, 0.1)
     tell("winslow", nodes, 3, 0.1)
     assert heard == [Cycle("winslow", 3, 4, 2, 0.25, 0.1, 6)]
+
+
+def test_threads_do_not_hear_one_another() -> None:
+    heard: dict[str, list[int]] = {"a": [], "b": []}
+    both = threading.Barrier(2)
+
+    def solve(name: str, number: int) -> None:
+        with listening(lambda cycle: heard[name].append(cycle.number)):
+            both.wait(10)
+            tell("winslow", np.zeros((3, 4, 2)), number, 0.5)
+            both.wait(10)
+
+    threads = [threading.Thread(target=solve, args=item) for item in (("a", 1), ("b", 2))]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert heard == {"a": [1], "b": [2]}

@@ -50,13 +50,13 @@ def c_grid(wake: int = 4, body: int = 9, nj: int = 4, name: str = "c") -> Grid:
     north = np.concatenate([low[:-1], arc, high[1:]])
     t = np.linspace(0, 1, nj)[:, None, None]
     nodes = np.moveaxis((1 - t) * south + t * north, 0, 1)
-    parts = (
+    parts = (  # otherwise called than those that a C grid has by default
         Patch("wake", "south", 0, wake - 1),
-        Patch("wall", "south", wake - 1, ni - wake),
+        Patch("plate", "south", wake - 1, ni - wake),
         Patch("wake", "south", ni - wake, ni - 1),
-        Patch("farfield", "north", 0, ni - 1),
-        Patch("farfield", "east", 0, nj - 1),
-        Patch("farfield", "west", 0, nj - 1),
+        Patch("far side", "north", 0, ni - 1),
+        Patch("far side", "east", 0, nj - 1),
+        Patch("far side", "west", 0, nj - 1),
     )
     return Grid.from_nodes(nodes, "c", parts, name)
 
@@ -77,5 +77,8 @@ def file_names(folder: Path) -> list[str]:
     """Return the names of everything in `folder`, hidden files included."""
     return sorted(entry.name for entry in folder.iterdir())
 
+
+VARIANTS = ("vtk:ascii", "plot3d:binary", "plot3d:fortran", "gmsh:ascii", "gmsh:4.1", "gmsh:4.1,ascii")
+"""Formats with options whose bytes have nothing in common with those without."""
 
 PYTHON = sys.executable

@@ -12,13 +12,13 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from format_shapes import channel
+from format_shapes import VARIANTS, channel
 
 from meshonet.formats.registry import TABLE, format_named
 
 READABLE = [
     name
-    for name in TABLE
+    for name in (*TABLE, *VARIANTS)
     if (format_named(name).read_grids or format_named(name).read_shapes) and not format_named(name).beside
 ]
 """What reads a stream of bytes; each has a process of its own in ``make fuzz``."""

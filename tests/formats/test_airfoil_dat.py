@@ -7,6 +7,7 @@ from meshonet.formats.source import Source
 from meshonet.formats.text.airfoil_dat import parse, read_shapes, sniff
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.shape import edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 
 X = np.array([0, 0.0125, 0.025, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 1.0])
@@ -212,6 +213,27 @@ def test_bytes_that_are_no_utf8_do_not_matter():
 def test_files_that_hold_no_airfoil_are_refused_with_the_line(text, message):
     with pytest.raises(InputError, match=message):
         parse(text, "a.dat")
+
+
+@pytest.mark.parametrize(
+    ("counts", "note"),
+    [
+        ("15. 15.", ()),
+        ("17. 16.", ("line 2 announces 17. 16. points and 15 and 15 follow, which are read",)),
+        ("20 10", ("line 2 announces 20 10 points and 15 and 15 follow, which are read",)),
+        ("0012 4", ()),
+    ],
+)
+def test_wrong_counts_of_lednicer_s_order_are_a_note(counts, note):
+    got = parse(f"TEST\n{counts}\n\n{lines(UPPER)}\n{lines(LOWER)}", "a.dat")
+    assert got.notes == note
+    assert edges_of(got, Sampling(ni=41, nj=9)).notes == note
+
+
+@pytest.mark.parametrize("row", ["1.000000 nan", "1.0 O.O0"])
+def test_a_trailing_edge_that_cannot_be_read_is_refused_with_its_line(row):
+    with pytest.raises(InputError, match=rf"a.dat: line 2: '{row}' is no pair of numbers; correct or remove"):
+        parse(f"TEST\n{row}\n" + lines(SELIG[1:]), "a.dat")
 
 
 def test_crossing_surfaces_are_named_by_their_lines():

@@ -10,7 +10,8 @@ from format_shapes import c_grid, channel, memory, ring
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 
-from meshonet.formats.cgns.write import read_grids, write_extruded, write_grids
+from meshonet.formats.cgns.read import read_grids
+from meshonet.formats.cgns.write import write_extruded, write_grids
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -116,7 +117,7 @@ def test_conditions_cover_the_boundary_and_families_say_what_they_are(tmp_path: 
         }
         ranges = [node["PointRange/ data"][()].tolist() for node in base["c/ZoneBC"].values()]
     assert kinds == {
-        "wall": "BCWall", "farfield": "BCFarfield", "no-slip_wall": "BCWall", "south": "BCGeneral",
+        "plate": "BCWall", "far_side": "BCFarfield", "no-slip_wall": "BCWall", "south": "BCGeneral",
         "out_let": "BCGeneral", "north": "BCGeneral", "inlet": "BCInflow",
     }  # fmt: skip
     assert ranges == [[[4, 1], [12, 1]], [[15, 1], [15, 4]], [[1, 4], [15, 4]], [[1, 1], [1, 4]]]

@@ -105,7 +105,7 @@ LONG: dict[str, Callable[[], bytes]] = {
     ),
     "an HDF5 file": lambda: good("hdf5"),
     "a .vts file": lambda: good("vts"),
-    "a NaN grid": lambda: good("plot3d-ascii").replace(b"e-0", b"nan"),
+    "a NaN grid": lambda: good("plot3d").replace(b"e-0", b"nan"),
 }
 
 

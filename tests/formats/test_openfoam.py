@@ -23,7 +23,7 @@ PATCHES = {
         "north": ("patch", 6), "inlet": ("patch", 4), "frontAndBack": ("empty", 48),
     },
     "o": {"airfoil": ("wall", 12), "far": ("patch", 12), "frontAndBack": ("empty", 96)},
-    "c": {"wall": ("wall", 8), "farfield": ("patch", 20), "frontAndBack": ("empty", 84)},
+    "c": {"plate": ("wall", 8), "far_side": ("patch", 20), "frontAndBack": ("empty", 84)},
 }  # fmt: skip
 
 

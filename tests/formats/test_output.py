@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from format_shapes import PYTHON, Pipe, file_names
 
-from meshonet.formats.output import PART_SUFFIX, _swapped, whole_file, whole_folder
+from meshonet.formats.output import PART_SUFFIX, _swapped, final_name, whole_file, whole_folder
 from meshonet.geometry.errors import InputError
 
 
@@ -50,13 +50,36 @@ def test_what_a_killed_process_left_is_swept_and_nothing_else(tmp_path: Path) ->
     )
     assert subprocess.run([PYTHON, "-c", code], timeout=60, check=False).returncode == -signal.SIGKILL
     (left,) = file_names(tmp_path)
-    other = left.replace(os.uname().nodename.split(".")[0] + "-", "elsewhere-")
-    mine = re.sub(r"-\d+-", f"-{os.getpid()}-", left)
-    for name in (other, mine, "b", ".hidden" + PART_SUFFIX):
+    boot = Path("/proc/sys/kernel/random/boot_id").read_text().strip().replace("-", "")
+    machine, container, process, _ = re.findall(
+        r"[0-9a-f]+", left.removeprefix(".a.").removesuffix(PART_SUFFIX)
+    )
+    assert machine == boot
+    others = [
+        left.replace(machine, machine[::-1]),  # of a machine that may have the same name
+        left.replace(container, container + "0"),
+        left.replace(f"-{process}-", f"-{os.getpid()}-"),
+        f".a.{os.uname().nodename}-{process}-01234567{PART_SUFFIX}",
+        "b",
+        ".hidden" + PART_SUFFIX,
+    ]
+    for name in others:
         (tmp_path / name).touch()
     with whole_file(str(tmp_path / "c")) as part:
         part.touch()
-    assert file_names(tmp_path) == sorted([other, mine, "b", "c", ".hidden" + PART_SUFFIX])
+    assert file_names(tmp_path) == sorted([*others, "c"])
+
+
+def test_nothing_is_swept_where_the_system_does_not_say_who_is_who(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("meshonet.formats.output._machine", lambda: "-")
+    left = f".a.--999999999-01234567{PART_SUFFIX}"
+    (tmp_path / left).touch()
+    with whole_file(str(tmp_path / "c")) as part:
+        assert final_name(part) == "c"
+        part.touch()
+    assert file_names(tmp_path) == [left, "c"]
 
 
 def test_permissions_are_those_of_any_new_file(tmp_path: Path) -> None:
@@ -104,6 +127,7 @@ def test_standard_output_gets_nothing_on_failure(monkeypatch: pytest.MonkeyPatch
 
 def test_a_reader_that_stops_early_is_no_error() -> None:
     code = "from meshonet.formats.output import whole_file\nwith whole_file('-') as p: p.write_bytes(bytes(10**7))"
+    # more than a pipe holds: the writer is still at it when the reader leaves, whichever of them is slower
     pipe = f'{PYTHON} -c "{code}" | head -c 10 | wc -c; echo ${{PIPESTATUS[0]}}'
     done = subprocess.run(["bash", "-c", pipe], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.split() == ["10", "0"]

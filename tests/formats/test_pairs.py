@@ -6,17 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from format_shapes import c_grid, channel, ring
+from format_shapes import VARIANTS, c_grid, channel, ring
 
 from meshonet.formats.registry import format_named, formats, read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
-BOTH_WAYS = [row.name for row in formats() if row.write_grids and row.read_grids]
-AS_BOUNDARIES = [
-    row.name for row in formats() if row.write_grids and row.read_shapes and row.read_grids is None
-]
+EVERY = (*formats(), *map(format_named, VARIANTS))
+BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
+AS_BOUNDARIES = [row.name for row in EVERY if row.write_grids and row.read_shapes and row.read_grids is None]
 
 
 def through(name: str, grid: Grid, folder: Path) -> Path:

@@ -10,8 +10,7 @@ import vtk
 from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import vtk_to_numpy
 
-from meshonet.formats.plot3d.read import read_grids
-from meshonet.formats.plot3d.sniff import sniff
+from meshonet.formats.plot3d.read import read_grids, sniff
 from meshonet.formats.registry import format_named
 from meshonet.formats.source import Source, open_source
 from meshonet.geometry.arrays import Floats
@@ -179,7 +178,7 @@ def vtk_blocks(path: Path, **settings: int) -> list[Floats]:
 
 
 @pytest.mark.parametrize("several", [False, True])
-@pytest.mark.parametrize("name", ["plot3d-binary", "plot3d-fortran"])
+@pytest.mark.parametrize("name", ["plot3d:binary", "plot3d:fortran"])
 def test_vtk_reads_what_we_write_without_being_told(name: str, several: bool, tmp_path: Path) -> None:
     grids = [RING, CHANNEL, c_grid()] if several else [CHANNEL]
     writer = format_named(name).write_grids
@@ -194,14 +193,14 @@ def test_vtk_reads_what_we_write_without_being_told(name: str, several: bool, tm
 
 
 def test_vtk_reads_our_text_when_told_its_layout(tmp_path: Path) -> None:
-    writer = format_named("plot3d-ascii").write_grids
+    writer = format_named("plot3d").write_grids
     assert writer is not None
     writer(tmp_path / "g", [RING, CHANNEL])
     seen = vtk_blocks(tmp_path / "g", BinaryFile=0, TwoDimensionalGeometry=1, MultiGrid=1)
     assert np.allclose(seen[1][:, 0], CHANNEL.x.ravel(order="F"), atol=1e-6)
 
 
-@pytest.mark.parametrize("name", ["plot3d-binary", "plot3d-fortran"])
+@pytest.mark.parametrize("name", ["plot3d:binary", "plot3d:fortran"])
 def test_vtk_reads_a_layer(name: str, tmp_path: Path) -> None:
     writer = format_named(name).write_extruded
     assert writer is not None
@@ -214,7 +213,7 @@ def test_vtk_reads_a_layer(name: str, tmp_path: Path) -> None:
 def test_text_keeps_every_bit_of_a_thin_cell(tmp_path: Path) -> None:
     nodes = CHANNEL.nodes.copy()
     nodes[:, 1, 1] = nodes[:, 0, 1] + 2.0**-50
-    writer = format_named("plot3d-ascii").write_grids
+    writer = format_named("plot3d").write_grids
     assert writer is not None
     writer(tmp_path / "g.p3d", [Grid.from_nodes(nodes)])
     (back,) = read_grids(open_source(str(tmp_path / "g.p3d")))

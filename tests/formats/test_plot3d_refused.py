@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from format_shapes import channel, memory
 
-from meshonet.formats.plot3d.read import read_grids
-from meshonet.formats.plot3d.sniff import sniff
+from meshonet.formats.plot3d.read import read_grids, sniff
 from meshonet.formats.registry import format_named
 from meshonet.geometry.errors import InputError
 
@@ -111,9 +110,9 @@ def test_a_block_too_large_for_a_fortran_record_is_refused(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("meshonet.formats.plot3d.write.Block.nodes", 1 << 28)
-    writer = format_named("plot3d-fortran").write_grids
+    writer = format_named("plot3d:fortran").write_grids
     assert writer is not None
     with pytest.raises(
-        InputError, match="2 GiB or more does not fit in a Fortran record; write plot3d-binary"
+        InputError, match="2 GiB or more does not fit in a Fortran record; write it as plot3d:binary"
     ):
         writer(tmp_path / "g", [GRID])

@@ -9,7 +9,7 @@ from format_shapes import channel, memory, ring
 from test_plot3d import File, flat, solid
 
 from meshonet.formats.format import Format
-from meshonet.formats.plot3d.variant import CHOICES, parse_variant
+from meshonet.formats.plot3d import CHOICES
 from meshonet.formats.registry import format_named
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -87,13 +87,13 @@ def test_iblank_that_is_read_is_told_of() -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ("huge", "plot3d: 'huge' is not known; use ascii binary fortran multi"),
-        ("big,little", "plot3d: little and big exclude each other; give one"),
+        ("huge", "'huge' is no option of plot3d files; use ascii binary fortran multi"),
+        ("big,little", "little and big exclude each other; give one"),
     ],
 )
 def test_words_that_make_no_sense_are_refused(words: str, told: str) -> None:
     with pytest.raises(InputError, match=told):
-        parse_variant(words)
+        format_named(f"plot3d:{words}")
 
 
 def test_a_file_that_is_not_as_told_is_refused_with_what_fits() -> None:
@@ -115,5 +115,5 @@ def test_planes_are_not_written(tmp_path: Path) -> None:
 
 
 def test_other_formats_have_no_variants() -> None:
-    with pytest.raises(InputError, match="big: vts files have no variants; leave the words out"):
+    with pytest.raises(InputError, match="big: vts files have no options; leave them out"):
         format_named("vts:big")

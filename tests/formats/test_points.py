@@ -9,6 +9,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 
 SOUTH = np.stack([np.linspace(0, 2, 9), 0.1 * np.sin(np.linspace(0, 3, 9))], axis=1)
@@ -122,6 +123,16 @@ def test_a_round_body_is_no_airfoil():
 def test_what_is_no_shape_is_refused_with_the_line(text, message):
     with pytest.raises(InputError, match=message):
         parse(text, "a.csv")
+
+
+@pytest.mark.parametrize(
+    "text", ["0 0\n2 0\n2 ...\n2 1\n0 1\n", "\n".join(lines(e) for e in (SOUTH, EAST, NORTH, WEST)) + "0.3\n"]
+)
+def test_a_line_that_is_left_out_is_a_note_of_the_boundary(text):
+    shape = parse(text, "a.csv")
+    for sampling in (Sampling(), Sampling(ni=21, nj=11)):
+        (note,) = edges_of(shape, sampling).notes
+        assert "is no pair of numbers and is left out" in note
 
 
 def test_reading_names_the_shape_after_the_file():

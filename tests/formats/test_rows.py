@@ -1,6 +1,6 @@
 import pytest
 
-from meshonet.formats.text.rows import MOST_BYTES, decode, read_lines, table
+from meshonet.formats.text.rows import MOST_BYTES, decode, left_out, read_lines, table
 from meshonet.geometry.errors import InputError
 
 
@@ -49,15 +49,20 @@ def test_numbers_are_read_as_people_write_them(text, values):
         ("# 1 2", "text"),
         ("0.99 -0.01 -> 0.99 -0.02", "text"),
         ("1.0 ......", "gap"),
-        ("1.0 ****", "gap"),
         ("0.5 0.06 thickest", "noted"),
-        ("0.5 O.06", "broken"),
         ("0.5", "broken"),
-        ("nan 0.1", "broken"),
-        ("0.5 nan", "broken"),
-        ("0.5 1e999", "broken"),
-        ("1e308 1e308", "broken"),
-        ("1_0 2_0", "text"),
+        ("2032 section", "broken"),
+        ("3x 0.05", "broken"),
+        ("x.1 y.1", "text"),
+        ("Inc. 0.5", "text"),
+        ("1.0 ****", "damaged"),
+        ("0.5 O.06", "damaged"),
+        ("nan 0.1", "damaged"),
+        ("0.5 nan", "damaged"),
+        ("0.5 1e999", "damaged"),
+        ("1e308 1e308", "damaged"),
+        ("1_0 2_0", "damaged"),
+        ("1.0 0.5 nan", "damaged"),
     ],
 )
 def test_what_is_no_row_is_told_apart(text, kind):
@@ -84,6 +89,36 @@ def test_a_remark_behind_numbers_counts_beside_rows_only():
         line.number for block in table(read_lines("1 2 first\n3 4\n\nsee 5 6\n7 8 pages\n")) for line in block
     ]
     assert rows == [1, 2]
+
+
+DAMAGED = (
+    "1.000000 nan",
+    "inf 0.000000",
+    "1.000000 ********",
+    "1e400 0.0",
+    "1.0 O.O0",
+    "1.0 0.0_00",
+    "0.3x 0.05",
+)
+
+
+@pytest.mark.parametrize("row", DAMAGED)
+@pytest.mark.parametrize("between", ["", "\n", "1.0 ...\n", "1e999 0\n"])
+def test_a_row_that_cannot_be_read_is_refused_wherever_it_stands_beside_rows(row, between):
+    good = "0.9 0.01\n0.8 0.02\n0.7 0.03\n"
+    lines = {f"name\n{row}\n{between}{good}": 2, f"{good}{row}\n{between}{good}": 4, f"{good}{row}\n": 4}
+    for text, number in lines.items():
+        with pytest.raises(InputError, match=f"line {number}: .* is no pair of numbers; correct or remove"):
+            table(read_lines(text))
+
+
+def test_a_damaged_row_in_prose_does_not_matter_and_a_line_without_a_second_number_is_named():
+    lines = read_lines("1.0 nan\nabout\n1 2\n3 4\n5 ...\n6 7\n0.5\n\n0.5\n")
+    assert sum(map(len, table(lines))) == 3
+    assert left_out(lines) == (
+        "line 5, '5 ...', is no pair of numbers and is left out",
+        "line 7, '0.5', is no pair of numbers and is left out",
+    )
 
 
 def test_a_broken_line_among_rows_is_refused_with_its_number():

@@ -8,14 +8,14 @@ import pytest
 from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.mesh.unstructured import unstructured
-from meshonet.formats.su2.write import write_extruded, write_grids
+from meshonet.formats.su2 import write_extruded, write_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
 MARKERS = {
     "quad": {"no-slip_wall": 3, "south": 3, "out_let": 4, "north": 6, "inlet": 4},
     "o": {"airfoil": 12, "far": 12},
-    "c": {"wall": 8, "farfield": 14 + 3 + 3},
+    "c": {"plate": 8, "far_side": 14 + 3 + 3},
 }
 
 

@@ -11,14 +11,17 @@ from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.registry import format_named
 from meshonet.geometry.blocks.grid import Grid
 
+NEW = ("avs", "tec", "mdpa", "med", "vol", "xdmf")
+
 
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
-@pytest.mark.parametrize("name", ["stl", "ply", "obj", "off", "abaqus", "medit"])
+@pytest.mark.parametrize("name", ["stl", "ply", "obj", "off", "abaqus", "medit", *NEW])
 def test_the_cells_cover_the_grid(
     name: str, make: type[Grid], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     grid, record = make(), format_named(name)
-    path = tmp_path / f"g{record.suffixes[0]}"
+    suffix = next(suffix for suffix, kind in record.suffix_options.items() if f"meshio:{kind}" == record.name)
+    path = tmp_path / f"g{suffix}"
     assert record.write_grids is not None
     record.write_grids(path, [grid])
     assert capsys.readouterr() == ("", "")

@@ -50,5 +50,5 @@ def test_parts_keep_their_names_and_what_has_none_is_called_by_its_side() -> Non
 def test_the_cut_and_the_wake_belong_to_no_part() -> None:
     assert set(unstructured(ring()).edges) == {"airfoil", "far"}
     edges = unstructured(c_grid()).edges
-    assert set(edges) == {"wall", "farfield"}
-    assert len(edges["wall"]) == 8
+    assert set(edges) == {"plate", "far side"}
+    assert len(edges["plate"]) == 8

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from format_shapes import memory
 
-from meshonet.formats.outlines.vector import read_geojson, read_wkt, sniff_geojson, sniff_wkt
+from meshonet.formats.outlines import is_geojson, is_wkt
+from meshonet.formats.outlines.vector import read_geojson, read_wkt
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -79,10 +80,10 @@ def test_geojson_features_are_called_by_their_name() -> None:
 
 
 def test_files_are_known_by_their_start() -> None:
-    assert sniff_wkt(b"\n  Polygon ((0 0")
-    assert not sniff_wkt(b"POLYGONAL AIRFOIL\n1 0")
-    assert sniff_geojson(b' {"type": "Feature"')
-    assert not sniff_geojson(b"{}")
+    assert is_wkt(b"\n  Polygon ((0 0")
+    assert not is_wkt(b"POLYGONAL AIRFOIL\n1 0")
+    assert is_geojson(b' {"type": "Feature"')
+    assert not is_geojson(b"{}")
 
 
 ASK = "give a POLYGON or a closed LINESTRING"

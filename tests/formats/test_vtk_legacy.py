@@ -10,8 +10,7 @@ from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from meshonet.formats.source import open_source
-from meshonet.formats.vtk.legacy import write
-from meshonet.formats.vtk.legacy_read import read_grids
+from meshonet.formats.vtk.legacy import read_grids, write
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 

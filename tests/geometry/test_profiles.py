@@ -6,7 +6,14 @@ import pytest
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.quality.measure import measure
-from meshonet.geometry.quality.profiles import PROFILES, Checked, Figures, Judgement, Limit, judge
+from meshonet.geometry.quality.profiles import (
+    PROFILES,
+    CheckResult,
+    Figures,
+    Limit,
+    ProfileReport,
+    profile_report,
+)
 
 
 def oblique(slope: float, stretch: float = 1.0) -> Grid:
@@ -14,16 +21,16 @@ def oblique(slope: float, stretch: float = 1.0) -> Grid:
     return Grid.from_nodes(np.stack([x + slope * y / stretch, y], axis=-1))
 
 
-def judged(grid: Grid, profile: str, *walls: Patch) -> Judgement:
-    return judge(Figures(grid, measure(grid), walls), profile)
+def judged(grid: Grid, profile: str, *walls: Patch) -> ProfileReport:
+    return profile_report(Figures(grid, measure(grid), walls), profile)
 
 
-def verdicts(judgement: Judgement) -> dict[str, str]:
-    return {checked.check.figure: checked.verdict for checked in judgement.checked}
+def verdicts(judgement: ProfileReport) -> dict[str, str]:
+    return {checked.check.figure: checked.verdict for checked in judgement.results}
 
 
-def found(judgement: Judgement, figure: str) -> Checked:
-    return next(checked for checked in judgement.checked if checked.check.figure == figure)
+def found(judgement: ProfileReport, figure: str) -> CheckResult:
+    return next(checked for checked in judgement.results if checked.check.figure == figure)
 
 
 @pytest.mark.parametrize("profile", PROFILES)

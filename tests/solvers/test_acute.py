@@ -8,9 +8,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
 
 
 def spike(degrees: float, n: int) -> Boundary:

@@ -7,7 +7,8 @@ from solver_shapes import arch, folded, hole
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.pipeline.select import solve_automatic
+from meshonet.solvers.method import Each
+from meshonet.solvers.pipeline.select import fewer_on_quads
 from meshonet.solvers.solution import Solution
 
 
@@ -37,7 +38,7 @@ def spied(seen: list[tuple[int, int]]) -> Callable[[Boundary], Solution]:
 )
 def test_large_quads_take_fewer_nodes_and_more_where_those_fold(make, counts, name, expected) -> None:  # type: ignore[no-untyped-def]
     seen: list[tuple[int, int]] = []
-    solution = solve_automatic(make(*counts), spied(seen), name)
+    (solution,) = fewer_on_quads(Each(name, spied(seen))).solve([make(*counts)])
     assert seen == expected
     assert solution.grid.nodes.shape[:2] == counts
     if len(expected) == 2:

@@ -76,13 +76,6 @@ def test_gradients_are_those_of_finite_differences(model: str) -> None:
     assert found == pytest.approx(expected, rel=1e-6)
 
 
-def test_the_pages_example_finds_the_place_of_a_hole(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (Path(__file__).parents[2] / "docs" / "body-operator.md").read_text()
-    exec(page.split("```python\n")[1].split("```")[0], {})  # noqa: S102 - our own page
-    found = [float(word) for word in capsys.readouterr().out.strip("[]\n").split(",")]
-    assert found == pytest.approx([0.1, -0.2], abs=1e-3)
-
-
 def test_single_precision_is_near_double() -> None:
     given = walls(bodies(65, 33))
     found = BodyGrids(dtype=torch.float32)(*(edge.float() for edge in given), 33)

@@ -11,9 +11,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import measure
+from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.pipeline.coarse import divided, evaluate, solve_coarse, thinned
+from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
 

@@ -6,8 +6,8 @@ from scipy.interpolate import CubicSpline
 from solver_shapes import circle, folded, polyline, ring
 
 from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.algebraic.resample.o_grid import evaluate_around
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
 
 
 def rings(radii: Floats, ni: int) -> Floats:

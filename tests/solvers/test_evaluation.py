@@ -6,10 +6,10 @@ from random_quads import random_quad
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.resample.quad import evaluate, mended
 from meshonet.solvers.energy.variational import solve
 from meshonet.solvers.neural.quads.edges import Edges, rims
-from meshonet.solvers.pipeline.coarse import thinned
 
 
 def planes(nodes: Floats) -> Floats:

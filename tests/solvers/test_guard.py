@@ -22,9 +22,11 @@ from solver_shapes import (
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import NoValidGridError
+from meshonet.solvers.algebraic.tfi import solve as interpolate
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.pipeline.fallback import guard
+from meshonet.solvers.solution import Outcome, Solution
 
 
 def cusp(ni: int, nj: int) -> Boundary:
@@ -41,32 +43,33 @@ SHAPES = [arch, hexagon, wrench, l_shape, horseshoe, spike, hole, naca, cusp]
 
 @pytest.mark.parametrize("make", SHAPES)
 @pytest.mark.parametrize("n", [40, 100])
-@pytest.mark.parametrize("start", [tfi, lambda b: solve(b).grid], ids=["tfi", "winslow"])
+@pytest.mark.parametrize("start", [interpolate, solve], ids=["tfi", "winslow"])
 def test_every_shape_ends_valid_inside_its_boundary(make, n: int, start) -> None:  # type: ignore[no-untyped-def]
     boundary = make(n, n)
-    grid, path = guard(start(boundary), boundary)
+    made = guard(start(boundary), boundary)
+    grid, path = made.grid, made.path
     assert folded(grid.nodes) == 0
     assert set(path) <= {"repair", "winslow", "tfi"}
     assert np.array_equal(grid.nodes[:, 0], boundary.south)
     assert np.array_equal(grid.nodes[:, -1], boundary.north)
 
 
-@pytest.mark.parametrize("make", [tfi, lambda b: solve(b).grid], ids=["tfi", "winslow"])
+@pytest.mark.parametrize("make", [interpolate, solve], ids=["tfi", "winslow"])
 def test_the_seamount_on_which_elliptic_grids_fold_elsewhere_is_valid(make) -> None:  # type: ignore[no-untyped-def]
     boundary = seamount()
-    grid, _ = guard(make(boundary), boundary)
-    assert folded(grid.nodes) == 0
+    assert folded(guard(make(boundary), boundary).grid.nodes) == 0
 
 
 def test_a_valid_grid_comes_back_itself() -> None:
     boundary = arch(30, 20)
-    grid = tfi(boundary)
-    assert guard(grid, boundary) == (grid, ())
+    solution = interpolate(boundary)
+    assert guard(solution, boundary) is solution
 
 
 def test_a_repaired_grid_says_so_and_keeps_its_names() -> None:
     boundary = wrench(60, 60)
-    grid, path = guard(solve(boundary).grid, boundary)
+    made = guard(solve(boundary), boundary)
+    grid, path = made.grid, made.path
     assert path == ("repair",)
     assert grid.provenance["path"] == ("repair",)
     assert (grid.name, grid.patches) == ("wrench", boundary.patches)
@@ -77,7 +80,8 @@ def test_a_grid_beyond_repair_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> N
     boundary = arch(30, 20)
     nodes = tfi(boundary).nodes.copy()
     nodes[1:-1, 1:-1] = nodes[-2:0:-1, 1:-1]
-    grid, path = guard(Grid.from_nodes(nodes), boundary)
+    made = guard(Solution(Grid.from_nodes(nodes), "tfi"), boundary)
+    grid, path = made.grid, made.path
     assert folded(grid.nodes) == 0
     assert path in {("winslow",), ("tfi",)}
 
@@ -93,16 +97,16 @@ def test_an_impossible_corner_is_named_at_once() -> None:
     with pytest.raises(
         NoValidGridError, match=r"corner at \(0.6, 0.4\) opens by 180 degrees or more; choose other corners"
     ):
-        guard(tfi(boundary), boundary)
+        guard(interpolate(boundary), boundary)
 
 
 def test_failure_counts_and_places_the_worst_cells(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("meshonet.solvers.energy.repair.repair", lambda nodes, *_: folded(nodes))
     boundary = wrench(60, 60)
     with pytest.raises(
-        NoValidGridError, match=r"\d+ of 3481 cells stay folded after repair, winslow and tfi; use more"
+        NoValidGridError, match=r"\d+ of 3481 cells stay folded after repair, then tfi; use more"
     ) as caught:
-        guard(solve(boundary).grid, boundary)
+        guard(solve(boundary), boundary)
     assert 0 < len(caught.value.worst) <= 10
     least = min(folded(solve(boundary).grid.nodes), folded(tfi(boundary).nodes))
     assert str(caught.value).startswith(f"{least} of")  # those of the best try
@@ -110,12 +114,12 @@ def test_failure_counts_and_places_the_worst_cells(monkeypatch: pytest.MonkeyPat
 
 def test_winslows_equations_are_not_solved_again_for_their_own_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     boundary = wrench(60, 60)
-    grid, asked = solve(boundary).grid, []
+    solution, asked = solve(boundary), []
     monkeypatch.setattr("meshonet.solvers.energy.repair.repair", lambda nodes, *_: folded(nodes))
     monkeypatch.setattr(
         "meshonet.solvers.elliptic.solve.solve", lambda *_, **__: asked.append(1) or solve(boundary)
     )
-    for made, times in ((grid, 0), (tfi(boundary), 1)):
+    for made, times in ((solution, 0), (interpolate(boundary), 1)):
         asked.clear()
         guard(made, boundary, allow_invalid=True)
         assert len(asked) == times
@@ -123,5 +127,6 @@ def test_winslows_equations_are_not_solved_again_for_their_own_grid(monkeypatch:
 
 def test_an_invalid_grid_may_be_asked_for() -> None:
     boundary = inside_out(20, 20)
-    grid = tfi(boundary)
-    assert guard(grid, boundary, allow_invalid=True) == (grid, ())
+    made = guard(interpolate(boundary), boundary, allow_invalid=True)
+    assert (made.path, made.outcome) == ((), Outcome.FOLDED)
+    np.testing.assert_array_equal(made.grid.nodes, tfi(boundary).nodes)

@@ -144,8 +144,8 @@ def test_three_nodes_are_enough_two_rows_are_not() -> None:
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        ({"wall_spacing": 0.0}, "a wall spacing of 0 chords; use 1e-9 to 0.1"),
-        ({"wall_spacing": float("nan")}, "a wall spacing of nan chords; use 1e-9 to 0.1"),
+        ({"wall_spacing": 0.0}, "a first cell of 0 chords; use 1e-9 to 0.1"),
+        ({"wall_spacing": float("nan")}, "a first cell of nan chords; use 1e-9 to 0.1"),
         (
             {"wall_spacing": 1e-5, "growth": 0.2},
             "a growth of 0.2; give the ratio of neighbouring cells, such as",
@@ -226,7 +226,8 @@ def test_bodies_that_are_no_airfoils_get_valid_grids(name: str, height: float) -
     boundary = Outline(BODIES[name]).boundary(Sampling(241, 100, topology="o"))
     solution = hyperbolic(boundary, wall_spacing=height)
     assert solution.boundary is not None
-    grid, path = guard(solution.grid, solution.boundary)
+    made = guard(solution, boundary)
+    grid, path = made.grid, made.path
     assert count_folded(grid.nodes) == 0
     np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
     if not path:
@@ -242,7 +243,8 @@ def test_folded_cells_of_a_march_are_repaired_by_the_guard(topology: Topology) -
     folded = solution.grid.with_nodes(nodes)
     assert count_folded(nodes) > 0
     assert solution.boundary is not None
-    grid, path = guard(folded, solution.boundary)
+    made = guard(replace(solution, grid=folded), boundary)
+    grid, path = made.grid, made.path
     assert path == ("repair",)
     assert count_folded(grid.nodes) == 0
     np.testing.assert_array_equal(grid.nodes[:, 0], boundary.south)
@@ -255,7 +257,9 @@ def test_airfoils_are_marched_once(
 ) -> None:
     """The distance to march is known so well that no second march has to correct it."""
     marches = []
-    monkeypatch.setattr(module, "hyperbolic_march", lambda *args: (marches.append(1), hyperbolic_march(*args)))
+    monkeypatch.setattr(
+        module, "hyperbolic_march", lambda *args: (marches.append(1), hyperbolic_march(*args))
+    )
     wall = naca("2412").boundary(Sampling(ni, nj, topology, "curvature", te="wedge"))
     hyperbolic(wall, wall_spacing=height)
     assert len(marches) == 1

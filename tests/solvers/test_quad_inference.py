@@ -14,6 +14,7 @@ from solver_shapes import arch, hexagon, ring, segment, wrench
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.quads import operator
@@ -21,7 +22,6 @@ from meshonet.solvers.neural.quads.edges import Edges
 from meshonet.solvers.neural.quads.inference import infer_quads
 from meshonet.solvers.neural.quads.model import load_quads
 from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER
-from meshonet.solvers.pipeline.coarse import evaluate, thinned
 
 SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
 

@@ -8,9 +8,9 @@ import pytest
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_unasked
-from meshonet.solvers.pipeline.select import solve_automatic
+from meshonet.solvers.method import method_named
+from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 
 
 @pytest.mark.parametrize(("section", "te"), [("0012", "wedge"), ("4415", "wedge"), ("23012", "wedge")])
@@ -53,8 +53,8 @@ def test_given_far_fields_and_very_few_rows_are_left_to_the_variational_method()
     few = naca("0012").boundary(Sampling(100, 30, "c"))
     for one in given, few:
         assert march_unasked(one) is None
-        found = solve_automatic(one, solve, "auto")
+        found = elliptic().solve([one])[0]
         assert found.method == "variational"
         np.testing.assert_array_equal(found.grid.nodes[:, -1], one.north)
-    assert solve_automatic(boundary, solve, "auto").method == "hyperbolic"
-    assert solve_automatic(boundary, solve, "winslow").method == "winslow"
+    assert elliptic().solve([boundary])[0].method == "hyperbolic"
+    assert fewer_on_quads(method_named("winslow")).solve([boundary])[0].method == "winslow"

@@ -28,6 +28,7 @@ from meshonet.geometry.families.bodies import boundary as random_body
 from meshonet.geometry.quality.measure import Summary, measure
 from meshonet.geometry.shapes.airfoil.naca import naca as naca_section
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy import descent as descent_module
@@ -38,7 +39,7 @@ from meshonet.solvers.energy.local_descent import unfold
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.pipeline.coarse import solve_coarse, thinned
+from meshonet.solvers.pipeline.coarse import solve_coarse
 
 
 def angle(nodes: Floats) -> Summary:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.resample import grids as resample
 from meshonet.solvers.algebraic.resample.spline import between
 from meshonet.solvers.neural.quads.encoding import LATENT, SCALE, WINSLOW
 from meshonet.solvers.neural.quads.features import features
@@ -28,7 +29,6 @@ from meshonet.solvers.neural.quads.model import QuadModel
 from meshonet.solvers.neural.quads.network import CHUNK
 from meshonet.solvers.neural.quads.picard import AFTER, approached
 from meshonet.solvers.neural.quads.unrolled import AROUND, TURN, even, factors, middles, rolled, unrolled
-from meshonet.solvers.pipeline import coarse
 
 COMPACT = 0.15
 """Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""
@@ -101,7 +101,7 @@ def compact(boundary: Boundary) -> bool:
 def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
     """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
     pairs = zip(grids, boundaries, strict=True)
-    nodes = [coarse.evaluate(np.moveaxis(one, 0, -1), boundary) for one, boundary in pairs]
+    nodes = [resample.evaluate(np.moveaxis(one, 0, -1), boundary) for one, boundary in pairs]
     return np.stack([np.moveaxis(one, -1, 0) for one in nodes])
 
 

@@ -14,6 +14,7 @@ from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.neural.operator import Polish
 from meshonet.solvers.neural.quads import around
 from meshonet.solvers.neural.quads.canonical_frame import OwnFrame
@@ -23,7 +24,6 @@ from meshonet.solvers.neural.quads.encoding import WINSLOW
 from meshonet.solvers.neural.quads.model import ANSWERS, ANSWERS_AROUND, QuadModel, head_of, load_quads
 from meshonet.solvers.neural.quads.operator import coarse_grids, evaluate, in_batches
 from meshonet.solvers.neural.weights import model_path
-from meshonet.solvers.pipeline.coarse import thinned
 from meshonet.solvers.solution import Solution
 
 Counts: TypeAlias = tuple[int, int]

@@ -1,0 +1,128 @@
+"""From one format to another: what happens to a grid on its way, and what is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshonet.formats.format import Heights
+from meshonet.formats.mesh.recover_topology import LARGEST
+from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
+from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.coarsen import coarser_grid
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.normalise import normalised
+from meshonet.geometry.blocks.rotate import turned
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.sampling import Sampling
+
+
+@dataclass(frozen=True)
+class Conversion:
+    """What happens to a grid or boundary on its way.
+
+    Parameters
+    ----------
+    extrude : height in z that a 3D grid gets; None leaves grids flat.
+    planes : planes of nodes in z; None stands for two.
+    swap : have xi run along the sides that eta ran along.
+    normalise : scale to unit chord or unit length.
+    coarsen : keep every so many-th node.
+    """
+
+    extrude: float | None = None
+    planes: int | None = None
+    swap: bool = False
+    normalise: bool = False
+    coarsen: int = 1
+
+    def heights(self) -> Heights:
+        """Return z of each plane, none for a flat grid.
+
+        Raises
+        ------
+        InputError
+            a height that is not positive, planes without a height.
+        """
+        if self.extrude is None:
+            if self.planes is not None:
+                raise InputError("there is no height", "give {extrude} as well", parameter="planes")
+            return ()
+        if not 0 < self.extrude < LARGEST:
+            raise InputError(f"height {self.extrude:g} is not positive", "use e.g. 1", parameter="extrude")
+        planes = self.planes or 2
+        return tuple(self.extrude * k / (planes - 1) for k in range(planes))
+
+    def __call__(self, grid: Grid | Boundary) -> Grid | Boundary:
+        """Return a grid coarsened, swapped and normalised; a boundary is sampled so already."""
+        if isinstance(grid, Boundary):
+            return grid
+        grid = coarser_grid(grid, self.coarsen) if self.coarsen > 1 else grid
+        grid = turned(grid) if self.swap else grid
+        return normalised(grid) if self.normalise else grid
+
+    def read(self, source: str, fmt: str | None, *, boundaries: bool) -> Iterator[Grid | Boundary]:
+        """Yield what `source` holds: its boundaries, or its grids."""
+        if not boundaries:
+            return read_grids(source, fmt)
+        sampling = Sampling(normalise=self.normalise)
+        return (shape.boundary(sampling) for shape in read_shapes(source, fmt))
+
+    def of_boundaries(self, source: str, output: str, from_format: str | None, to_format: str | None) -> bool:
+        """Say whether boundaries are written: nothing changes grids, and one of the files holds no grids."""
+        if self.heights() or self.swap or self.coarsen > 1:
+            return False
+        try:
+            written = format_for_output(output, to_format, "boundaries")
+        except InputError:
+            return False
+        if written.write_grids is None:
+            return True
+        return source != "-" and format_of(open_source(source), from_format).read_grids is None
+
+    def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
+        """Return what writes grids extruded to `output`, None for flat ones.
+
+        Raises
+        ------
+        InputError
+            the format holds flat grids only.
+        """
+        heights = self.heights()
+        if not heights:
+            return None
+        found = format_for_output(output, to_format)
+        write = found.write_extruded
+        if write is None:
+            able = ", ".join(each.name for each in formats() if each.write_extruded is not None)
+            raise InputError(f"{found.name} holds flat grids only", f"write one of {able}", source=output)
+        return lambda path, grids: write(path, grids, heights)
+
+
+def plot3d_variant(
+    words: str | None, output: str, from_format: str | None, to_format: str | None
+) -> tuple[str | None, str | None]:
+    """Return the formats to read and write, the Plot3D file among them in the variant of `words`.
+
+    Raises
+    ------
+    InputError
+        words that are not known, or no file in Plot3D.
+    """
+    if words is None:
+        return from_format, to_format
+    written = format_for_output(output, to_format).name if to_format or Path(output).suffix else ""
+    if written.startswith("plot3d"):
+        return from_format, f"{written}:{words}"
+    return f"{from_format or 'plot3d'}:{words}", to_format
+
+
+def unused_iblank(grid: Grid | Boundary) -> str | None:
+    """Return a note on nodes that an iblank array takes out of use or gives a meaning, which is not kept."""
+    counts = grid.provenance.get("iblank") if isinstance(grid, Grid) else None
+    marked = [f"{count} with {value}" for value, count in (counts or {}).items() if value != "1"]
+    if not marked:
+        return None
+    return f"iblank marks nodes ({', '.join(marked[:5])}); they are kept as ordinary ones"

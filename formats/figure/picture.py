@@ -1,0 +1,73 @@
+"""A grid drawn to a file, its cells coloured by a quality metric."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshonet.formats.format import Format, only_one
+from meshonet.formats.registry import format_for_output
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import per_cell
+from meshonet.geometry.quality.metrics import METRICS, NAMES
+
+KINDS = ("png", "svg", "pdf")
+
+
+@dataclass(frozen=True)
+class Picture:
+    """How a grid is drawn.
+
+    Parameters
+    ----------
+    metric : colours the cells; None draws lines only.
+    zoom : x0, x1, y0, y1 of the part to show; None shows all.
+    every : draw every so many-th grid line; None chooses by the resolution of the picture.
+
+    Raises
+    ------
+    InputError
+        a metric that is not known; a box without extent.
+    """
+
+    metric: str | None = "max_angle"
+    zoom: tuple[float, float, float, float] | None = None
+    every: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.metric not in (*NAMES, None):
+            known = "use none or one of " + ", ".join(NAMES)
+            raise InputError(f"metric {self.metric!r} is not known", known, parameter="metric")
+        if self.zoom is not None and not (self.zoom[0] < self.zoom[1] and self.zoom[2] < self.zoom[3]):
+            box = ",".join(f"{value:g}" for value in self.zoom)
+            remedy = "use x0,x1,y0,y1 with x0 < x1 and y0 < y1, e.g. 0.9,1.1,-0.1,0.1"
+            raise InputError(f"{box!r} is not a box", remedy, parameter="zoom")
+
+    def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
+        """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""
+        from meshonet.formats.figure.figure import Colouring, write
+
+        grid = only_one(grids, "a picture")
+        colouring = None
+        for metric in METRICS:
+            if metric.name == self.metric:
+                label = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
+                values = per_cell(grid, metric.name)
+                colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
+        write(path, grid, kind, colouring, self.zoom, self.every)
+
+
+def picture_format(output: str, to_format: str | None = None) -> Format:
+    """Return the format of a picture by the ending of `output`; standard output (``-``) is a ``png``.
+
+    Raises
+    ------
+    InputError
+        `output` is no picture.
+    """
+    found = format_for_output(output, to_format or ("png" if output == "-" else None))
+    if found.name not in KINDS:
+        raise InputError(f"{found.name} is no picture", "use .png, .svg or .pdf", source=output)
+    return found

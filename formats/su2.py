@@ -1,0 +1,205 @@
+"""SU2's own mesh, ``.su2``: merged seams, counter-clockwise cells, a marker for every patch.
+
+Written as text with 17 significant digits, nodes counted from 0; markers are words
+(`meshonet.formats.mesh.names`), since configuration files list them by name. Of a mesh that is read, points,
+cells and the lines of the markers make boundaries. https://su2code.github.io/docs_v7/Mesh-File/
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.mesh.names import words
+from meshonet.formats.mesh.surface import Surface, shapes_of
+from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
+from meshonet.formats.source import Source, printable
+from meshonet.formats.text.number_table import parsed, write_rows
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.shape import Shape
+
+_LINE, _QUADRILATERAL, _HEXAHEDRON = 3, 9, 12  # VTK's numbers
+_NODES = {b"3": 2, b"5": 3, b"9": 4}
+"""Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""
+_CUT = "the file is cut short: write it again"
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`: quadrilaterals, and lines under the names of its parts."""
+    mesh = unstructured(only_one(grids, "a .su2 file"))
+    _write(path, mesh.points, (_QUADRILATERAL, mesh.quads), (_LINE, mesh.edges))
+
+
+def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+    """Write the one grid of `grids` repeated in z, the outer planes as markers ``back`` and ``front``."""
+    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .su2 file")), heights)
+    _write(path, points, (_HEXAHEDRON, hexahedra), (_QUADRILATERAL, faces))
+
+
+def _write(
+    path: Path, points: Floats, cells: tuple[int, Indices], markers: tuple[int, Mapping[str, Indices]]
+) -> None:
+    """Write points (n, 2 or 3), the cells (kind, nodes) and the markers (kind, nodes by name)."""
+    kind, nodes = cells
+    marker_kind, parts = markers
+    with path.open("wb") as stream:
+        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(nodes)}\n".encode("ascii"))
+        write_rows(stream, _row(kind, nodes), nodes)
+        stream.write(f"NPOIN= {len(points)}\n".encode("ascii"))
+        write_rows(stream, " ".join(["%e"] * points.shape[1]), points)
+        stream.write(f"NMARK= {len(parts)}\n".encode("ascii"))
+        for name, word in words(parts).items():
+            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(parts[name])}\n".encode("ascii"))
+            write_rows(stream, _row(marker_kind, parts[name]), parts[name])
+
+
+def _row(kind: int, nodes: Indices) -> str:
+    return " ".join([str(kind), *["%d"] * nodes.shape[1]])
+
+
+def read_shapes(source: Source) -> Iterator[Shape]:
+    """Yield the shapes that the markers of a mesh enclose.
+
+    Raises
+    ------
+    InputError
+        no such mesh, one of three dimensions, markers that are no closed curves.
+    """
+    yield from shapes_of(_Reader(source.read_bytes().split(b"\n")).surface(), source.stem)
+
+
+def sniff(head: bytes) -> bool:
+    """Say whether `head` is of an SU2 mesh."""
+    return b"NDIME" in head[:4096] and b"=" in head[:4096]
+
+
+class _Reader:
+    """The lines of a mesh, keyword by keyword.
+
+    Parameters
+    ----------
+    lines : of the whole file.
+    """
+
+    def __init__(self, lines: list[bytes]) -> None:
+        self._lines, self._at = lines, 0
+        self._points: Floats | None = None
+        self._cells: dict[int, Indices] = {}
+        self._edges: dict[str, Indices] = {}
+        self._tag = ""
+
+    def surface(self) -> Surface:
+        """Return what the file says."""
+        while self._at < len(self._lines):
+            word = self._lines[self._at].split(b"%", 1)[0].strip()
+            self._at += 1
+            if not word:
+                continue
+            key, equals, value = word.partition(b"=")
+            if not equals:
+                raise self._wrong(f"{_told(word)!r} is no KEYWORD= VALUE", "give an SU2 mesh")
+            self._take(key.strip().upper(), value.strip())
+        if self._points is None:
+            raise InputError("has no points", _CUT)
+        cells = [self._cells[nodes] for nodes in sorted(self._cells) if nodes != 2]
+        return Surface(self._points, self._edges, cells)
+
+    def _take(self, key: bytes, value: bytes) -> None:
+        if key == b"NDIME" and self._count(value) != 2:
+            raise self._wrong(f"is a mesh of {_told(value)} dimensions", "give one of 2")
+        if key == b"NZONE" and self._count(value) != 1:
+            raise self._wrong(f"has {_told(value)} zones", "give a mesh of one zone")
+        if key == b"NELEM":
+            self._cells = self._elements(self._count(value))
+        elif key == b"NPOIN":
+            rows = self._rows(self._count(value.split()[0] if value else b""))
+            if rows.shape[1] not in (2, 3):
+                raise self._wrong(
+                    f"points have {rows.shape[1]} numbers", "a plane mesh has x, y and a number"
+                )
+            self._points = np.ascontiguousarray(rows[:, :2])
+        elif key == b"MARKER_TAG":
+            self._tag = printable(value.decode("utf-8", "replace"))[:200] or "part"
+        elif key == b"MARKER_ELEMS":
+            lines = self._elements(self._count(value)).get(2)
+            if lines is not None:
+                had = self._edges.get(self._tag, np.empty((0, 2), np.int64))
+                self._edges[self._tag] = np.concatenate([had, lines])
+
+    def _elements(self, count: int) -> dict[int, Indices]:
+        """Return node numbers by how many nodes a cell has."""
+        if count == 0:
+            return {}
+        first = self._lines[self._at].split(None, 1) if self._at < len(self._lines) else []
+        kinds = {line.split(None, 1)[0] if line.strip() else b"" for line in self._ahead(count)}
+        if not kinds <= set(_NODES):
+            if b"" in kinds:
+                raise self._wrong(f"an empty line among the next {count}, which should be cells", _CUT)
+            told = ", ".join(_told(kind) for kind in sorted(kinds - set(_NODES)))
+            raise self._wrong(f"has cells of kind {told}"[:80], "a plane mesh has lines, triangles and quads")
+        if len(kinds) == 1:
+            nodes = _NODES[first[0]]
+            return {nodes: self._indices(self._rows(count), nodes)}
+        found: dict[int, list[Indices]] = {}
+        for _ in range(count):
+            nodes = _NODES[self._lines[self._at].split(None, 1)[0]]
+            found.setdefault(nodes, []).append(self._indices(self._rows(1), nodes))
+        return {nodes: np.concatenate(rows) for nodes, rows in found.items()}
+
+    def _indices(self, rows: Floats, nodes: int) -> Indices:
+        if rows.shape[1] not in (nodes + 1, nodes + 2):
+            raise self._wrong(
+                f"cells have {rows.shape[1]} numbers", f"write kind, {nodes} points and a number"
+            )
+        if not (np.abs(rows) < 2**53).all():
+            raise self._wrong("a cell names no point", "write the mesh again")
+        return rows[:, 1 : nodes + 1].astype(np.int64)
+
+    def _ahead(self, count: int) -> list[bytes]:
+        if count > len(self._lines) - self._at:
+            left = len(self._lines) - self._at
+            raise self._wrong(f"should have {count} more lines and has {left}", _CUT)
+        return self._lines[self._at : self._at + count]
+
+    def _rows(self, count: int) -> Floats:
+        """Return the numbers (count, m) of the next lines, which have equally many."""
+        lines = self._ahead(count)
+        values = parsed(b"\n".join(lines))
+        width = len(lines[0].split()) if lines else 2
+        self._at += count
+        if values is None or values.size != count * width or not width:
+            raise self._wrong(
+                "a line before this one has a word that is no number, or another count", "write it again"
+            )
+        return values.reshape(count, width)
+
+    def _count(self, word: bytes) -> int:
+        if not word.isdigit() or len(word) > 12:
+            raise self._wrong(f"{_told(word)!r} is no count", "write a whole number")
+        return int(word)
+
+    def _wrong(self, problem: str, remedy: str) -> InputError:
+        return InputError(problem, remedy, place=f"line {self._at}")
+
+
+def _told(word: bytes) -> str:
+    return printable(word[:40].decode("utf-8", "replace"))
+
+
+FORMATS = (
+    Format(
+        name="su2",
+        suffixes=(".su2",),
+        description="SU2 mesh, text, patches as markers; read as a boundary",
+        write_grids=write_grids,
+        write_extruded=write_extruded,
+        read_shapes=read_shapes,
+        sniff=sniff,
+        names_patches=True,
+    ),
+)

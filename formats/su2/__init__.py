@@ -1,1 +1,0 @@
-"""SU2's own mesh format."""

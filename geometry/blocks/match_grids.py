@@ -1,0 +1,73 @@
+"""Which grid of one set belongs to which of another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import repeat
+from typing import Literal, TypeAlias
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+Pairing: TypeAlias = Literal["auto", "name", "order"]
+
+
+class GridMatcher:
+    """Finds for each of many grids the one it belongs to in a reference set.
+
+    Parameters
+    ----------
+    grids : the set, read as far as is needed: a set in the same order as the grids is not kept in memory.
+    pairing : by ``name``, by ``order``, or ``auto``: a single grid serves all; several are matched by name
+        when they have different names and that of the first grid is among them, else by order.
+    """
+
+    def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
+        self._grids = grids
+        self._pairing = pairing
+        self._passed: list[Grid] = []
+
+    def match(self, name: str) -> Grid:
+        """Return the grid that belongs to the one called `name`, or to the next one.
+
+        Raises
+        ------
+        InputError
+            there is none.
+        """
+        if self._pairing == "auto":
+            self._pairing = self._decided(name)
+        grid = self._named(name) if self._pairing == "name" else self._following()
+        if grid is None:
+            remedy = "compare with one grid, or with as many"
+            if self._pairing == "name":
+                remedy = f"compare with one that is called {name!r}, or use {{pair}} order"
+            raise InputError("there is no grid to compare it with", remedy)
+        return grid
+
+    def _decided(self, name: str) -> Pairing:
+        self._passed = [grid for _, grid in zip(range(2), self._grids, strict=False)]
+        names = [grid.name for grid in self._passed]
+        if len(names) == 1:
+            self._grids = repeat(self._passed.pop())
+            return "order"
+        if not all(names) or names[0] == names[1]:
+            return "order"
+        match = self._named(name)
+        if match is None:
+            return "order"
+        self._passed.insert(0, match)
+        return "name"
+
+    def _following(self) -> Grid | None:
+        return self._passed.pop(0) if self._passed else next(self._grids, None)
+
+    def _named(self, name: str) -> Grid | None:
+        for k, grid in enumerate(self._passed):
+            if grid.name == name:
+                return self._passed.pop(k)
+        for grid in self._grids:
+            if grid.name == name:
+                return grid
+            self._passed.append(grid)
+        return None

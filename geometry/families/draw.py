@@ -1,0 +1,126 @@
+"""Boundaries drawn at random from a family."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from importlib import import_module
+
+import numpy as np
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.family import FAMILIES, Family, family
+from meshonet.geometry.families.split import split
+from meshonet.geometry.spacing.sampling import Sampling
+
+NODES = 101
+"""Nodes along xi and eta when nobody says, as in the paper."""
+
+RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bodies"}
+"""Modules in `meshonet.geometry.families` of shapes that have no parameter, by the family's name."""
+
+
+@dataclass(frozen=True)
+class Draw:
+    """One member of a family, not made yet.
+
+    Parameters
+    ----------
+    kind : name of the family.
+    family : one of the paper's six, or None for random shapes.
+    low, high : range of the parameter.
+    seed, index : make the random numbers of this member, whichever others are drawn.
+    split : what it is kept for.
+    """
+
+    kind: str
+    family: Family | None
+    low: float
+    high: float
+    seed: int
+    index: int
+    split: str = ""
+
+    @property
+    def name(self) -> str:
+        """Family and number."""
+        return f"{self.kind}-{self.index}"
+
+    @property
+    def parameter(self) -> float:
+        """Of the family's member."""
+        rng = np.random.default_rng([self.seed, self.index])
+        return self.low + (self.high - self.low) * float(rng.random())
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Return the boundary with the node counts of `sampling`."""
+        ni, nj = sampling.ni or NODES, sampling.nj or NODES
+        if self.family is None:
+            module = import_module(f"meshonet.geometry.families.{RANDOM[self.kind]}")
+            drawn: Boundary = module.boundary(np.random.default_rng([self.seed, self.index]), ni, nj)
+            return drawn
+        origin = Origin((("parameter", self.parameter),), self.split)
+        return replace(self.family.boundary(self.parameter, ni, nj), origin=origin)
+
+
+def draws(
+    name: str, count: int = 1, spread: str | None = None, seed: int = 0, way: str | None = None
+) -> list[Draw]:
+    """Return `count` members of the family `name`, whose boundaries are not made yet.
+
+    Parameters
+    ----------
+    spread : ``A:B``, the range of the parameter, or None for that of the family.
+    seed : of all random numbers.
+    way : how members are split into those to train on and those to test on, or None for neither.
+
+    Raises
+    ------
+    InputError
+        no such family, a range that is none or leaves the family's, members that cannot be split.
+    """
+    if name not in (*FAMILIES, *RANDOM):
+        known = "use one of " + ", ".join((*FAMILIES, *RANDOM))
+        raise InputError(f"family {name!r} is not known", known, parameter="family")
+    kind = None if name in RANDOM else family(name)
+    low, high = _range(spread, kind)
+    members = [Draw(name, kind, low, high, seed, index) for index in range(count)]
+    kept = _kept(members, kind, way, seed)
+    return [replace(member, split=use) for member, use in zip(members, kept, strict=True)]
+
+
+def _kept(every: Sequence[Draw], kind: Family | None, way: str | None, seed: int) -> Sequence[str]:
+    if way is None:
+        return [""] * len(every)
+    if kind is None:
+        raise InputError("random shapes have no parameter to split by", "leave it out", parameter="split")
+    try:
+        return split([draw.parameter for draw in every], way, seed=seed, low=kind.to_low)
+    except InputError as error:
+        error.parameter = "split"
+        raise
+
+
+def _range(text: str | None, kind: Family | None) -> tuple[float, float]:
+    if kind is None:
+        if text is not None:
+            raise InputError("random shapes have no parameter", "leave it out", parameter="range")
+        return 0.0, 1.0
+    if text is None:
+        return kind.low, kind.high
+    found = re.fullmatch(r"\s*([-+.\w]+)\s*:\s*([-+.\w]+)\s*", text)
+    try:
+        low, high = (float(word) for word in found.groups()) if found else (1.0, 0.0)
+    except ValueError:
+        low, high = 1.0, 0.0
+    if not low <= high:
+        raise InputError(f"{text!r} is not a range", "use A:B with A <= B, e.g. 0.1:0.3", parameter="range")
+    if not kind.least <= low <= high <= kind.most:
+        bounds = f"{kind.least:g}:{kind.most:g}"
+        raise InputError(
+            f"{text} leaves what {kind.parameter} can be", f"stay in {bounds}", parameter="range"
+        )
+    return low, high

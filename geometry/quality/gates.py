@@ -1,0 +1,97 @@
+"""Gates: conditions on the quality of a grid that a user does not accept."""
+
+from __future__ import annotations
+
+import operator
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.metrics import NAMES
+
+_COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
+NO_MORE: Mapping[str, float] = MappingProxyType({})
+_STATISTICS = ("min", "mean", "max", "p01", "p99")
+_GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
+
+
+@dataclass(frozen=True)
+class Gate:
+    """A condition that a grid must not fulfil: ``METRIC[.STATISTIC] OPERATOR VALUE``.
+
+    Parameters
+    ----------
+    text : as the user wrote it.
+    metric : a metric of `meshonet.geometry.quality.metrics`, ``folded``, the count of folded cells, or a
+        figure measured beside them.
+    statistic : min, mean, max, p01 or p99 of the metric over all cells.
+    compare : ``>``, ``>=``, ``<`` or ``<=``.
+    limit : in the metric's unit.
+    """
+
+    text: str
+    metric: str
+    statistic: str
+    compare: str
+    limit: float
+
+    def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
+        """Return a line for the user when `quality`, or a figure of `more`, fulfils it, else None."""
+        has_statistics = self.metric in NAMES
+        if has_statistics:
+            value = getattr(quality[self.metric], self.statistic)
+        else:
+            value = quality.folded if self.metric == "folded" else more[self.metric]
+        if not _COMPARE[self.compare](value, self.limit):
+            return None
+        what = f"{self.metric}.{self.statistic}" if has_statistics else self.metric
+        return f"{what} is {value:.6g}, and {{fail_on}} '{self.text}'"
+
+
+def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
+    """Return the gate that `text` describes; `more` are figures beside the metrics, without statistics.
+
+    Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
+
+    Raises
+    ------
+    InputError
+        `text` is no gate, or names an unknown metric or statistic.
+
+    Examples
+    --------
+    >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
+    ('max', 'p01')
+    """
+    match = _GATE.fullmatch(text)
+    try:
+        limit = float(match[4]) if match else None
+    except ValueError:
+        limit = None
+    if match is None or limit is None or limit != limit:
+        raise InputError(
+            f"{text!r} is not a gate",
+            "write METRIC>VALUE or METRIC<VALUE, e.g. 'max_angle>170'",
+            parameter="fail_on",
+        )
+    metric, statistic, compare = match[1], match[2], match[3]
+    if metric not in (*NAMES, "folded", *more):
+        known = "use one of " + ", ".join(("folded", *NAMES, *more))
+        raise InputError(f"metric {metric!r} is not known", known, parameter="fail_on")
+    if statistic and (statistic not in _STATISTICS or metric not in NAMES):
+        known = "one of " + ", ".join(_STATISTICS) if metric in NAMES else f"no statistic with {metric}"
+        raise InputError(f"statistic {statistic!r} is not known", f"use {known}", parameter="fail_on")
+    return Gate(text, metric, statistic or ("max" if compare in (">", ">=") else "min"), compare, limit)
+
+
+def parse_gates(texts: Iterable[str] | None, more: Sequence[str] = ()) -> tuple[Gate, ...]:
+    """Return the gates of all `texts`, which may name figures of `more` too."""
+    return tuple(parse_gate(text, more) for text in texts or ())
+
+
+def need_percentiles(gates: Iterable[Gate]) -> bool:
+    """Say whether a gate looks at a percentile, which costs a sort of all cells."""
+    return any(gate.statistic in ("p01", "p99") for gate in gates)

@@ -1,0 +1,164 @@
+"""Everything that is measured of a grid: its metrics, its walls, a profile, and how far another grid is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.compare import Difference, compare
+from meshonet.geometry.quality.gates import Gate
+from meshonet.geometry.quality.growth import Extreme
+from meshonet.geometry.quality.measure import Quality, measure, worst_cells
+from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
+
+COMPARED = (
+    "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
+)  # fmt: skip
+"""Figures of a comparison; gates may name them."""
+NO_FIGURES: Mapping[str, float] = MappingProxyType({})
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How far a grid is from a reference, and how its angles compare.
+
+    Parameters
+    ----------
+    difference : distances between the nodes.
+    folded : folded cells of the reference.
+    max_angle_ratio, mean_angle_ratio : angles of the grid over those of the reference.
+    """
+
+    difference: Difference
+    folded: int
+    max_angle_ratio: float
+    mean_angle_ratio: float
+
+    def figures(self) -> dict[str, float]:
+        """Return the figures by the names of `COMPARED`."""
+        d = self.difference
+        ratios = (self.folded, self.max_angle_ratio, self.mean_angle_ratio)
+        return dict(zip(COMPARED, (d.relative_l2, d.near_wall, d.max, d.boundary, *ratios), strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class QualityReport:
+    """What was measured of a grid.
+
+    Parameters
+    ----------
+    grid : that was measured.
+    quality : every metric, with percentiles.
+    worst : folded cells, ten at the most.
+    figures : walls and growth.
+    profile : the verdicts of a profile, when one was named.
+    comparison : with a reference, when there was one.
+    """
+
+    grid: Grid
+    quality: Quality
+    worst: tuple[BadCell, ...]
+    figures: Figures
+    profile: ProfileReport | None = None
+    comparison: Comparison | None = None
+
+    def broken(self, gates: Sequence[Gate]) -> list[str]:
+        """Return a line for each gate, and each check of the profile, that is not met."""
+        compared = self.comparison.figures() if self.comparison else NO_FIGURES
+        lines = [line for gate in gates if (line := gate.broken(self.quality, compared))]
+        return lines + (self.profile.failures() if self.profile else [])
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as what JSON can hold."""
+        grid, growth = self.grid, self.figures.growth if self.profile else None
+        facts: dict[str, Any] = {
+            "ni": grid.ni,
+            "nj": grid.nj,
+            "topology": grid.topology,
+            "folded": self.quality.folded,
+            "worst_cells": [vars(cell) for cell in self.worst],
+            "quality": quality_dict(self.quality),
+            "walls": [
+                {
+                    "name": row.name,
+                    "side": row.side,
+                    "first_cell": vars(row.height),
+                    "off_square": vars(row.off_square),
+                    "equal_cells": row.equal_cells,
+                }
+                for row in self.figures.wall_rows
+            ],
+        }
+        if self.profile and growth:
+            facts["growth"] = {"xi": _extreme(growth.xi), "eta": _extreme(growth.eta)}
+            checks = [_check(result) for result in self.profile.results]
+            facts["profile"] = {"name": self.profile.name, "passed": self.profile.passed, "checks": checks}
+        if self.comparison:
+            d = self.comparison.difference
+            facts["compare"] = {"max": d.max, "mean": d.mean, "at": list(d.at), **self.comparison.figures()}
+        return facts
+
+
+def quality_report(
+    grid: Grid, walls: Sequence[Patch] = (), profile: str | None = None, reference: Grid | None = None
+) -> QualityReport:
+    """Measure `grid`.
+
+    Parameters
+    ----------
+    walls : its stretches of wall.
+    profile : thresholds to judge by, one of `meshonet.geometry.quality.profiles.PROFILES`.
+    reference : grid of the same size to compare with.
+
+    Raises
+    ------
+    InputError
+        the reference has another size.
+    """
+    quality = measure(grid, percentiles=True)
+    figures = Figures(grid, quality, walls)
+    return QualityReport(
+        grid,
+        quality,
+        tuple(worst_cells(grid.nodes)) if quality.folded else (),
+        figures,
+        profile_report(figures, profile) if profile else None,
+        None if reference is None else _comparison(grid, quality, reference),
+    )
+
+
+def quality_dict(quality: Quality) -> dict[str, Any]:
+    """Return the metrics as what JSON can hold; percentiles are left out when they were not computed."""
+    facts: dict[str, Any] = {"cells": quality.cells, "folded": quality.folded}
+    for name, summary in quality.metrics.items():
+        row: dict[str, Any] = {"min": summary.min, "mean": summary.mean, "max": summary.max}
+        if summary.p01 is not None:
+            row |= {"p01": summary.p01, "p99": summary.p99}
+        facts[name] = row | {"worst": list(summary.worst)}
+    return facts
+
+
+def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
+    difference = compare(grid, reference)
+    own, other = quality["max_angle"], measure(reference)
+    angle = other["max_angle"]
+    return Comparison(difference, other.folded, own.max / angle.max, own.mean / angle.mean)
+
+
+def _check(result: CheckResult) -> dict[str, Any]:
+    return {
+        "figure": result.check.figure,
+        "value": result.value,
+        "at": list(result.at) if result.at else None,
+        "limits": [{"level": x.level, "when": x.compare, "value": x.value} for x in result.check.limits],
+        "verdict": result.verdict,
+    }
+
+
+def _extreme(extreme: Extreme | None) -> dict[str, Any] | None:
+    return None if extreme is None else {"max": extreme.max, "mean": extreme.mean, "at": list(extreme.at)}

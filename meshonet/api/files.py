@@ -1,0 +1,76 @@
+"""`meshonet.read`, `meshonet.read_all` and `meshonet.write`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+from meshonet.formats.output import whole_file
+from meshonet.formats.registry import format_for_output, format_of, read_grids, read_shapes
+from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.shape import Shape
+
+
+def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
+    """Return the grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
+
+    Raises
+    ------
+    InputError
+        a file that cannot be read, or holds several: `read_all` has them.
+    """
+    records = read_all(path, from_format=from_format)
+    record = next(records, None)
+    if record is None:
+        raise InputError("holds nothing", "give a file with a boundary or a grid in it", source=str(path))
+    if next(records, None) is not None:
+        raise InputError("holds several grids or boundaries", "use read_all", source=str(path))
+    return record
+
+
+def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Grid | Shape]:
+    """Return an iterator over the grids of a file, or over the shapes of one without grids.
+
+    Raises
+    ------
+    InputError
+        a file that cannot be read.
+    """
+    text = str(path)
+    if text.lower().startswith("naca:") and not Path(text).exists():
+        return read_shapes(text, from_format)
+    fmt = format_of(open_source(text), from_format)
+    if fmt.read_grids is None:
+        return read_shapes(text, from_format)
+    grids = read_grids(text, from_format)
+    if fmt.read_shapes is None:
+        return grids
+    try:  # a dataset holds the one or the other
+        return chain([next(grids)], grids)
+    except (InputError, StopIteration):
+        return read_shapes(text, from_format)
+
+
+def write(what: Grid | Boundary, path: str | Path, *, to_format: str | None = None) -> None:
+    """Write a grid or a boundary, whole or not at all.
+
+    Parameters
+    ----------
+    path : file to write; its ending says the format.
+    to_format : format, when the ending does not say.
+
+    Raises
+    ------
+    InputError
+        a format that is not known or cannot hold this; a place that cannot be written.
+    """
+    fmt = format_for_output(str(path), to_format, "grids" if isinstance(what, Grid) else "boundaries")
+    put: Any = fmt.write_grids if isinstance(what, Grid) else fmt.write_boundaries
+    folder = fmt.fills_folder
+    with whole_file(str(path), make_folder=folder, beside=folder or fmt.beside) as part:
+        put(part, [what])

@@ -1,0 +1,158 @@
+"""`meshonet.grid`, and the functions of the commands that make grids and boundaries."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, TypeAlias, cast
+
+import numpy as np
+
+from meshonet.api.files import read
+from meshonet.formats.mesh.recover_topology import boundary_of
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.draw import draws
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.solvers.pipeline.make_grid import make_grid
+from meshonet.solvers.pipeline.request import grid_request, sampling_of
+
+AnyShape: TypeAlias = str | Path | Floats | Shape | Grid
+"""A path, a designation ``naca:2412``, points (n, 2) of an outline, or what the library makes of these."""
+Counts: TypeAlias = int | tuple[int, int]
+
+
+def grid(shape: AnyShape, *, res: Counts | None = None, method: str = "best", **parameters: Any) -> Grid:
+    """Return a valid grid inside a boundary or around a body.
+
+    Parameters
+    ----------
+    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges.
+    res : nodes along xi (around a body) and eta (away from it); one number for both.
+    method : ``best`` for what measures best, ``auto`` for the same among equations, a name in
+        `meshonet.METHODS`, or ``operator:NAME``.
+    parameters : those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
+        ``y_plus``, ``reynolds``, ``growth``, ``repair``, and settings of the method, such as ``tol``.
+
+    Returns
+    -------
+    Grid
+        with `write`, `quality` and `to_pyvista`. `meshonet.make_grid` returns notes and times beside it.
+
+    Raises
+    ------
+    InputError
+        a shape or parameter that cannot be used.
+    NoValidGridError
+        cells are folded, and `allow_invalid` was not given.
+    SolverError
+        the method diverged.
+
+    Examples
+    --------
+    >>> made = grid("naca:2412", res=(81, 31))
+    >>> made.ni, made.nj, made.topology, made.quality().folded
+    (81, 31, 'o', 0)
+    """
+    return make_grid(shape_of(shape), grid_request(method, res=res, **parameters)).grid
+
+
+def tfi(shape: AnyShape, *, res: Counts | None = None, **parameters: Any) -> Grid:
+    """Return a grid by transfinite interpolation; parameters as of `grid`, and ``blending``."""
+    return grid(shape, res=res, method="tfi", **parameters)
+
+
+def solve_pde(shape: AnyShape, *, res: Counts | None = None, method: str = "auto", **parameters: Any) -> Grid:
+    """Return a grid by elliptic equations, a variational method or marching; parameters as of `grid`."""
+    return grid(shape, res=res, method=method, **parameters)
+
+
+def infer(shape: AnyShape, *, res: Counts | None = None, model: str | None = None, **parameters: Any) -> Grid:
+    """Return the grid that measures best, or that of an operator; parameters as of `grid`.
+
+    Parameters
+    ----------
+    model : a shipped operator, a ``.safetensors`` file, or ``base`` for the conformal solver.
+    """
+    return grid(shape, res=res, method="best", model=model, **parameters)
+
+
+def sample_boundary(
+    shape: AnyShape, *, res: Counts | None = None, sensors: int | None = None, **parameters: Any
+) -> Boundary:
+    """Return the four edges of a shape.
+
+    Parameters
+    ----------
+    shape, res : as of `grid`.
+    sensors : so many boundary nodes are kept as sensors as well.
+    parameters : those of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
+
+    Raises
+    ------
+    InputError
+        a shape or parameter that cannot be used.
+
+    Examples
+    --------
+    >>> edges = sample_boundary("naca:0012", res=(61, 21), far_field=20)
+    >>> edges.south.shape, edges.topology
+    ((61, 2), 'o')
+    """
+    edges = edges_of(shape_of(shape), sampling_of(res, parameters))
+    for name in parameters:
+        raise InputError(f"a boundary has no {{{name}}}", f"leave {{{name}}} out")
+    return edges if sensors is None else edges.with_sensors(sensors)
+
+
+def sample_family(
+    family: str,
+    count: int = 1,
+    *,
+    res: Counts | None = None,
+    range: tuple[float, float] | None = None,  # noqa: A002 - called as the option is
+    seed: int = 0,
+    split: str | None = None,
+) -> list[Boundary]:
+    """Return boundaries drawn at random from a family, as ``sample-boundary --family`` does.
+
+    Parameters
+    ----------
+    family : ``arch``, ``hexagon``, ``wrench``, ``semicircle``, ``airfoil``, ``hole``, ``procedural``,
+        ``four-sided`` or ``bodies``.
+    count : of members.
+    res : as of `grid`; None is 101.
+    range : of the family's parameter.
+    seed : of the draw.
+    split : ``interpolation``, ``extrapolation`` or ``random``: a sixth is marked for tests.
+
+    Raises
+    ------
+    InputError
+        no such family, a range that leaves the family's, members that cannot be split.
+    """
+    spread = None if range is None else "{!r}:{!r}".format(*range)
+    sampling = sampling_of(res, {})
+    return [member.boundary(sampling) for member in draws(family, count, spread, seed, split)]
+
+
+def shape_of(shape: AnyShape) -> Shape:
+    """Return what can be sampled into a boundary.
+
+    Raises
+    ------
+    InputError
+        a file that cannot be read, an array of another shape than (n, 2).
+    """
+    if isinstance(shape, str | Path):
+        shape = cast(AnyShape, read(shape))
+    if isinstance(shape, Grid):
+        return boundary_of(shape)
+    if hasattr(shape, "boundary"):
+        return cast(Shape, shape)
+    points = np.asarray(shape, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise InputError(f"points of shape {points.shape}", "give (n, 2)", parameter="shape")
+    return Outline(points)

@@ -1,0 +1,18 @@
+"""`meshonet.models`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from meshonet.solvers.neural.weights import described, shipped
+
+
+def models() -> list[dict[str, Any]]:
+    """Return what each shipped operator says of itself: name, topology, training, held-out figures.
+
+    Examples
+    --------
+    >>> sorted(model["name"] for model in models())
+    ['airfoil-o', 'hole-o', 'hole-winslow', 'quad-general', 'quad-winslow']
+    """
+    return [dict(described(name)) for name in shipped()]

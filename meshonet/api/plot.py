@@ -1,0 +1,41 @@
+"""`meshonet.plot`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from meshonet.api.quality import single_grid
+from meshonet.formats.figure.picture import Picture, picture_format
+from meshonet.formats.output import whole_file
+from meshonet.geometry.blocks.grid import Grid
+
+
+def plot(
+    grid: Grid | str | Path,
+    output: str | Path,
+    *,
+    metric: str | None = "max_angle",
+    zoom: tuple[float, float, float, float] | None = None,
+    every: int | None = None,
+    to_format: str | None = None,
+) -> None:
+    """Draw a grid, coloured by a quality metric.
+
+    Parameters
+    ----------
+    grid : a grid, or a file that holds one.
+    output : picture to write, ``.png``, ``.svg`` or ``.pdf``.
+    metric : colours the cells; None draws lines only.
+    zoom : x0, x1, y0, y1 of the part to show; None shows all.
+    every : draw every so many-th grid line; None chooses by the resolution of the picture.
+    to_format : ``png``, ``svg`` or ``pdf``, when the ending does not say.
+
+    Raises
+    ------
+    InputError
+        an unknown metric or ending, a box that shows none of the grid, a file that cannot be read or written.
+    """
+    picture = Picture(metric, zoom, every)
+    kind = picture_format(str(output), to_format).name
+    with whole_file(str(output)) as part:
+        picture.draw(kind, part, [single_grid(grid)])

@@ -1,0 +1,58 @@
+"""`meshonet.quality`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from meshonet.formats.registry import read_grids
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.report import QualityReport, quality_report
+
+
+def quality(
+    grid: Grid | str | Path, *, profile: str | None = None, compare: Grid | str | Path | None = None
+) -> QualityReport:
+    """Measure a grid: folded cells, angles, skewness, walls, growth.
+
+    Parameters
+    ----------
+    grid : a grid, or a file that holds one.
+    profile : thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
+    compare : reference grid of the same size, or a file that holds one.
+
+    Raises
+    ------
+    InputError
+        a file that cannot be read or holds several grids, a reference of another size, an unknown profile.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
+    >>> report = quality(Grid.from_nodes(np.stack([x, y], axis=-1)))
+    >>> report.quality.folded, report.quality["max_angle"].max
+    (0, 90.0)
+    """
+    grid = single_grid(grid)
+    reference = None if compare is None else single_grid(compare)
+    return quality_report(grid, grid.walls(), profile, reference)
+
+
+def single_grid(grid: Grid | str | Path) -> Grid:
+    """Return the grid, or the only one of a file.
+
+    Raises
+    ------
+    InputError
+        a file that cannot be read, or holds none or several.
+    """
+    if isinstance(grid, Grid):
+        return grid
+    found = read_grids(str(grid))
+    first = next(found, None)
+    if first is None:
+        raise InputError("holds no grid", "use a file with one", source=str(grid))
+    if next(found, None) is not None:
+        raise InputError("holds several grids", "read them one by one", source=str(grid))
+    return first

@@ -1,0 +1,55 @@
+"""Inputs of a batch: files one after the other, and the records of each."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+from meshonet.geometry.errors import InputError
+from meshonet_cli.batch.item import Item, T
+from meshonet_cli.session import Session
+
+
+def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
+    """Yield every member of every source; a source that cannot be read is told of and passed over.
+
+    Raises
+    ------
+    InputError
+        standard input is named twice, or is a terminal.
+    """
+    if sources.count("-") > 1:
+        raise InputError("standard input is named twice", "name - once", source="-")
+    if "-" in sources and sys.stdin.isatty():
+        raise InputError("standard input is the terminal", "pipe a boundary or a grid into it", source="-")
+    index = 0
+    for source in sources:
+        with session.member(source):
+            begun = time.perf_counter()
+            found = read(source)
+            item, more = _following(found, source, session)
+            if item is None and not more:
+                raise InputError(
+                    "holds nothing", "give a file with a boundary or a grid in it", source=source
+                )
+            only = True
+            while item is not None or more:
+                spent = time.perf_counter() - begun
+                begun = time.perf_counter()
+                following, more = _following(found, source, session) if more else (None, False)
+                only = only and following is None and not more
+                session.batch = session.batch or len(sources) > 1 or not only
+                if item is not None:
+                    session.begin(source, len(sources) if len(sources) > 1 else None)
+                    yield Item(index, source, item, spent, only)
+                index += item is not None or more  # a file that is bad as a whole has no number
+                item = following
+
+
+def _following(found: Iterator[T], source: str, session: Session) -> tuple[T | None, bool]:
+    """Return the next record, None when it cannot be read, which is said, and whether there may be more."""
+    with session.member(source):
+        item = next(found, None)
+        return item, item is not None
+    return None, True

@@ -1,0 +1,52 @@
+"""Errors as a line for the user, parameters spelled as options."""
+
+from __future__ import annotations
+
+_OPTIONS = {
+    "from_format": "--from", "to_format": "--to", "output": "-o", "settings": "--set",
+}  # fmt: skip
+"""Parameters whose options have other names."""
+
+
+def explained(error: Exception, name: str = "") -> str:
+    """Return the line or two that explain `error`, which happened to the member `name`, to a user."""
+    from meshonet.geometry.errors import InputError, MeshonetError, NoValidGridError
+
+    if isinstance(error, InputError):
+        error.source = error.source or name
+        return error.text(option)
+    where = f"{name}: " if name else ""
+    if isinstance(error, NoValidGridError):
+        return f"{where}{error.text(option)}"
+    if isinstance(error, MeshonetError):
+        return f"{where}{with_options(str(error))}"
+    if isinstance(error, MemoryError):
+        return f"{where}not enough memory ({error}); use a smaller --res".replace(" ()", "")
+    if isinstance(error, OSError):
+        file = f"{error.filename}: " if error.filename else where
+        return f"{file}{error.strerror or error}; check the path, its permissions and the free space"
+    return f"{where}internal error: {type(error).__name__}: {error}; this is a bug, --debug shows where"
+
+
+def option(parameter: str) -> str:
+    """Return how the command line spells a parameter.
+
+    Examples
+    --------
+    >>> option("far_field"), option("from_format")
+    ('--far-field', '--from')
+    """
+    return _OPTIONS.get(parameter) or "--" + parameter.replace("_", "-")
+
+
+def with_options(text: str) -> str:
+    """Return a note of the library, its ``{parameters}`` spelled as options.
+
+    Examples
+    --------
+    >>> with_options("the far field is cut off; set {far_field}")
+    'the far field is cut off; set --far-field'
+    """
+    from meshonet.geometry.errors import spelled
+
+    return spelled(text, option)

@@ -1,0 +1,158 @@
+"""What `tfi`, `solve-pde` and `infer` share: one request, many boundaries, a report of each grid."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from meshonet.formats.output import whole_file
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.gates import need_percentiles, parse_gates
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.progress import Row, listening
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.item import Item
+from meshonet_cli.batch.run import deliver, prepare
+from meshonet_cli.batch.sources import items
+from meshonet_cli.convergence import Live, check_file, write
+from meshonet_cli.provenance import provenance
+from meshonet_cli.report.grid import Report
+from meshonet_cli.session import Session
+
+if TYPE_CHECKING:
+    from meshonet_cli.options import CheckOptions, FileOptions, LayerOptions, SamplingOptions, SideOptions
+
+SHARED = 16
+"""Members that one of several processes gets at a time at the most, when they are solved together."""
+
+
+@dataclass(frozen=True)
+class GridMaker:
+    """Makes grids, and reports of them, of the members of a batch."""
+
+    request: GridRequest
+
+    def __call__(self, members: Iterable[Item[Shape]]) -> Iterator[tuple[Grid, Report] | Exception]:
+        """Yield grid and report of each member, or the error that it ended in."""
+        taken: list[Item[Shape]] = []
+
+        def shapes() -> Iterator[Shape]:
+            for member in members:
+                taken.append(member)
+                yield member.what
+
+        for result in make_grids(shapes(), self.request):
+            member = taken.pop(0)
+            yield result if isinstance(result, Exception) else reported(member, result)
+
+
+def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
+    """Return the grid of `member` with the command in its provenance, and the report."""
+    solution, grid = result.solution, result.grid
+    report = Report(
+        member,
+        method=solution.method,
+        ni=grid.ni,
+        nj=grid.nj,
+        topology=grid.topology,
+        quality=result.quality,
+        model=solution.model,
+        path=solution.path,
+        residual=solution.residual,
+        cycles=solution.cycles,
+        notes=result.notes,
+        history=result.history,
+    )
+    report.seconds |= result.seconds
+    return grid.with_provenance(**provenance()), report
+
+
+def request_of(
+    method: str,
+    sampling: SamplingOptions,
+    checks: CheckOptions,
+    *blocks: LayerOptions | SideOptions,
+    settings: Mapping[str, Any],
+    **parameters: Any,
+) -> GridRequest:
+    """Return the request that options describe, `parameters` by the names of its fields.
+
+    Raises
+    ------
+    InputError
+        as `GridRequest`; a gate that is none.
+    """
+    for block in blocks:
+        parameters |= vars(block)
+    return GridRequest(
+        sampling.settings(),
+        method,
+        {name: value for name, value in settings.items() if value is not None},
+        repair=checks.repair,
+        allow_invalid=checks.allow_invalid,
+        percentiles=need_percentiles(parse_gates(checks.fail_on)),
+        **parameters,
+    )
+
+
+def write_grids(
+    sources: Sequence[str], output: str, request: GridRequest, checks: CheckOptions, files: FileOptions,
+    session: Session, *, history: str | None = None, jobs: int = 1,
+) -> int:  # fmt: skip
+    """Turn every boundary of `sources` into a grid in `output` and return the exit code.
+
+    Parameters
+    ----------
+    checks : their gates end the program with 1.
+    files : formats, and whether members are passed over whose own file is there.
+    history : file that the cycles go to.
+    jobs : processes at work.
+
+    Raises
+    ------
+    InputError
+        several members and room for one.
+    """
+    destination = Destination(output, files.to_format, "grids")
+    prepare(sources, destination, session)
+    check_file(history)
+    gates = parse_gates(checks.fail_on)
+    found = items(sources, lambda source: read_shapes(source, files.from_format), session)
+    cycles: list[tuple[str, Iterable[Row]]] = []
+
+    def tell(report: Report, path: str) -> None:
+        report.finished(path)
+        label, folded = report.item.label, report.quality.folded
+        cycles.append((label, report.history))
+        if folded:
+            session.warn(f"{label}: {folded} folded cells are in {path}")
+        session.tell(report)
+        session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
+
+    with listening(Live(session.status)) if session.live else contextlib.nullcontext():
+        deliver(
+            found, GridMaker(request), destination, session, tell,
+            skip_existing=files.skip_existing, together=_together(request), jobs=jobs,
+        )  # fmt: skip
+    if history and cycles:
+        with whole_file(history) as file:
+            write(file, cycles)
+    return session.finish()
+
+
+def _together(request: GridRequest) -> int:
+    """Return how many members one of several processes gets at a time: fewer when grids are large."""
+    if request.solver().together is None:
+        return 1
+    nodes = (request.sampling.ni or 1) * (request.sampling.nj or 1)
+    return max(1, min(SHARED, MOST_NODES // nodes))
+
+
+def initial_grid(text: str | None) -> Grid | None:
+    """Return the grid of the file `text`, or None for None."""
+    return None if text is None else next(read_grids(text))

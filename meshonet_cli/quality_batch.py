@@ -1,0 +1,85 @@
+"""The grids of `quality`, one after the other."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+
+from meshonet.api.quality import quality
+from meshonet.formats.figure.picture import Picture
+from meshonet.formats.registry import format_for_output, read_grids
+from meshonet.formats.vtk.metrics import write_metrics
+from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.gates import parse_gates
+from meshonet.geometry.quality.report import COMPARED
+from meshonet_cli.batch.destination import Destination
+from meshonet_cli.batch.sources import items
+from meshonet_cli.plot_batch import picture_file
+from meshonet_cli.report.quality import Measured
+from meshonet_cli.report.summary import Summary
+from meshonet_cli.session import Session
+
+
+def measure_grids(
+    sources: Sequence[str],
+    session: Session,
+    *,
+    fmt: str | None = None,
+    fail_on: Sequence[str] | None = None,
+    profile: str | None = None,
+    compare: str | None = None,
+    pairing: Pairing = "auto",
+    summary: bool = False,
+    plot: str | None = None,
+    per_cell: str | None = None,
+) -> int:
+    """Measure every grid of `sources`, print the reports and return the exit code.
+
+    Parameters
+    ----------
+    fail_on : gates.
+    profile : thresholds of `meshonet.geometry.quality.profiles` to judge by.
+    compare : file of reference grids, matched with the grids by `pairing`.
+    summary : print one table over all grids in place of one for each.
+    plot, per_cell : pictures and files of metrics to write of each grid.
+    """
+    gates = parse_gates(fail_on, COMPARED if compare else ())
+    outputs = [picture_file(plot, None, Picture())] if plot else []
+    outputs += [_metrics_file(per_cell)] if per_cell else []
+    for destination in outputs:
+        destination.check_room(sources)
+        if destination.text == "-":
+            raise InputError("standard output has the table", "write to a file", source="-")
+    references = GridMatcher(read_grids(compare), pairing) if compare else None
+    rows: list[tuple[str, Mapping[str, float]]] = []
+    for item in items(sources, lambda source: read_grids(source, fmt), session):
+        with session.member(item.label, item.source):
+            begun = time.perf_counter()
+            reference = references.match(item.what.name) if references else None
+            found = time.perf_counter()
+            measured = Measured(item, quality(item.what, profile=profile, compare=reference))
+            measured.seconds["quality"] = time.perf_counter() - found
+            if references:
+                measured.seconds["compare"] = found - begun
+            for destination in outputs:
+                destination.check_only(item)
+                with measured.timed("write"):
+                    destination.write(destination.path(item), [item.what])
+            measured.finished(None)
+            rows.append((item.label, measured.figures_of_row()))
+            if summary:
+                session.done += 1
+            else:
+                session.show(measured)
+            session.gate(item.label, measured.report.broken(gates))
+    if rows and summary:
+        session.conclude(Summary(rows))
+    return session.finish()
+
+
+def _metrics_file(output: str) -> Destination:
+    """Return the destination of a grid with every metric as cell data, which ``.vts`` files can hold."""
+    if format_for_output(output).name != "vts":
+        raise InputError("only a .vts file holds metrics", "name it FILE.vts", source=output)
+    return Destination(output, None, put=write_metrics)

@@ -1,0 +1,1 @@
+"""Reports of what is done, as JSON and for people."""

@@ -1,0 +1,85 @@
+"""The report of one grid: how it was made and how good it is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from meshonet_cli.batch.timed import Timed
+from meshonet_cli.errors import with_options
+from meshonet_cli.text import span
+
+if TYPE_CHECKING:
+    from meshonet.geometry.quality.measure import Quality
+    from meshonet.solvers.progress import Row
+
+
+@dataclass
+class Report(Timed):
+    """The report of one grid, as ``--json`` prints it.
+
+    `seconds` holds wall-clock seconds by stage: read, boundary, load (modules and models, once a process),
+    grid (from boundary nodes in memory to grid nodes in memory), guard, quality, write, and total.
+    """
+
+    method: str
+    ni: int
+    nj: int
+    topology: str
+    quality: Quality
+    model: str | None = None
+    path: tuple[str, ...] = ()
+    residual: float | None = None
+    cycles: int | None = None
+    notes: tuple[str, ...] = ()
+    history: tuple[Row, ...] = ()
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        from meshonet.geometry.quality.report import quality_dict
+
+        return {
+            **self.member_json(),
+            "method": self.method,
+            "model": self.model,
+            "ni": self.ni,
+            "nj": self.nj,
+            "topology": self.topology,
+            "folded": self.quality.folded,
+            "path": list(self.path),
+            "residual": self.residual,
+            "cycles": self.cycles,
+            "quality": quality_dict(self.quality),
+            "seconds": self.times_json(),
+            "notes": [with_options(note) for note in self.notes],
+        }
+
+    def lines(self) -> str:
+        """Return the report of a single grid for people."""
+        angle = self.quality["max_angle"]
+        i, j = angle.worst
+        rows = {
+            "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
+            "residual": f"{self.residual:.1e} after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
+            if self.residual is not None
+            else "",
+            "folded": f"{self.quality.folded} of {self.quality.cells} cells",
+            "max angle": f"{angle.max:.1f} degrees at i={i}, j={j}; mean {angle.mean:.1f}",
+            "time": self.times(),
+        }
+        head = f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"
+        notes = [f"  {with_options(note)}" for note in self.notes]
+        return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text), *notes])
+
+    def line(self) -> str:
+        """Return the report of a member of a batch for people."""
+        angle = self.quality["max_angle"].max
+        return (
+            f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} {self.topology}, "
+            f"{self.quality.folded} folded, max angle {angle:.1f}, "
+            f"{self.method}{_after(self.path)}, {span(self.seconds['total'])}"
+        )
+
+
+def _after(path: tuple[str, ...]) -> str:
+    return f", then {', '.join(path)}" if path else ""

@@ -1,0 +1,118 @@
+"""The quality of a grid for people."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.metrics import METRICS
+from meshonet.geometry.quality.profiles import CheckResult, Figures, Limit, ProfileReport
+from meshonet.geometry.quality.report import Comparison, QualityReport
+from meshonet.geometry.quality.walls import Spread, WallRow
+from meshonet_cli.batch.timed import Timed
+from meshonet_cli.text import aligned, figure
+
+_VERDICTS = {"fail": "FAIL", "warn": "warning", "none": "no figure"}
+
+
+@dataclass
+class Measured(Timed):
+    """The report of a grid that was measured."""
+
+    report: QualityReport
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        member = {"input": self.item.source, "name": self.item.what.name}
+        return member | self.report.as_dict() | {"seconds": self.times_json()}
+
+    def lines(self) -> str:
+        """Return the tables for people."""
+        report = self.report
+        grid, quality = report.grid, report.quality
+        folded = f"{quality.folded} folded" if quality.folded else "none folded"
+        size = f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid, {quality.cells} cells"
+        rows = [f"{self.item.label}: {size}, {folded}", quality_table(quality)]
+        if report.figures.wall_rows and (report.profile or grid.topology != "quad"):
+            rows.append(walls_table(report.figures.wall_rows))
+        if report.profile:
+            rows.append(profile_table(report.figures, report.profile))
+        rows += [f"folded at i={c.i}, j={c.j}: x={c.x:.6g}, y={c.y:.6g}" for c in report.worst]
+        if report.comparison:
+            rows.append(comparison_lines(report.comparison))
+        return "\n".join(rows)
+
+    def figures_of_row(self) -> dict[str, float]:
+        """Return the figures that a summary of many grids shows."""
+        quality, comparison = self.report.quality, self.report.comparison
+        angle = quality["max_angle"]
+        row = {"folded": quality.folded, "max_angle": angle.max, "mean_angle": angle.mean}
+        return row | (comparison.figures() if comparison else {})
+
+
+def quality_table(quality: Quality) -> str:
+    """Return the metrics as a table; it needs the percentiles."""
+    rows = [["metric", "min", "p01", "mean", "p99", "max", "worst at i, j"]]
+    for metric in METRICS:
+        row = quality[metric.name]
+        name = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
+        values = ["-" if v is None else figure(v) for v in (row.min, row.p01, row.mean, row.p99, row.max)]
+        rows.append([name, *values, "{}, {}".format(*row.worst)])
+    return aligned(rows)
+
+
+def comparison_lines(comparison: Comparison) -> str:
+    """Return a comparison in two lines."""
+    d = comparison.difference
+    return (
+        f"distance to the other grid: max {figure(d.max)} at i={d.at[0]}, j={d.at[1]}, "
+        f"mean {figure(d.mean)}, relative L2 {figure(d.relative_l2)}, "
+        f"near the wall {figure(d.near_wall)}, boundary {figure(d.boundary)}\n"
+        f"beside the other grid: {comparison.folded} folded there, "
+        f"max angle {comparison.max_angle_ratio:.4f} and "
+        f"mean angle {comparison.mean_angle_ratio:.4f} times as large"
+    )
+
+
+def walls_table(rows: tuple[WallRow, ...]) -> str:
+    """Return the cells at the walls as a table."""
+    table = [["at the walls", "min", "mean", "max", "equal cells"]]
+    for row in rows:
+        table.append([f"{row.name}: first cell", *_spread(row.height), str(row.equal_cells)])
+        table.append([f"{row.name}: off 90 (deg)", *_spread(row.off_square), ""])
+    return aligned(table)
+
+
+def profile_table(figures: Figures, profile: ProfileReport) -> str:
+    """Return the checks of a profile, and the growth of cells, as tables."""
+    rows = [["growth", "mean", "max", "at i, j"]]
+    for name, extreme in (("along xi", figures.growth.xi), ("along eta", figures.growth.eta)):
+        if extreme:
+            place = "{}, {}".format(*extreme.at)
+            rows.append([name, figure(extreme.mean), figure(extreme.max), place])
+    checks = [[f"profile {profile.name}", "figure", "at i, j", "limits", "verdict"]]
+    checks += [_check_row(result) for result in profile.results]
+    return f"{aligned(rows)}\n{aligned(checks)}"
+
+
+def _check_row(result: CheckResult) -> list[str]:
+    value = "-" if result.value is None else figure(result.value)
+    place = "{}, {}".format(*result.at) if result.at else ""
+    limits = ", ".join(limit_text(limit) for limit in result.check.limits)
+    return [result.check.figure, value, place, limits, _VERDICTS.get(result.verdict, result.verdict)]
+
+
+def limit_text(limit: Limit) -> str:
+    """Return a limit for people.
+
+    Examples
+    --------
+    >>> limit_text(Limit("fail", ">=", 90))
+    'fail >= 90'
+    """
+    return f"{limit.level} {limit.compare} {limit.value:g}"
+
+
+def _spread(spread: Spread) -> list[str]:
+    return [figure(value) for value in (spread.min, spread.mean, spread.max)]

@@ -1,0 +1,30 @@
+"""Numbers and tables as text."""
+
+from __future__ import annotations
+
+
+def aligned(rows: list[list[str]]) -> str:
+    """Return `rows` as lines with columns aligned, the first to the left and the others to the right."""
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    lines = []
+    for first, *others in rows:
+        cells = [first.ljust(widths[0])]
+        cells += [text.rjust(width) for text, width in zip(others, widths[1:], strict=True)]
+        lines.append("  ".join(cells).rstrip())
+    return "\n".join(lines)
+
+
+def figure(value: float) -> str:
+    """Return a number as a table shows it.
+
+    Examples
+    --------
+    >>> figure(90.12345), figure(0.000123456), figure(1234567.0), figure(0.0)
+    ('90.12', '0.0001235', '1.235e+06', '0')
+    """
+    return f"{value:.4g}"
+
+
+def span(seconds: float) -> str:
+    """Return a time span for people, in seconds or milliseconds."""
+    return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"

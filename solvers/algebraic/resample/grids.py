@@ -1,0 +1,58 @@
+"""Boundaries thinned to few nodes, and the grids inside them evaluated at many.
+
+Inside the full edges splines through the coarse nodes are evaluated (`quad`); around a body lines keep their
+own course instead (`o_grid`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Topology, planar_nodes
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.algebraic.resample import corner_damping, quad
+from meshonet.solvers.algebraic.resample.o_grid import evaluate_around
+from meshonet.solvers.algebraic.resample.spline import between
+
+
+def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
+    """Return `boundary` with ni x nj nodes, at equal steps of the index of the given ones.
+
+    A C becomes a quad: thinned, its trailing edge need not be a node.
+    """
+    topology: Topology = "quad" if boundary.topology == "c" else boundary.topology
+    south, north = _thinned(boundary.south, ni), _thinned(boundary.north, ni)
+    west, east = _thinned(boundary.west, nj), _thinned(boundary.east, nj)
+    return Boundary(south, north, west, east, topology, name=boundary.name)
+
+
+def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
+    """Return planar nodes inside `boundary` from a grid (m, n, 2) inside its thinned edges."""
+    if boundary.topology == "o":
+        return evaluate_around(coarse, boundary)
+    names = ("south", "north", "west", "east")
+    south, north, west, east = (np.ascontiguousarray(getattr(boundary, side).T)[None] for side in names)
+    planes = np.ascontiguousarray(np.moveaxis(coarse, -1, 0))[None]
+    return np.moveaxis(quad.evaluate(planes, (south, north, west, east))[0], 0, -1)
+
+
+def divided(coarse: Floats, boundary: Boundary) -> Floats:
+    """Return what `evaluate` does for a quad by straight lines between coarse nodes.
+
+    They bend at these, but cells inside a valid coarse cell are valid: folds are left only beside edges that
+    bend between coarse nodes.
+    """
+    nodes = planar_nodes(boundary.ni, boundary.nj)
+    along, across = (
+        corner_damping.linear(len(coarse), boundary.ni),
+        corner_damping.linear(coarse.shape[1], boundary.nj),
+    )
+    for c in (0, 1):
+        nodes[..., c] = along @ coarse[..., c] @ across.T
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    nodes[0], nodes[-1] = boundary.west, boundary.east
+    return nodes
+
+
+def _thinned(edge: Floats, n: int) -> Floats:
+    return np.asarray(between(edge.T, n).T)

@@ -1,0 +1,168 @@
+"""What a method is, and which there are.
+
+A method is a name, frozen settings and one function: boundaries in, solutions out. A new one is a function
+``solve(boundary, *, settings...) -> Solution`` in a file of its own and a row of `METHODS`, from which the
+choices, the help and the tests of the command line are made. Rows name their functions by text, so that
+reading them loads nothing.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    from meshonet.geometry.arrays import Topology
+    from meshonet.geometry.blocks.boundary import Boundary
+    from meshonet.geometry.blocks.grid import Grid
+    from meshonet.solvers.solution import Solution
+
+
+class Method(Protocol):
+    """A way from boundaries to grids: frozen settings and one function."""
+
+    @property
+    def name(self) -> str:
+        """What it is called, as in `METHODS`."""
+        ...
+
+    @property
+    def together(self) -> Topology | None:
+        """The topology of boundaries that it solves faster in one call; None: one after the other."""
+        ...
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries, which may start from a grid each.
+
+        Raises
+        ------
+        MeshonetError
+            one of them cannot be solved; the others are then best solved one by one.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class Each:
+    """A method that solves one boundary after the other.
+
+    Parameters
+    ----------
+    name : in `METHODS`.
+    function : of a boundary, its settings and perhaps ``initial``, a grid to start from.
+    settings : keywords of the function.
+
+    Raises
+    ------
+    InputError
+        a setting that the function does not have.
+    """
+
+    name: str
+    function: Callable[..., Solution]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    together: None = None
+
+    def __post_init__(self) -> None:
+        _check_settings(self.name, self.function, self.settings)
+
+    def takes(self, setting: str) -> bool:
+        """Return whether the function has such a keyword."""
+        return setting in inspect.signature(self.function).parameters
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries."""
+        if start is None or not self.takes("initial"):
+            return [self.function(problem, **self.settings) for problem in problems]
+        pairs = zip(problems, start, strict=True)
+        return [self.function(problem, **self.settings, initial=grid) for problem, grid in pairs]
+
+    def having(self, **settings: Any) -> Each:
+        """Return the method with more settings."""
+        return replace(self, settings={**self.settings, **settings})
+
+
+class Row(NamedTuple):
+    """A method before it is loaded.
+
+    Parameters
+    ----------
+    target : ``module:name`` of the function of a boundary, or of the class of the method.
+    summary : for help and documentation, behind the name.
+    solves : whether ``solve-pde`` offers it.
+    sweeps : whether relaxing Winslow's equations around kinks suits its grids: not where they have sources.
+    """
+
+    target: str
+    summary: str
+    solves: bool = True
+    sweeps: bool = True
+
+
+METHODS: Mapping[str, Row] = MappingProxyType(
+    {
+        "tfi": Row("meshonet.solvers.algebraic.tfi:solve", "interpolates between the edges", solves=False),
+        "winslow": Row("meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"),
+        "thomas-middlecoff": Row(
+            "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
+            "with control functions that carry the spacing of the edges inside",
+            sweeps=False,
+        ),
+        "steger-sorenson": Row(
+            "meshonet.solvers.elliptic.steger_sorenson:solve_steger_sorenson",
+            "with sources at walls that turn grid lines to {wall_angle} there",
+            sweeps=False,
+        ),
+        "variational": Row(
+            "meshonet.solvers.energy.variational:solve",
+            "minimises a functional of angles and edge lengths; better angles, no folds",
+        ),
+        "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
+        "conformal": Row(
+            "meshonet.solvers.neural.method:Conformal",
+            "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
+        ),
+        "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),
+    }
+)
+"""Methods by name; ``operator:NAME`` is the operator of that name."""
+
+
+def method_named(name: str, **settings: Any) -> Method:
+    """Return the method of that name with the settings.
+
+    Raises
+    ------
+    InputError
+        no such method; a setting that it does not have.
+
+    Examples
+    --------
+    >>> method_named("winslow", tol=1e-8).settings
+    {'tol': 1e-08}
+    """
+    base, _, model = name.partition(":")
+    if base not in METHODS or (model and base != "operator"):
+        known = "use one of " + ", ".join(METHODS)
+        raise InputError(f"method {name!r} is not known", known, parameter="method")
+    module, _, attribute = METHODS[base].target.partition(":")
+    target = getattr(import_module(module), attribute)
+    if not isinstance(target, type):
+        return Each(base, target, settings)
+    settings |= {"model": model} if model else {}
+    _check_settings(base, target, settings)
+    method: Method = target(**settings)
+    return method
+
+
+def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:
+    known = inspect.signature(function).parameters
+    for setting in settings:
+        if setting not in known:
+            raise InputError(f"method {name} has no {{{setting}}}", f"leave {{{setting}}} out")

@@ -1,0 +1,210 @@
+"""First cells of given heights: marched from bodies, moved along the lines of a grid elsewhere.
+
+::
+
+    body --------------------------------- march --------------------------> grid
+    channel, nodes sampled here -- slide wall nodes, solve --+
+    channel, given nodes --------- turn lines by sources ----+-- move nodes along lines --> grid
+    anything else ---------------- solve --------------------+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from time import perf_counter
+
+from meshonet.geometry.arrays import SIDES, Topology
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.layers.first_cells import Heights
+from meshonet.solvers.method import Each, Method, method_named
+from meshonet.solvers.pipeline.fallback import guard
+from meshonet.solvers.solution import Solution
+
+UPRIGHT_DEGREES = 0.3
+"""By which lines may lean at walls whose nodes have slid."""
+LEANING_DEGREES = 1.0
+"""By which they may lean when sources have turned them."""
+
+MARCHED = "a grid marched from the wall"
+
+
+@dataclass(frozen=True)
+class FirstCells:
+    """Heights of first cells, and the layers that begin with them.
+
+    Parameters
+    ----------
+    height : off walls, or None: around a body in chords, off south and north of a four-sided domain in its
+        own unit.
+    sides : heights off single sides of four-sided domains, in their unit.
+    constant : so many first layers are equally high.
+    growth : largest ratio of neighbouring cells, or None.
+    free_rows : whether growth decides how many rows there are.
+    in_chords : the height is in chords everywhere; that of a four-sided domain is the extent of its south.
+    note : where the height comes from, when it was computed.
+    """
+
+    height: float | None = None
+    sides: Mapping[str, float] = field(default_factory=dict)
+    constant: int = 1
+    growth: float | None = None
+    free_rows: bool = False
+    in_chords: bool = False
+    note: str = ""
+
+    def heights(self, boundary: Boundary) -> Heights:
+        """Return the heights in the unit of `boundary`."""
+        walls: dict[str, float] = {}
+        if self.height is not None:
+            quad = boundary.topology == "quad"
+            height = self.height * (boundary.chord if self.in_chords or not quad else 1.0)
+            walls = dict.fromkeys(("south", "north") if quad else ("south",), height)
+        return Heights(
+            **walls | dict(self.sides),
+            constant=self.constant,
+            growth=self.growth,
+            free_rows=self.free_rows,
+        )
+
+
+@dataclass(frozen=True)
+class Layered:
+    """`method`, and first cells of given heights at the walls of its grids.
+
+    Parameters
+    ----------
+    method : makes the grids with even rows.
+    cells : heights and layers.
+    turning : the method that turns lines at walls by sources.
+    full : `method` as it solves on all nodes; None when it is not to.
+    marched : topologies that are marched from the wall when there is a height off walls.
+    channels : make lines leave the walls of four-sided domains at right angles when there is such a height.
+    slide : move wall nodes of four-sided domains; None: in channels, when they were sampled here.
+    chosen : settings that were given by name, to be refused where they are of no use.
+    """
+
+    method: Method
+    cells: FirstCells
+    turning: Method
+    full: Method | None = None
+    marched: tuple[Topology, ...] = ()
+    channels: bool = False
+    slide: bool | None = None
+    chosen: tuple[str, ...] = ()
+    together: None = None
+
+    @property
+    def name(self) -> str:
+        """That of the method."""
+        return self.method.name
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries, its first cells as high as asked.
+
+        Raises
+        ------
+        InputError
+            heights or settings that do not suit a boundary or the method.
+        """
+        grids = [None] * len(problems) if start is None else [[grid] for grid in start]
+        return [self._solve(*each) for each in zip(problems, grids, strict=True)]
+
+    def _solve(self, boundary: Boundary, start: Sequence[Grid] | None) -> Solution:
+        if boundary.topology != "quad" and self.cells.sides:
+            raise InputError(
+                f"a height off a single side, around a body (topology {boundary.topology})",
+                "use {first_cell}",
+                parameter=f"spacing_{next(iter(self.cells.sides))}",
+            )
+        if self.cells.height is not None and boundary.topology in self.marched:
+            return self._march(boundary, self.cells.height)
+        heights = self.cells.heights(boundary)
+        if heights.any and "refine" in self.chosen:
+            raise InputError("{refine} with first cells of given heights", "use a finer {res} instead")
+        if not heights.any and not self.slide:
+            return self._even(boundary, heights, start)
+        return self._in_layers(boundary, heights, start)
+
+    def _march(self, boundary: Boundary, height: float) -> Solution:
+        self._refuse(self.chosen, MARCHED)
+        if self.slide:
+            self._refuse(("slide",), MARCHED, chosen=("slide",))
+        cells = self.cells
+        settings = {"growth": cells.growth, "free_rows": cells.free_rows, "constant": cells.constant}
+        solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
+        return replace(solution, notes=(cells.note, *solution.notes)) if cells.note else solution
+
+    def _in_layers(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
+        """Return the grid of `boundary` with layers; the grid's time is that of all this."""
+        from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401 - loaded before the clock starts
+        from meshonet.solvers.layers import slide_nodes  # noqa: F401
+        from meshonet.solvers.layers.redistribute import spread
+
+        begun = perf_counter()
+        solution = self._even(boundary, heights, start)
+        if heights.any:
+            edges = solution.boundary or boundary
+            solution = spread(guard(solution, edges, allow_invalid=True), edges, heights)
+        seconds = {**solution.seconds, "grid": perf_counter() - begun}
+        note = (self.cells.note,) if self.cells.note else ()
+        return replace(solution, notes=(*note, *solution.notes), seconds=seconds)
+
+    def _even(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
+        """Return the grid of `boundary` with even rows, wall nodes slid or lines turned as they are to be."""
+        channel = self.channels and boundary.topology == "quad" and self.cells.height is not None
+        slide = channel and boundary.sampled if self.slide is None else self.slide
+        if slide:
+            solution = self._slid(boundary, start)
+            if channel and "model" not in self.chosen:
+                return self._upright(solution, boundary, heights, start)
+            return solution
+        if channel:
+            self._refuse(("model", "polish", "answer"), "a channel with given wall nodes")
+        if self.full is not None and (channel or self.name == self.turning.name):
+            return self._turned(boundary, heights, start)
+        return self.method.solve([boundary], start)[0]
+
+    def _slid(self, boundary: Boundary, start: Sequence[Grid] | None) -> Solution:
+        from meshonet.solvers.layers.slide_nodes import slide_walls
+
+        slid, controls = slide_walls(boundary)
+        method = self.method
+        if controls is not None and isinstance(self.full, Each) and self.full.takes("controls"):
+            method = self.full.having(controls=controls)
+        solution = method.solve([slid], start)[0]
+        note = "wall nodes slid along south and north"
+        return replace(solution, boundary=slid, notes=(*solution.notes, note))
+
+    def _upright(
+        self, solution: Solution, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None
+    ) -> Solution:
+        """Return `solution`, its wall nodes slid; where lines still lean, sources turn them.
+
+        Where that does not do, sources with the nodes of `boundary` as they were, if those do better.
+        """
+        from meshonet.solvers.elliptic.steger_sorenson import largest_lean
+
+        slid = solution.boundary
+        if slid is None or largest_lean(solution.grid.nodes, slid) < UPRIGHT_DEGREES:
+            return solution
+        turned = self._turned(slid, heights, start)
+        turned = replace(turned, boundary=slid, notes=(*solution.notes, *turned.notes))
+        lean = largest_lean(turned.grid.nodes, slid)
+        if lean < LEANING_DEGREES:
+            return turned
+        kept = self._turned(boundary, heights, start)
+        return kept if largest_lean(kept.grid.nodes, boundary) < lean else turned
+
+    def _turned(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
+        sides = {side: height for side in SIDES if (height := getattr(heights, side))}
+        turning = self.turning.having(heights=sides) if isinstance(self.turning, Each) else self.turning
+        return turning.solve([boundary], start)[0]
+
+    def _refuse(self, settings: Iterable[str], what: str, chosen: Sequence[str] | None = None) -> None:
+        """Raise InputError when one of `settings` was given, which are of no use to `what`."""
+        for setting in settings:
+            if setting in (self.chosen if chosen is None else chosen):
+                raise InputError(f"{{{setting}}} is of no use to {what}", f"drop {{{setting}}}")

@@ -1,0 +1,210 @@
+"""Shapes in, valid grids out: sample, solve, check, measure; many at a time where that is faster."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import islice
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.measure import Quality, measure
+from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.method import Method
+from meshonet.solvers.pipeline.fallback import guard, refuse_folded
+from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.progress import History, Row, listening
+from meshonet.solvers.solution import Outcome, Solution
+
+MOST_TOGETHER = 64
+"""Shapes that are solved together at the most."""
+
+MOST_NODES = 1 << 22
+"""Nodes of grids from which no more are solved together: some hundred MB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Result:
+    """A grid and what there is to say of it.
+
+    Parameters
+    ----------
+    solution : the grid, its method, path and figures.
+    quality : of the grid.
+    seconds : wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from
+        boundary nodes in memory to grid nodes in memory), guard, quality.
+    notes : sentences a user should read, those of boundary and solution among them.
+    history : its cycles, when asked for.
+    """
+
+    solution: Solution
+    quality: Quality
+    seconds: Mapping[str, float]
+    notes: tuple[str, ...] = ()
+    history: tuple[Row, ...] = ()
+
+    @property
+    def grid(self) -> Grid:
+        """The grid."""
+        return self.solution.grid
+
+    @property
+    def outcome(self) -> Outcome:
+        """How it ended, with what to try next."""
+        return Outcome.FOLDED if self.quality.folded else self.solution.outcome
+
+
+def make_grid(shape: Shape, request: GridRequest) -> Result:
+    """Return the grid of `shape` that `request` describes.
+
+    Raises
+    ------
+    InputError
+        the shape, or the request for it, cannot be met.
+    NoValidGridError
+        cells are folded, and that was not allowed.
+    SolverError
+        the method diverged.
+    """
+    result = next(make_grids([shape], request))
+    if isinstance(result, Exception):
+        raise result
+    return result
+
+
+def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
+    """Yield for each of the shapes, in order, its grid or the error that it ended in.
+
+    Shapes are read as results are asked for, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
+    solves many faster in one call. They do not change one another's grids but in the last digits.
+
+    Raises
+    ------
+    InputError
+        the method does not have such settings.
+    """
+    method = request.solver()
+    shapes = iter(shapes)
+    while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
+        _solve_together(group, method)
+        for member in group:
+            try:
+                yield _finished(member, method, request)
+            except Exception as error:
+                yield error
+
+
+@dataclass
+class _Member:
+    """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
+
+    boundary: Boundary | Exception
+    seconds: dict[str, float] = field(default_factory=dict)
+    solution: Solution | None = None
+
+
+def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> list[_Member]:
+    group: list[_Member] = []
+    nodes = 0
+    for shape in islice(shapes, most):
+        begun = time.perf_counter()
+        try:
+            boundary: Boundary | Exception = _sampled(shape, request)
+        except Exception as error:
+            boundary = error
+        group.append(_Member(boundary, {"boundary": time.perf_counter() - begun}))
+        nodes += boundary.ni * boundary.nj if isinstance(boundary, Boundary) else 0
+        if nodes >= MOST_NODES:
+            break
+    return group
+
+
+def _sampled(shape: Shape, request: GridRequest) -> Boundary:
+    sampling = request.shape_sampling()
+    boundary = edges_of(shape, sampling)
+    if request.refine:
+        boundary = edges_of(shape, _finer(sampling, shape, boundary, 2**request.refine))
+    return boundary
+
+
+def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
+    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those along a wake included.
+
+    Edges that were given share their nodes out as they are.
+    """
+    wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
+    made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
+    nodes = k * wakes[0] + 1 if made else sampling.wake_nodes
+    return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
+
+
+def _solve_together(group: Sequence[_Member], method: Method) -> None:
+    """Solve those that the method takes in one call; when that fails each is solved in its turn."""
+    alike = [
+        (member, member.boundary)
+        for member in group
+        if isinstance(member.boundary, Boundary) and member.boundary.topology == method.together
+    ]
+    if len(alike) < 2:
+        return
+    begun = time.perf_counter()
+    with contextlib.suppress(Exception):
+        solutions = method.solve([boundary for _, boundary in alike])
+        share = (time.perf_counter() - begun) / len(alike)
+        for (member, _), solution in zip(alike, solutions, strict=True):
+            member.solution = solution
+            _add_times(member.seconds, solution, share)
+
+
+def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
+    """Return what comes of a member: solved if it is not yet, checked and measured."""
+    boundary, solution, seconds = member.boundary, member.solution, member.seconds
+    if isinstance(boundary, Exception):
+        raise boundary
+    history = History()
+    if solution is None:
+        begun = time.perf_counter()
+        start = None if request.initial is None else [request.initial]
+        with listening(history) if request.history else contextlib.nullcontext():
+            solution = method.solve([boundary], start)[0]
+        _add_times(seconds, solution, time.perf_counter() - begun)
+    rows = history.of(solution) if request.history else ()
+    begun = time.perf_counter()
+    checked = _checked(solution, boundary, request)
+    notes = (*boundary.notes, *solution.notes, *_changed_first_cells(solution, checked))
+    seconds["guard"] = seconds.get("guard", 0.0) + time.perf_counter() - begun
+    begun = time.perf_counter()
+    quality = measure(checked.grid, percentiles=request.percentiles)
+    seconds["quality"] = time.perf_counter() - begun
+    checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
+    return Result(checked, quality, seconds, notes, rows)
+
+
+def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:
+    """Add the stages of a solve that took `spent` seconds: what it took beside its grid was loading."""
+    stages = {stage: solution.seconds[stage] for stage in ("grid", "guard") if stage in solution.seconds}
+    rest = "load" if "grid" in stages else "grid"
+    seconds |= stages | {rest: max(spent - sum(stages.values()), 0.0)}
+
+
+def _checked(solution: Solution, boundary: Boundary, request: GridRequest) -> Solution:
+    if request.repairs():
+        return guard(solution, boundary, allow_invalid=request.allow_invalid, margin=request.repair_margin)
+    if not request.allow_invalid:
+        refuse_folded(solution)
+    return solution
+
+
+def _changed_first_cells(solution: Solution, checked: Solution) -> tuple[str, ...]:
+    """Return what there is to say of first cells that the guard changed."""
+    if checked.path == solution.path or not solution.first_cells:
+        return ()
+    from meshonet.solvers.layers.redistribute import worst_first_cell
+
+    error = worst_first_cell(checked)
+    if error < 1e-8:
+        return ()
+    return (f"the guard changed first cells: they miss what was asked by up to {error:.1g} of it",)

@@ -1,0 +1,283 @@
+"""What a user can ask of a grid, and the method that makes it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Literal
+
+from meshonet.geometry.arrays import SIDES, TOPOLOGIES
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+from meshonet.solvers.method import METHODS, Method, method_named
+from meshonet.solvers.pipeline.coarse import Coarse
+from meshonet.solvers.pipeline.layered import FirstCells, Layered
+from meshonet.solvers.pipeline.select import best, elliptic, fewer_on_quads
+from meshonet.solvers.pipeline.sequence import Sequenced
+
+OPERATOR_SETTINGS = ("model", "polish", "device")
+"""Settings any of which asks for a network."""
+
+DEFAULTS = {"coarse": "auto", "refine": 0, "polish": "auto", "answer": "valid", "blending": "arclength"}
+"""Values that say nothing; of other parameters None is one."""
+
+
+@dataclass(frozen=True)
+class GridRequest:
+    """How shapes become grids; validates itself.
+
+    Parameters
+    ----------
+    sampling : node counts and spacing of the boundary.
+    method : a name in `METHODS`; ``best`` for what measures best by topology, and marches bodies that have a
+        first cell; ``auto`` for the same among equations: Winslow's, and hyperbolic where ``best`` marches.
+    settings : of the method.
+    first_cell : height of the first cell at every wall node, around a body in chords, in a four-sided domain
+        off south and north in its own unit.
+    y_plus, reynolds : the same by its y+, estimated as on a flat plate; the Reynolds number is the chord's.
+    chord_fraction : where along the chord that is estimated.
+    growth : largest ratio of neighbouring cells away from the wall; without `nj` in the sampling there are as
+        many rows as it needs.
+    constant_layers : so many first layers are equally high.
+    spacing_south, spacing_north, spacing_west, spacing_east : heights of first cells off single sides of a
+        four-sided domain.
+    slide : move the nodes of south and north along these walls; None: where a first cell is given and the
+        nodes were sampled here.
+    wall_angle : of lines at walls in degrees, for ``steger-sorenson``.
+    coarse : nodes along a direction to solve on before the grid is evaluated at its own; ``auto`` leaves that
+        to method and size, None solves on all.
+    refine : solve first, halve all cells and solve again, so many times.
+    initial : grid to start from.
+    repair : whether folded grids are repaired or made by another method; else they are refused. None: not
+        those of ``tfi`` and answers of networks that are asked for raw.
+    repair_margin : cells around folded ones that move with them.
+    allow_invalid : whether a folded grid is a result.
+    percentiles : whether the quality has them.
+    history : whether the cycles of the solve are kept.
+
+    Raises
+    ------
+    InputError
+        a value out of its range; parameters that need or exclude each other.
+    """
+
+    sampling: Sampling = field(default_factory=Sampling)
+    method: str = "best"
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    first_cell: float | None = None
+    y_plus: float | None = None
+    reynolds: float | None = None
+    chord_fraction: float = 0.5
+    growth: float | None = None
+    constant_layers: int | None = None
+    spacing_south: float | None = None
+    spacing_north: float | None = None
+    spacing_west: float | None = None
+    spacing_east: float | None = None
+    slide: bool | None = None
+    wall_angle: float | None = None
+    coarse: int | Literal["auto"] | None = "auto"
+    refine: int = 0
+    initial: Grid | None = None
+    repair: bool | None = None
+    repair_margin: int | None = None
+    allow_invalid: bool = False
+    percentiles: bool = False
+    history: bool = False
+
+    def __post_init__(self) -> None:
+        if self.method not in ("best", "auto") and self.method.partition(":")[0] not in METHODS:
+            method_named(self.method)  # which says what there is
+        self._check_first_cells()
+        if self.method == "hyperbolic" and not self.at_walls:
+            raise InputError(
+                "{method} hyperbolic without a first cell", "give {first_cell} or {y_plus} as well"
+            )
+        if self.wall_angle is not None and self.method != "steger-sorenson":
+            problem = f"method {self.method} sets no angle"
+            raise InputError(problem, "use {method} steger-sorenson", parameter="wall_angle")
+        if isinstance(self.coarse, int):
+            if self.refine:
+                raise InputError("{coarse} and {refine} both solve on fewer nodes first", "give one of them")
+            if self.initial is not None:
+                problem = "a coarse solve has no use for a grid to start from"
+                raise InputError(problem, "drop {initial} or {coarse}")
+        if self.repair and self.settings.get("answer") == "raw":
+            problem = "{repair} would change a raw answer"
+            raise InputError(problem, "leave one of {repair} and {answer} out")
+        tol = self.settings.get("tol")
+        if tol is not None and not 0 < tol < 1:
+            raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
+
+    def _check_first_cells(self) -> None:
+        if self.first_cell is not None and self.y_plus is not None:
+            problem = "{first_cell} and {y_plus} both say how high the first cell is"
+            raise InputError(problem, "give one of them")
+        if (self.y_plus is None) != (self.reynolds is None):
+            needed, known = ("reynolds", "y_plus") if self.reynolds is None else ("y_plus", "reynolds")
+            raise InputError(f"{{{known}}} without {{{needed}}}", f"give {{{needed}}} as well")
+        if self.y_plus is None and self.chord_fraction != 0.5:
+            raise InputError("{chord_fraction} without {y_plus}", "give {y_plus} and {reynolds} as well")
+        heights = {
+            "first_cell": self.first_cell,
+            **{f"spacing_{side}": h for side, h in self._sides().items()},
+        }
+        for name, height in heights.items():
+            if height is not None and not 0 < height < math.inf:
+                raise InputError(f"a first cell of {height:g}", "give a positive height", parameter=name)
+        if not self.at_walls and not self._sides():
+            for name, value in (("constant_layers", self.constant_layers), ("growth", self.growth)):
+                if value is not None:
+                    problem = f"{{{name}}} without a first cell"
+                    raise InputError(problem, "give {first_cell} or {y_plus} as well")
+        if self.constant_layers is not None and self.constant_layers < 1:
+            raise InputError(f"{self.constant_layers} layers", "give at least 1", parameter="constant_layers")
+        if self.at_walls and self.growth is not None and not 1 < self.growth <= 10:
+            remedy = "give the ratio of neighbouring cells, such as 1.15"
+            raise InputError(f"a growth of {self.growth:g}", remedy, parameter="growth")
+        self._height()
+
+    @property
+    def at_walls(self) -> bool:
+        """Whether there is a first cell off walls, not only off single sides."""
+        return self.first_cell is not None or self.y_plus is not None
+
+    def _sides(self) -> dict[str, float]:
+        return {side: h for side in SIDES if (h := getattr(self, f"spacing_{side}")) is not None}
+
+    def _height(self) -> float | None:
+        if self.y_plus is None or self.reynolds is None:
+            return self.first_cell
+        return first_cell(self.y_plus, self.reynolds, self.chord_fraction)
+
+    def first_cells(self) -> FirstCells:
+        """Return the heights of first cells and the layers that begin with them."""
+        height, note = self._height(), ""
+        if self.y_plus is not None:
+            note = (
+                f"y+ {self.y_plus:g} at Re {self.reynolds:g} and x/c {self.chord_fraction:g} is "
+                f"{height:.6g} chords: {FORMULA} ({SOURCE})"
+            )
+        free_rows = self.growth is not None and self.sampling.nj is None
+        layers = self.constant_layers or 1, self.growth, free_rows
+        return FirstCells(height, self._sides(), *layers, in_chords=bool(note), note=note)
+
+    def shape_sampling(self) -> Sampling:
+        """Return the sampling of shapes: with thin first cells, wall nodes whose spacing changes slowly."""
+        if not self.at_walls or self.method == "tfi":
+            return self.sampling
+        spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
+        return replace(self.sampling, spacing=spacing, viscous=True)
+
+    def repairs(self) -> bool:
+        """Return whether folded grids are repaired."""
+        if self.repair is not None:
+            return self.repair
+        return self.method != "tfi" and self.settings.get("answer", "valid") == "valid"
+
+    def solver(self) -> Method:
+        """Return the method that makes the grids, without the guard.
+
+        Raises
+        ------
+        InputError
+            settings that the method does not have.
+        """
+        base = self._base()
+        method = self._at_any_resolution(base)
+        if not self.at_walls and not self._sides() and not self.slide:
+            return method
+        automatic = self.method in ("best", "auto") or self._operator
+        full = None if self.refine or isinstance(self.coarse, int) else base
+        own = full is not None and base.name in ("winslow", "steger-sorenson")
+        turning = method_named("steger-sorenson", **(self.settings if own else {}), **self._angle())
+        return Layered(
+            method,
+            self.first_cells(),
+            turning,
+            full,
+            marched=TOPOLOGIES if self.method == "hyperbolic" else ("o", "c") if automatic else (),
+            channels=automatic,
+            slide=self.slide,
+            chosen=self._chosen(),
+        )
+
+    def _base(self) -> Method:
+        """Return the method with its settings, on all nodes."""
+        if self._operator or self.method == "best":
+            return method_named("operator" if self.method == "best" else self.method, **self.settings)
+        if self.method == "auto":
+            return method_named("winslow", **self.settings)
+        if self.method == "hyperbolic":  # whose settings are the first cells
+            return method_named("hyperbolic")
+        return method_named(self.method, **self.settings, **self._angle())
+
+    def _at_any_resolution(self, base: Method) -> Method:
+        """Return `base` on fewer nodes where that is asked for, or left open and as good."""
+        if self.refine:
+            return Sequenced(base, self.refine)
+        if isinstance(self.coarse, int):
+            return Coarse(base, self.coarse)
+        if self._operator or self.method == "best":
+            network = ":" in self.method or any(name in self._chosen() for name in OPERATOR_SETTINGS)
+            return base if network else best(base)
+        if self.coarse is None or self.settings or self.initial is not None:
+            return base
+        return elliptic() if self.method == "auto" else fewer_on_quads(base)
+
+    @property
+    def _operator(self) -> bool:
+        return self.method.partition(":")[0] == "operator"
+
+    def _angle(self) -> dict[str, float]:
+        return {} if self.wall_angle is None else {"angle": self.wall_angle}
+
+    def _chosen(self) -> tuple[str, ...]:
+        """Return what was given and is not so by default, in the order in which it is refused."""
+        given = {**self.settings, "initial": self.initial, "coarse": self.coarse, "refine": self.refine}
+        return tuple(name for name, value in given.items() if value != DEFAULTS.get(name))
+
+
+def grid_request(
+    method: str = "best", *, res: int | tuple[int, int] | None = None, **parameters: Any
+) -> GridRequest:
+    """Return the request with the parameters, each by its name: of the sampling, the request or the method.
+
+    Parameters
+    ----------
+    res : nodes along xi and eta; one number for both.
+    parameters : fields of `Sampling` and `GridRequest`, settings of the method; None leaves a setting out.
+        ``wall_spacing`` is another name of ``first_cell``.
+
+    Raises
+    ------
+    InputError
+        as `GridRequest`, or a parameter that the method does not have.
+
+    Examples
+    --------
+    >>> request = grid_request("winslow", res=(80, 40), topology="o", tol=1e-8)
+    >>> request.sampling.ni, request.sampling.topology, request.settings
+    (80, 'o', {'tol': 1e-08})
+    """
+    if "wall_spacing" in parameters:
+        parameters["first_cell"] = parameters.pop("wall_spacing")
+    sampling = sampling_of(res, parameters)
+    of_request = {name: parameters.pop(name) for name in REQUESTED if name in parameters}
+    settings = {name: value for name, value in parameters.items() if value is not None}
+    return GridRequest(sampling, method, settings, **of_request)
+
+
+def sampling_of(res: int | tuple[int, int] | None, parameters: dict[str, Any]) -> Sampling:
+    """Return the sampling with counts `res` and its fields among `parameters`, which are taken out."""
+    ni, nj = (res, res) if isinstance(res, int) else res or (None, None)
+    return Sampling(ni, nj, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
+
+
+SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in ("ni", "nj", "viscous"))
+REQUESTED = tuple(
+    each.name for each in fields(GridRequest) if each.name not in ("sampling", "method", "settings")
+)

@@ -1,0 +1,327 @@
+"""Every spelling of every option has an effect: a run with it differs from one without it where it should.
+
+`EFFECTS` says for each option the words of the run before, the words added, and what is to differ:
+
+- code: the exit code; says, prints: whether there is anything on standard error or standard output;
+- out: standard output; error: standard error;
+- files: names of files that appear; layout: how the file written begins; bytes: all of it;
+- nodes: coordinates of what is written; weights: arrays of a model; figures: rows of the log;
+- workers: whether other processes worked.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import resource
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from command_line import Meshonet, dataset, duct, wave
+
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet_cli.app import application
+
+TORCH = importlib.util.find_spec("torch") is not None
+Effect = tuple[str, str, str]
+"""Words of the run before, words added (OPTION stands for the spelling), what differs."""
+
+BODY, GRID, LAYERS = "naca:2412 --res 41x15", "grid.h5", "naca:2412 --res 61x41 --first-cell 1e-3"
+MADE = "-o made.h5 -q"
+PLATE = f"naca:2412 --res 61x41 --y-plus 100 --reynolds 1e5 {MADE}"
+
+PRINTING = {
+    "--json": (f"{GRID} -o made.h5", "OPTION", "prints"),
+    "--quiet": (f"{GRID} -o made.h5", "OPTION", "says"),
+    "--debug": (f"missing.h5 {MADE}", "OPTION", "error"),
+}
+FILES = {
+    "--output": (f"{GRID} {MADE}", "OPTION other.h5", "files"),
+    "--from": ("odd.name -o made.h5", "OPTION vts", "code"),
+    "--to": (f"{GRID} -o made.name", "OPTION hdf5", "code"),
+    "--skip-existing": (f"{GRID} -o there.h5 -q", "OPTION", "layout"),
+}
+SHAPES = PRINTING | FILES | {
+    "--jobs": ("three.h5 -o {name}.h5 -q", "OPTION 2", "workers"),
+    "--res": (f"naca:2412 {MADE}", "OPTION 31x9", "nodes"),
+    "--topology": (f"{BODY} {MADE}", "OPTION c", "nodes"),
+    "--spacing": (f"{BODY} {MADE}", "OPTION cosine", "nodes"),
+    "--le-spacing": (f"{BODY} {MADE}", "OPTION .02", "nodes"),
+    "--te-spacing": (f"{BODY} {MADE}", "OPTION .02", "nodes"),
+    "--te": (f"{BODY} {MADE}", "OPTION wedge", "nodes"),
+    "--far-field": (f"{BODY} {MADE}", "OPTION 7", "nodes"),
+    "--wake": (f"{BODY} --topology c {MADE}", "OPTION 9", "nodes"),
+    "--wake-nodes": (f"{BODY} --topology c {MADE}", "OPTION 11", "nodes"),
+    "--corners": (f"box.csv --res 11 {MADE}", "OPTION 1,2,3,0", "nodes"),
+    "--normalise": (f"large.dat --res 41x15 {MADE}", "OPTION", "nodes"),
+}  # fmt: skip
+GRIDS = SHAPES | {
+    "--first-cell": (f"naca:2412 --res 41x41 {MADE}", "OPTION 1e-3", "nodes"),
+    "--y-plus": (PLATE, "OPTION 200", "nodes"),
+    "--reynolds": (PLATE, "OPTION 2e5", "nodes"),
+    "--chord-fraction": (PLATE, "OPTION .1", "nodes"),
+    "--growth": (f"naca:2412 --res 61x61 --first-cell 1e-3 {MADE}", "OPTION 1.25", "nodes"),
+    "--constant-layers": (f"{LAYERS} {MADE}", "OPTION 5", "nodes"),
+    "--allow-invalid": (f"open.h5 {MADE}", "OPTION", "code"),
+    "--fail-on": (f"{GRID} {MADE}", "OPTION max_angle>90.5", "code"),
+}
+SIDES = {
+    f"--spacing-{side}": (f"{GRID} {MADE}", "OPTION .01", "nodes")
+    for side in ("south", "north", "west", "east")
+}
+TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
+
+EFFECTS: dict[str, dict[str, Effect]] = {
+    "sample-boundary": SHAPES | {
+        "--family": (f"--res 9 {MADE}", "OPTION arch", "code"),
+        "--count": ("--family arch --res 9 -o {name}.h5 -q", "OPTION 3", "files"),
+        "--range": (f"--family arch --res 9 {MADE}", "OPTION .1:.2", "nodes"),
+        "--seed": (f"--family arch --res 9 {MADE}", "OPTION 7", "nodes"),
+        "--split": (f"--family arch --count 9 --res 9 {MADE}", "OPTION random", "layout"),
+        "--sensors": (f"{GRID} {MADE}", "OPTION 9", "layout"),
+    },
+    "tfi": GRIDS | SIDES | {
+        "--growth": (f"{GRID} --spacing-south .005 {MADE}", "OPTION 1.5", "nodes"),
+        "--blending": (f"box.csv --res 11 --spacing cosine {MADE}", "OPTION linear", "nodes"),
+        "--repair": (f"wave.h5 {MADE}", "OPTION", "code"),
+        "--no-repair": (f"wave.h5 --repair {MADE}", "OPTION", "code"),
+    },
+    "solve-pde": GRIDS | SIDES | {
+        "--method": (f"{GRID} {MADE}", "OPTION variational", "nodes"),
+        "--tol": (f"wrench.h5 {MADE}", "OPTION .1", "nodes"),
+        "--max-cycles": (f"wrench.h5 {MADE}", "OPTION 1", "nodes"),
+        "--coarse": (f"{GRID} {MADE}", "OPTION 9", "nodes"),
+        "--refine": (f"{GRID} {MADE}", "OPTION 1", "nodes"),
+        "--initial": (f"{GRID} {MADE}", "OPTION grid.h5", "nodes"),
+        "--history": (f"{GRID} {MADE}", "OPTION cycles.csv", "files"),
+        "--slide": (f"{GRID} {MADE}", "OPTION", "nodes"),
+        "--no-slide": (f"hump.csv --res 41x21 --corners 0,2,3,4 --first-cell .01 {MADE}", "OPTION", "nodes"),
+        "--wall-angle": (f"{GRID} --method steger-sorenson {MADE}", "OPTION 80", "nodes"),
+        "--repair": (f"wrench.h5 --no-repair --tol 1e-6 {MADE}", "OPTION", "code"),
+        "--no-repair": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION", "code"),
+        "--repair-margin": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION 12", "nodes"),
+    },
+    "infer": GRIDS | {
+        "--model": (f"{BODY} {MADE}", "OPTION airfoil-o", "nodes"),
+        "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
+        "--device": (f"{BODY} {MADE}", "OPTION cpu", "nodes" if TORCH else "code"),
+        "--answer": (f"duct.h5 --model m.safetensors {MADE}", "OPTION raw", "nodes"),
+        "--repair": (f"wave.h5 --model m.safetensors --answer pasted {MADE}", "OPTION", "code"),
+        "--no-repair": (f"wave.h5 --model m.safetensors {MADE}", "OPTION", "code"),
+    },
+    "quality": {
+        "--json": ("grid.h5", "OPTION", "out"),
+        "--quiet": ("missing.h5 grid.h5", "OPTION", "error"),
+        "--debug": ("missing.h5", "OPTION", "error"),
+        "--from": ("odd.name", "OPTION vts", "code"),
+        "--fail-on": ("grid.h5", "OPTION max_angle>90.5", "code"),
+        "--profile": ("grid.h5", "OPTION viscous", "out"),
+        "--plot": ("grid.h5", "OPTION grid.png", "files"),
+        "--per-cell": ("grid.h5", "OPTION cells.vts", "files"),
+        "--compare": ("grid.h5", "OPTION smooth.h5", "out"),
+        "--pair": ("bc.h5 --compare cb.h5 --summary", "OPTION order", "out"),
+        "--summary": ("grid.h5 smooth.h5", "OPTION", "out"),
+    },
+    "convert": PRINTING | FILES | {
+        "--extrude": ("grid.h5 -o made.p3d", "OPTION 1", "bytes"),
+        "--planes": ("grid.h5 -o made.p3d --extrude 1", "OPTION 3", "bytes"),
+        "--plot3d": ("grid.h5 -o made.p3d", "OPTION binary", "bytes"),
+        "--swap": (f"grid.h5 {MADE}", "OPTION", "nodes"),
+        "--normalise": (f"grid.h5 {MADE}", "OPTION", "nodes"),
+        "--coarsen": (f"grid.h5 {MADE}", "OPTION 2", "nodes"),
+        "--list-formats": ("", "OPTION", "prints"),
+    },
+    "plot": {
+        "--output": ("grid.h5 -o made.png -q", "OPTION other.svg", "files"),
+        "--from": ("odd.name -o made.png", "OPTION vts", "code"),
+        "--to": ("grid.h5 -o made.name", "OPTION png", "code"),
+        "--skip-existing": ("grid.h5 -o there.png -q", "OPTION", "layout"),
+        "--json": ("grid.h5 -o made.png", "OPTION", "prints"),
+        "--quiet": ("grid.h5 -o made.png", "OPTION", "says"),
+        "--debug": ("missing.h5 -o made.png", "OPTION", "error"),
+        "--metric": ("grid.h5 -o made.png -q", "OPTION skewness", "bytes"),
+        "--zoom": ("grid.h5 -o made.png -q", "OPTION .5,1.5,0,.5", "bytes"),
+        "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
+    },
+    "models": {
+        "--json": ("", "OPTION", "out"),
+    },
+    "train": {
+        "--output": (TRAINING, "OPTION other.safetensors", "files"),
+        "--json": (TRAINING, "OPTION", "prints"),
+        "--quiet": (TRAINING, "OPTION", "says"),
+        "--debug": ("missing.h5 -o m.safetensors", "OPTION", "error"),
+        "--from": (TRAINING.replace("arches.h5", "solved.name"), "OPTION vts", "code"),
+        "--model": (TRAINING, "OPTION meshonet-hard", "weights"),
+        "--split": (TRAINING, "OPTION extrapolation", "weights"),
+        "--set": (TRAINING, "OPTION sensors=20", "weights"),
+        "--epochs": (TRAINING, "OPTION 2", "weights"),
+        "--batch": (TRAINING, "OPTION 2", "weights"),
+        "--rate": (TRAINING, "OPTION .002", "weights"),
+        "--schedule": (TRAINING, "OPTION cosine", "weights"),
+        "--points": (TRAINING, "OPTION 90", "weights"),
+        "--held-out": (TRAINING, "OPTION 2", "weights"),
+        "--seed": (TRAINING, "OPTION 3", "weights"),
+        "--log-csv": (TRAINING, "OPTION log.csv", "files"),
+    },
+}  # fmt: skip
+ELSEWHERE = {
+    ("models", "--debug"): "shipped models do not fail; test_cli_models breaks one",
+    ("train", "--initial"): "test_the_quad_operator_learns_around_bodies_from_a_model_that_is_there",
+    ("train", "--patience"): "test_patience_ends_a_run",
+    ("train", "--threads"): "test_threads_are_those_of_torch",
+    ("train", "--device"): "test_the_device_is_that_of_torch",
+    ("train", "--amp"): "test_amp_multiplies_in_bfloat16",
+    ("train", "--compile"): "test_compile_goes_through_the_compiler",
+    ("train", "--resume"): "test_a_cut_run_goes_on_from_its_checkpoint",
+    ("train", "--checkpoint-every"): "test_a_cut_run_goes_on_from_its_checkpoint",
+}
+"""Effects that no single run shows, and the tests of them."""
+
+
+def spellings() -> Iterator[tuple[str, str, str]]:
+    """Command, option by the name that `EFFECTS` has for it, and each long spelling of it."""
+    for name, command in application().commands.items():
+        for option in command.params:
+            long = [word for word in option.opts if word.startswith("--")]
+            for word in (*long, *option.secondary_opts):
+                known = word if word in option.secondary_opts else long[0]
+                if (name, known) not in ELSEWHERE:
+                    yield name, known, word
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with what the runs read."""
+    from meshonet_cli.app import run
+
+    folder = tmp_path_factory.mktemp("inputs")
+    dataset(folder / "duct.h5", "quad", duct())
+    dataset(folder / "wave.h5", "quad", wave())
+    samples = [duct(bump=bump) for bump in (0.0, 0.1, 0.3)]
+    dataset(folder / "three.h5", "quad", *samples, names=("a", "b", "c"))
+    edges = duct()
+    edges["south"][1] = [-0.05, -0.05]
+    dataset(folder / "open.h5", "quad", edges)
+    (folder / "box.csv").write_text("0,0\n2,0\n3,1\n0,1\n")
+    (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")
+    shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
+    (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
+    for name in ("there.h5", "there.png"):
+        (folder / name).write_text("mine")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for words in (
+            "tfi duct.h5 -o grid.h5",
+            "solve-pde duct.h5 -o smooth.h5",
+            "tfi three.h5 -o {name}.vts",
+            "convert b.vts c.vts -o bc.h5",
+            "convert c.vts b.vts -o cb.h5",
+            "sample-boundary --family wrench --count 1 --seed 1 -o wrench.h5",
+            "sample-boundary --family arch --count 8 --res 17 --split interpolation -o edges.h5",
+            "solve-pde edges.h5 -o arches.h5",
+        ):
+            assert run([*words.split(), "-q"]) == 0
+        if TORCH:
+            quad = "train arches.h5 --epochs 4 --points 60 --batch 4 --set sensors=20 -o m.safetensors -q"
+            assert run(quad.split()) == 0
+    shutil.copy(folder / "grid.h5", folder / "odd.name")
+    shutil.copy(folder / "arches.h5", folder / "solved.name")
+    return folder
+
+
+def observed(
+    meshonet: Meshonet, command: str, words: list[str], inputs: Path, folder: Path
+) -> dict[str, Any]:
+    """What a run leaves behind."""
+    for path in inputs.iterdir():
+        shutil.copy(path, folder)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    done = meshonet(command, *words)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+    appeared = sorted({path.name for path in folder.iterdir()} - {path.name for path in inputs.iterdir()})
+    written = [folder / name for name in appeared] or [folder / name for name in ("there.h5", "there.png")]
+    content = b"".join(path.read_bytes() for path in written if path.suffix != ".h5")
+    return {
+        "code": done.code,
+        "says": bool(done.err),
+        "prints": bool(done.out),
+        "out": done.out,
+        "error": done.err,
+        "files": appeared,
+        "layout": [layout(path) for path in written],
+        "bytes": hashlib.sha256(content).hexdigest(),
+        "nodes": [nodes(path) for path in written if path.suffix == ".h5"],
+        "weights": [weights(path) for path in written if path.suffix == ".safetensors"],
+        "workers": after > before,
+    }
+
+
+def layout(path: Path) -> object:
+    """How a file begins; of HDF5 the names of what is in it."""
+    import h5py
+
+    start = path.read_bytes()[:4]
+    if start != b"\x89HDF":
+        return start
+    with h5py.File(path) as file:
+        return sorted(file)
+
+
+def nodes(path: Path) -> list[bytes]:
+    """Coordinates of every grid or boundary of a file."""
+    if layout(path) == b"mine":
+        return []
+    try:
+        return [grid.nodes.tobytes() for grid in read_grids(str(path))]
+    except ValueError:
+        raise
+    except Exception:  # a file of boundaries
+        boundaries = [shape for shape in read_shapes(str(path)) if isinstance(shape, Boundary)]
+        return [b"".join(getattr(each, side).tobytes() for side in ("south", "north")) for each in boundaries]
+
+
+def weights(path: Path) -> dict[str, bytes]:
+    """Arrays of a model."""
+    from safetensors.numpy import load_file
+
+    return {name: array.tobytes() for name, array in load_file(path).items()}
+
+
+@pytest.mark.parametrize(("command", "known", "option"), list(spellings()))
+def test_every_spelling_of_an_option_has_its_effect(
+    meshonet: Meshonet,
+    inputs: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    command: str,
+    known: str,
+    option: str,
+) -> None:
+    assert known in EFFECTS[command], f"say in EFFECTS what {command} {known} changes"
+    base, more, differs = EFFECTS[command][known]
+    if not TORCH and (".safetensors" in base or command == "train"):
+        pytest.skip("needs torch")
+    seen = []
+    for name, words in (("without", []), ("with", more.replace("OPTION", option).split())):
+        folder = tmp_path / name
+        folder.mkdir()
+        monkeypatch.chdir(folder)
+        seen.append(observed(meshonet, command, [*base.split(), *words], inputs, folder))
+    without, with_it = seen
+    told = f"{command} {base} {more}: {without['error']} {with_it['error']}"
+    assert with_it["code"] != 2 or differs in ("code", "error"), told
+    assert with_it[differs] != without[differs], f"{differs} is the same: {told}"
+
+
+def test_what_is_tested_elsewhere_is_there() -> None:
+    tests = "".join(path.read_text() for path in Path(__file__).parent.glob("test_*.py"))
+    missing = [
+        name for name in ELSEWHERE.values() if name.startswith("test_") and f"def {name}(" not in tests
+    ]
+    assert not missing

@@ -1,0 +1,165 @@
+"""`import meshonet`: light, complete, and doing what the commands do."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from test_architecture import BLOCKED, HEAVY, ROOT, python
+
+import meshonet
+from meshonet.solvers.method import METHODS, Each, method_named
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.grid import Grid
+
+
+def square(n: int = 9) -> meshonet.Boundary:
+    t = np.linspace(0, 1, n)
+    zero, one = np.zeros(n), np.ones(n)
+    edges = [(t, zero), (t, one), (zero, t), (one, t)]
+    return meshonet.Boundary(*(np.stack(edge, axis=1) for edge in edges))
+
+
+def test_importing_it_loads_nothing_heavy() -> None:
+    names = (*HEAVY, "vtk", "pyvista", "numpy", "typer")
+    done = python(BLOCKED.format(names=names) + "import meshonet; print(meshonet.__version__)")
+    assert done.stdout == f"{meshonet.__version__}\n"
+
+
+def test_a_grid_needs_no_heavy_library(tmp_path: Path) -> None:
+    code = "import meshonet; meshonet.grid('naca:0012', res=40).write('g.vts')"
+    assert python(BLOCKED.format(names=HEAVY) + code, cwd=tmp_path).returncode == 0
+    assert (tmp_path / "g.vts").exists()
+
+
+def test_every_public_name_is_there_and_typed() -> None:
+    source = Path(meshonet.__file__).read_text()
+    typed = set(re.findall(r"import (\w+) as \1$", source, flags=re.MULTILINE))
+    assert typed | {"__version__"} == set(meshonet.__all__) <= set(dir(meshonet))
+    for name in meshonet.__all__:
+        assert getattr(meshonet, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        meshonet.nothing  # noqa: B018
+
+
+def test_shapes_are_files_designations_points_boundaries_and_grids(tmp_path: Path) -> None:
+    edges = square()
+    meshonet.write(edges, tmp_path / "edges.h5")
+    ring = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=float)
+    same = [edges, tmp_path / "edges.h5", str(tmp_path / "edges.h5"), meshonet.tfi(edges)]
+    for shape in same:
+        np.testing.assert_array_equal(meshonet.tfi(shape).nodes, meshonet.tfi(edges).nodes)
+    np.testing.assert_allclose(meshonet.tfi(ring, res=9).nodes, meshonet.tfi(edges).nodes, atol=1e-12)
+    assert meshonet.grid("naca:0012", res=(41, 15)).topology == "o"
+    with pytest.raises(meshonet.InputError, match=r"points of shape \(4, 3\)"):
+        meshonet.grid(np.zeros((4, 3)))
+
+
+def test_functions_do_what_their_commands_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from meshonet_cli.app import run
+
+    monkeypatch.chdir(tmp_path)
+    cases = {
+        "infer naca:2412 --res 61x31": lambda: meshonet.infer("naca:2412", res=(61, 31)),
+        "infer naca:2412 --res 61x31 --polish 2": lambda: meshonet.infer("naca:2412", res=(61, 31), polish=2),
+        "solve-pde naca:2412 --res 61 --first-cell 1e-4 --growth 1.3 --topology o": lambda: (
+            meshonet.solve_pde("naca:2412", res=61, wall_spacing=1e-4, growth=1.3, topology="o")
+        ),
+        "tfi naca:2412 --res 61x31 --blending linear --allow-invalid": lambda: meshonet.tfi(
+            "naca:2412", res=(61, 31), blending="linear", allow_invalid=True
+        ),
+    }
+    for line, make in cases.items():
+        assert run([*line.split(), "-q", "-o", "made.h5"]) == 0
+        made: Grid = meshonet.read("made.h5")  # type: ignore[assignment]
+        np.testing.assert_array_equal(made.nodes, make().nodes, err_msg=line)
+
+
+def test_files_are_read_whole_and_one_by_one(tmp_path: Path) -> None:
+    made = meshonet.tfi(square())
+    made.write(tmp_path / "g.vts")
+    assert isinstance(meshonet.read(tmp_path / "g.vts"), meshonet.Grid)
+    with pytest.raises(meshonet.InputError, match="its ending"):
+        made.write(tmp_path / "g.nothing")
+    made.write(tmp_path / "odd.name", to_format="vtk")
+    assert (tmp_path / "odd.name").read_bytes().startswith(b"# vtk")
+
+
+def test_pyvista_is_told_of_when_it_is_missing_and_has_the_nodes(monkeypatch: pytest.MonkeyPatch) -> None:
+    made = meshonet.tfi(square())
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    with pytest.raises(meshonet.InputError, match="install it: pip install 'meshonet"):
+        made.to_pyvista()
+    fake = ModuleType("pyvista")
+    fake.StructuredGrid = lambda *planes: planes  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "pyvista", fake)
+    x, y, z = made.to_pyvista()
+    assert x.shape == y.shape == z.shape == (9, 9, 1)
+    np.testing.assert_array_equal(y[..., 0], made.y)
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_every_method_makes_a_grid_or_says_why_not(name: str) -> None:
+    settings = {"first_cell": 1e-3} if name == "hyperbolic" else {}
+    made = meshonet.grid("naca:0012", res=(61, 41), method=name, topology="o", repair=True, **settings)
+    assert made.quality().folded == 0
+    assert (made.ni, made.nj) == (61, 41)
+
+
+def test_a_setting_that_a_method_does_not_have_is_refused() -> None:
+    with pytest.raises(meshonet.InputError, match="method winslow has no polish; leave polish out"):
+        meshonet.grid("naca:0012", res=40, method="winslow", polish=2)
+    with pytest.raises(meshonet.InputError, match="method 'no' is not known; use one of tfi"):
+        meshonet.grid("naca:0012", res=40, method="no")
+    with pytest.raises(meshonet.InputError, match="a boundary has no tol; leave tol out"):
+        meshonet.sample_boundary("naca:0012", res=40, tol=1e-3)
+
+
+def test_an_operator_has_its_name_in_that_of_the_method() -> None:
+    named = meshonet.grid(square(33), method="operator:quad-general")
+    np.testing.assert_array_equal(named.nodes, meshonet.infer(square(33), model="quad-general").nodes)
+
+
+def test_a_batch_goes_on_behind_what_fails() -> None:
+    broken = meshonet.sample_boundary("naca:0012", res=(41, 15))
+    results = list(
+        meshonet.make_grids([square(), broken, square()], meshonet.grid_request("winslow", slide=True))
+    )
+    assert [isinstance(result, Exception) for result in results] == [False, True, False]
+
+
+def test_outcomes_say_what_to_try() -> None:
+    request = meshonet.grid_request("winslow", res=41, topology="o", max_cycles=1, tol=1e-12)
+    outcome = meshonet.make_grid(meshonet.read("naca:0012"), request).outcome  # type: ignore[arg-type]
+    assert outcome.name == "UNCONVERGED"
+    assert "allow more max_cycles or a larger tol" in outcome.message
+
+
+def test_methods_are_functions_with_settings() -> None:
+    method = method_named("winslow", tol=1e-9)
+    assert isinstance(method, Each)
+    first = method.solve([square(17)])[0]
+    again = method.solve([square(17)], [first.grid])[0]
+    np.testing.assert_allclose(first.grid.nodes, again.grid.nodes, atol=1e-8)
+
+
+def test_the_page_of_examples_prints_what_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import contextlib
+    import io
+
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs" / "python.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```(?:\n```\n(.*?)```)?", page, flags=re.DOTALL)
+    assert len(blocks) >= 5
+    names: dict[str, object] = {}
+    for code, expected in blocks:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed):
+            exec(code, names)  # noqa: S102
+        assert printed.getvalue() == expected, code
