@@ -12,8 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
-_STEPS = 8
-"""Parts of an interval in the table of arc length."""
+_STEPS = 8  # parts of an interval in the table of arc length
 _GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)
 _INNER = ((np.arange(_STEPS)[:, None] + _GAUSS) / _STEPS).ravel()

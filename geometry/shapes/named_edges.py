@@ -14,8 +14,7 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
-_BLOCK = 1 << 22
-"""Distances worked out at a time."""
+_BLOCK = 1 << 22  # distances worked out at a time
 
 
 class Labelled:

@@ -27,8 +27,7 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
-_LEAST_TURN = np.radians(30.0)
-"""A corner that turns less does not count as one of the four of a domain."""
+_LEAST_TURN = np.radians(30.0)  # a corner that turns less does not count as one of the four of a domain
 
 
 class Outline:

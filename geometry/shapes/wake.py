@@ -29,16 +29,11 @@ from meshonet.geometry.spacing.laws import TanhLaw
 C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
 grows by more than 15 % each at 250 nodes."""
-_GROWTH = 1.135
-"""Growth of wake cells that is enough, and below which cells are better spent on the wall."""
-_SHARES = 0.2, 0.23
-"""Smallest and largest part of all cells that one side of the wake takes by itself."""
-_RAMP = 3.0
-"""Cells of a wake over which growth sets in: the lines that leave its first ones converge."""
-_LATE = 0.05
-"""Part by which cells at the outlet grow faster than on average, and those at the edge slower."""
-_STEEPEST = math.radians(34.0)
-"""Largest angle at which the wake leaves the trailing edge."""
+_GROWTH = 1.135  # growth of wake cells that is enough, and below which cells are better spent on the wall
+_SHARES = 0.2, 0.23  # smallest and largest part of all cells that one side of the wake takes by itself
+_RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
+_LATE = 0.05  # part by which cells at the outlet grow faster than on average, and those at the edge slower
+_STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
 _LEAST_WALL = 5
 
 

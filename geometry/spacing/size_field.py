@@ -15,21 +15,15 @@ GROWTH = math.log(1.10)
 """How fast a cell may grow along the wall: by 10 % from one to the next."""
 HURRY = 1.3
 """Factor by which it may grow faster where nodes are few, before curvature and the nose alone get fewer."""
-_SCARCE = 5.0
-"""Factor from which on, curvature and the nose getting that much fewer, cells grow faster again."""
-_RAMP = 3.0
-"""Cells over which growth sets in behind a trailing edge whose step is asked for."""
-_EDGE = 0.025
-"""Part of the wall, at either end, where curvature asks for no less than the step of the edge."""
+_SCARCE = 5.0  # factor from which on, curvature and the nose getting that much fewer, cells grow faster again
+_RAMP = 3.0  # cells over which growth sets in behind a trailing edge whose step is asked for
+_EDGE = 0.025  # part of the wall, at either end, where curvature asks for no less than the step of the edge
 TURN = math.radians(3.0)
 """How much of the curve's turning one cell may take."""
-_WINDOW = 2e-3
-"""Chords over which curvature is averaged, so that the last digit of the points does not count."""
+_WINDOW = 2e-3  # chords over which curvature is averaged, so that the last digit of the points does not count
 _SAMPLES = 1600
-_SCARCEST = math.log(64.0)
-"""Logarithm of the largest factor by which curvature and the leading edge get less."""
-_REACH = 8.0
-"""Cells over which the field is bent to meet a step asked for."""
+_SCARCEST = math.log(64.0)  # logarithm of the largest factor by which curvature and the leading edge get less
+_REACH = 8.0  # cells over which the field is bent to meet a step asked for
 
 
 def arcs_by_curvature(

@@ -25,8 +25,7 @@ from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
-_WIDEST_WEDGE = 50.0
-"""Largest angle in degrees between surfaces whose edge a C grid takes by itself."""
+_WIDEST_WEDGE = 50.0  # largest angle in degrees between surfaces whose edge a C grid takes by itself
 
 
 class CrossingError(InputError):

@@ -14,8 +14,7 @@ from meshonet.geometry.shapes.airfoil.clean import Section
 
 _CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
 """Where an interval of the curve is cut into straight pieces to be searched for crossings."""
-_PARTS = 128
-"""Parts into which a stretch is cut to find the place farthest from the trailing edge."""
+_PARTS = 128  # parts into which a stretch is cut to find the place farthest from the trailing edge
 
 
 def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[str]]:

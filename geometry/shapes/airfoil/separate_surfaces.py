@@ -13,8 +13,7 @@ from meshonet.geometry.arrays import Floats
 
 MOST = 4.5e-5
 """Chords by which a point may move."""
-_WEDGE = 0.02
-"""Near an edge the least thickness grows from nothing by this much of the distance."""
+_WEDGE = 0.02  # near an edge the least thickness grows from nothing by this much of the distance
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:

@@ -36,10 +36,8 @@ ones open within fewer rows."""
 _BASE_GROWTH = 1.15
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
-_ROUND_CELLS = 14
-"""Fewest cells on half a rounded base, when there are 16 times as many in all."""
-_BASE_SHARE = 0.35
-"""Largest part of all cells that goes to the base."""
+_ROUND_CELLS = 14  # fewest cells on half a rounded base, when there are 16 times as many in all
+_BASE_SHARE = 0.35  # largest part of all cells that goes to the base
 
 
 @dataclass(frozen=True)
