@@ -139,7 +139,7 @@ def _views(grid: Grid) -> list[Box]:
     whole = _whole(grid)
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
-    if grid.topology == "quad":
+    if not grid.around_body:
         return [whole]
     wall = body(grid)
     low, high = wall.min(axis=0), wall.max(axis=0)

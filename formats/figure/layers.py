@@ -100,10 +100,10 @@ def outline(ax: Axes, grid: Grid) -> None:
     """Draw the outer edges stronger, and fill the body that an O or C grid goes around."""
     for edge in (grid.nodes[:, 0], grid.nodes[:, -1]):
         ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
-    if grid.topology != "o":
+    if not grid.periodic:
         for edge in (grid.nodes[0], grid.nodes[-1]):
             ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
-    if grid.topology != "quad":
+    if grid.around_body:
         wall = body(grid)
         ax.fill(wall[:, 0], wall[:, 1], facecolor=_BODY, edgecolor=INK, linewidth=0.9, zorder=3)
 

@@ -137,7 +137,7 @@ def _attempt(
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
-    periodic = boundary.topology == "o"
+    periodic = boundary.periodic
     levels = Multigrid(nodes, edges, periodic, settings, controls)
     if initial is None:
         start = levels.nested_iteration()

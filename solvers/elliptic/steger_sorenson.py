@@ -123,10 +123,10 @@ def _asked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float
         raise InputError("steger-sorenson has no C grids", "use topology o or method hyperbolic")
     if not 30.0 <= angle <= 150.0:
         raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150")
-    walls = ("south", "north") if boundary.topology == "quad" else ("south",)
+    walls = ("south", "north") if not boundary.around_body else ("south",)
     asked = dict(heights) if heights else dict.fromkeys(walls, 0.0)
     for side in asked:
-        if boundary.topology != "quad" and side != "south":
+        if boundary.around_body and side != "south":
             problem = f"{side} in topology {boundary.topology} cannot be controlled"
             raise InputError(problem, "control its wall, south")
     return asked
@@ -137,7 +137,7 @@ def _edges(
 ) -> list[ControlledEdge]:
     """Return the edges under control, with heights that sources can hold beside those of `nodes`."""
     found = []
-    closed = boundary.topology == "o"
+    closed = boundary.periodic
     for side, height in asked.items():
         count = boundary.nj if side in ("south", "north") else boundary.ni
         edge, first, _ = layers_at(nodes, side)
@@ -159,7 +159,7 @@ def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], ro
     """
     four = boundary.south, boundary.north, boundary.west, boundary.east
     work = planar_nodes(boundary.ni, boundary.nj)
-    levels = Multigrid(work, four, boundary.topology == "o", controls=_sum(edges, boundary))
+    levels = Multigrid(work, four, boundary.periodic, controls=_sum(edges, boundary))
     work[...] = nodes
     for _ in range(FIRST):
         levels.cycle()

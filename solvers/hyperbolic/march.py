@@ -136,7 +136,7 @@ def hyperbolic(
 def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -> float:
     """Return the height of the first cell in the unit of the boundary, once all is checked."""
     check_layers(wall_spacing, growth)
-    if boundary.topology == "quad":
+    if not boundary.around_body:
         raise InputError(
             f"hyperbolic marching cannot make topology {boundary.topology}",
             "use it around a body (topology o or c), or another method without a wall spacing",

@@ -52,7 +52,7 @@ def infer(
     InputError
         a model that does not exist, cannot be read or does not suit the boundary; no such device.
     """
-    if model is None and boundary.topology == "quad" and (device is not None or polish != "auto"):
+    if model is None and not boundary.around_body and (device is not None or polish != "auto"):
         model = FOUR_SIDED
     kind = KIND if model in (None, "base") else kind_of(model_path(model))
     if kind == "":
@@ -158,7 +158,7 @@ def answered(trained: Trained, boundary: Boundary, *, paste: bool = True) -> tup
         found += extend(boundary)
     nodes = as_planar(found)
     edges = [(nodes[:, 0], boundary.south), (nodes[:, -1], boundary.north)]
-    if boundary.topology == "o":
+    if boundary.periodic:
         nodes[-1] = nodes[0]
     else:
         edges += [(nodes[0], boundary.west), (nodes[-1], boundary.east)]

@@ -66,14 +66,14 @@ def infer(boundary: Boundary, model: str | None = None, polish: Polish = "auto")
     InputError
         a model that does not exist or cannot be read.
     """
-    if boundary.topology != "o":
+    if not boundary.periodic:
         from meshonet.solvers.energy.variational import solve
         from meshonet.solvers.pipeline.select import solve_automatic
 
         if model is not None:
             told = f"model {model} makes o grids, and this boundary is {boundary.topology}"
             raise InputError(told, "use another model, or leave --model out")
-        if boundary.topology == "quad":
+        if not boundary.around_body:
             return solve_automatic(boundary, solve, "variational")
         found = solve_automatic(boundary, solve, "auto")
         note = f"no shipped model makes {boundary.topology} grids: this one is {found.method}"

@@ -59,7 +59,7 @@ class FirstCells:
         """Return the heights in the unit of `boundary`."""
         walls: dict[str, float] = {}
         if self.height is not None:
-            quad = boundary.topology == "quad"
+            quad = not boundary.around_body
             height = self.height * (boundary.chord if self.in_chords or not quad else 1.0)
             walls = dict.fromkeys(("south", "north") if quad else ("south",), height)
         return Heights(
@@ -113,7 +113,7 @@ class Layered:
         return [self._solve(*each) for each in zip(problems, grids, strict=True)]
 
     def _solve(self, boundary: Boundary, start: Sequence[Grid] | None) -> Solution:
-        if boundary.topology != "quad" and self.cells.sides:
+        if boundary.around_body and self.cells.sides:
             raise InputError(
                 f"a height off a single side, around a body (topology {boundary.topology})",
                 "use {first_cell}",
@@ -154,7 +154,7 @@ class Layered:
 
     def _even(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
         """Return the grid of `boundary` with even rows, wall nodes slid or lines turned as they are to be."""
-        channel = self.channels and boundary.topology == "quad" and self.cells.height is not None
+        channel = self.channels and not boundary.around_body and self.cells.height is not None
         slide = channel and boundary.sampled if self.slide is None else self.slide
         if slide:
             solution = self._slid(boundary, start)
