@@ -27,8 +27,8 @@ class Curve:
     points : (n, 2), any unit of length, neighbours distinct, at least 2 (closed: 3). A closed curve may
         repeat its first point at the end.
     closed : the curve returns from the last point to the first.
-    corners : indices of points where the tangent may jump; None finds them (`meshonet.geometry.polygon.corners`). The ends
-        of an open curve are corners anyway.
+    corners : indices of points where the tangent may jump, the ends of an open curve besides; None finds
+        them (`meshonet.geometry.polygon.corners`).
     straight : (intervals,) true where the curve is to follow the chord instead of the spline.
 
     Raises

@@ -220,7 +220,7 @@ class Outline:
         return Curve(p, closed=True, corners=np.flatnonzero(corner))
 
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
-        """Return the arc lengths (ni,) of the nodes around a body, and a note where ``auto`` is not the usual."""
+        """Return the arc lengths (ni,) of the nodes around a body, and a note of another spacing."""
         notes: tuple[str, ...] = ()
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
             try:

@@ -1,5 +1,7 @@
 """Hyperbolic marching: against circles, whose levels follow a scalar recursion; on airfoils."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from march_shapes import airfoil, circle, deviation, ellipse, first_cells

@@ -45,7 +45,7 @@ class Airfoil:
 
     Parameters
     ----------
-    points : (n, 2) around the section, any unit, either way, from any start (`meshonet.geometry.shapes.airfoil.clean`).
+    points : (n, 2) around the section, any unit, in either direction, from any start (`clean_section`).
     name : what the input called it.
     notes : what was changed of it before.
     places : (n,) where each point stands in its source, such as ``line 12``, for messages.
@@ -126,7 +126,7 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def rounded(self) -> Airfoil:
-        """Return the same airfoil with the corners of its blunt base rounded off (`meshonet.geometry.shapes.airfoil.te_fillet`)."""
+        """Return the same airfoil with the corners of its blunt base rounded off (`te_fillet`)."""
         if not self.blunt:
             return self
         body = copy(self)
@@ -197,7 +197,7 @@ class Airfoil:
             return body.moved_apart()._around(sampling)
 
     def wedged(self) -> Airfoil:
-        """Return the same airfoil with its blunt base closed by a wedge (`meshonet.geometry.shapes.airfoil.te_wedge`)."""
+        """Return the same airfoil with its blunt base closed by a wedge (`te_wedge`)."""
         if not self.blunt:
             return self
         first, _, last = self._arcs

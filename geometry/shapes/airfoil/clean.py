@@ -51,7 +51,7 @@ class Section:
     swapped: tuple[int, ...] = ()
 
     def moved_apart(self) -> Section:
-        """Return the section with its surfaces moved apart where they all but touch (`meshonet.geometry.shapes.airfoil.separate_surfaces`)."""
+        """Return the section with surfaces that nearly touch moved apart (`separate_surfaces`)."""
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
         return replace(self, points=moved_apart(self.points, int(np.argmax(_distance(self.points, edge)))))
 

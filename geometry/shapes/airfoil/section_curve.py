@@ -47,8 +47,8 @@ def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[
         straight[where if left > 1 else slice(None)] = True
     if straight.any():
         notes.append(
-            f"the outline follows straight lines between {straight.sum()} of its {len(points)} pairs of points, "
-            "where a smooth curve would cross itself"
+            f"the outline follows straight lines between {straight.sum()} of its {len(points)} pairs of "
+            "points, where a smooth curve would cross itself"
         )
     return curve, notes
 
