@@ -1,9 +1,9 @@
-"""Tangents turned back where a spline would swing out between its points.
+"""Limits on the tangents of a spline, against overshoots between its points.
 
-A curve without bumps leaves a point between the directions of the chords before and after it. A cubic
-spline does not always: next to a short interval or an unmarked kink it swings out. And where two points
-close together make a step, turning one way and back, a tangent between those chords still throws a wide
-bulge into the long interval beside it: there it has to stay near the long chord.
+The tangent at a point is kept between the directions of the chords before and after it, which a cubic spline
+leaves next to a short interval or an unmarked kink. Where two points close together make a step, turning one
+way and back, even such a tangent makes a wide bulge in the long interval beside them: there it is kept near
+the long chord.
 """
 
 from __future__ import annotations

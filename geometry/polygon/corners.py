@@ -19,7 +19,7 @@ SHARP = np.radians(40.0)
 ALWAYS = np.radians(75.0)
 """A turn that counts whatever its neighbours do."""
 HAIRPIN = np.radians(100.0)
-"""From here on a point may be the coarse round end of a thin body; from `SHARP` on where it turns alone."""
+"""A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
 ALONE = np.radians(50.0)
 FEW = 12
 """A closed polygon of at most so many points is meant as one."""

@@ -11,11 +11,11 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import crossing_segments
 
-_BUDGET = 50_000_000  # comparisons before the sweep gives way to an index tree: a quarter of a second
+_BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
 """Direction of the sweep. Along an axis, every segment of a straight side across it would meet all others."""
 _ROUNDING = 1e-15
-_CHUNK = 256  # segments asked about at once, so that a tangle does not fill the memory with its crossings
+_CHUNK = 256  # segments queried at once, so that the crossings of a tangle do not fill the memory
 
 
 @dataclass(frozen=True)

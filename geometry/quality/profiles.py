@@ -151,7 +151,7 @@ class Figures:
     @cached_property
     def wall_rows(self) -> tuple[WallRow, ...]:
         """The cells at its walls."""
-        return tuple(wall_row(self.grid, part) for part in self.walls)
+        return tuple(wall_row(self.grid, patch) for patch in self.walls)
 
     def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, int] | None] | None:
         """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
@@ -172,7 +172,7 @@ class Figures:
         return None if figure is None else (figure.max, figure.at)
 
     def _wall_growth(self) -> Extreme | None:
-        sides = {part.side for part in self.walls}
+        sides = {patch.side for patch in self.walls}
         along = [
             self.growth.eta if sides & {"south", "north"} else None,
             self.growth.xi if sides & {"west", "east"} else None,
@@ -182,7 +182,7 @@ class Figures:
     def _far_field(self) -> tuple[float, None] | None:
         if not self.grid.around_body or not self.walls:
             return None
-        wall = np.concatenate([self.grid.nodes[part.start : part.stop + 1, 0] for part in self.walls])
+        wall = np.concatenate([self.grid.nodes[patch.start : patch.stop + 1, 0] for patch in self.walls])
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
         start = wall[np.argmax(np.hypot(*(wall - middle).T))]
         chord = float(np.hypot(*(wall - start).T).max())

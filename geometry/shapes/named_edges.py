@@ -1,4 +1,4 @@
-"""Names carried over from the edges of a file to the parts of the boundary sampled from them."""
+"""Names carried over from the edges of a file to the patches of the boundary sampled from them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _BLOCK = 1 << 22  # distances worked out at a time
 
 
 class Labelled:
-    """A shape whose curve has names, which its boundaries get as parts.
+    """A shape whose curve has names, which become patches of its boundaries.
 
     Parameters
     ----------
@@ -39,14 +39,14 @@ class Labelled:
         """Return the boundary of the shape, each cell of it called as the edge nearest to its middle."""
         boundary = self._shape.boundary(sampling)
         sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
-        parts = []
+        patches = []
         for side in sides:
             nodes = getattr(boundary, side)
             near = self._nearest(0.5 * (nodes[1:] + nodes[:-1]))
             reach = float(np.hypot(*np.ptp(self._edges.reshape(-1, 2), axis=0)))
             names = [self._names[k] if gap < 0.01 * reach else "" for k, gap in near]
-            parts += runs(side, names)
-        return replace(boundary, patches=tuple(parts))
+            patches += runs(side, names)
+        return replace(boundary, patches=tuple(patches))
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
         """Return the nearest edge to each of `points` (m, 2), and its distance."""
@@ -64,16 +64,16 @@ class Labelled:
 
 
 def runs(side: Side, names: Sequence[str]) -> list[Patch]:
-    """Return the parts of a side whose cells are called `names`; those without a name are called by the side.
+    """Return the patches of a side whose cells are called `names`; those without one are called by the side.
 
     Examples
     --------
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]
     """
-    parts, start = [], 0
+    patches, start = [], 0
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        parts.append(Patch(name or side, side, start, stop))
+        patches.append(Patch(name or side, side, start, stop))
         start = stop
-    return parts
+    return patches

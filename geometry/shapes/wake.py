@@ -37,14 +37,14 @@ _STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the tra
 _LEAST_WALL = 5
 
 
-def cells_of_wake(ni: int, asked: int | None, first: float, length: float) -> int:
+def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float) -> int:
     """Return the cells of the wake of a C grid with `ni` nodes along xi.
 
     Parameters
     ----------
     ni : nodes of south, both sides of the wake included.
-    asked : nodes of the wake, the trailing edge included, or None for as many as cells that grow from `first`
-        on by 13 % need, between 12 and 22 % of all.
+    nodes_wanted : of the wake, the trailing edge included; None for cells that grow from `first` by 13 %, and
+        are 20 to 23 % of all.
     first : the cell at the trailing edge.
     length : of the wake.
 
@@ -53,8 +53,8 @@ def cells_of_wake(ni: int, asked: int | None, first: float, length: float) -> in
     InputError
         no room for the wall.
     """
-    if asked is not None:
-        cells = asked - 1
+    if nodes_wanted is not None:
+        cells = nodes_wanted - 1
     else:
         least, most = (max(2, round(share * (ni - 1))) for share in _SHARES)
         cells = min(max(cells_for_growth(first, length, _GROWTH), least), most)

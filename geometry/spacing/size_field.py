@@ -12,18 +12,18 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 
 GROWTH = math.log(1.10)
-"""How fast a cell may grow along the wall: by 10 % from one to the next."""
+"""Largest growth of cells along the wall: 10 % from one to the next."""
 HURRY = 1.3
-"""Factor by which it may grow faster where nodes are few, before curvature and the nose alone get fewer."""
-_SCARCE = 5.0  # factor from which on, curvature and the nose getting that much fewer, cells grow faster again
+"""Factor on the growth where nodes are few, before only curvature and nose are resolved more coarsely."""
+_SCARCE = 5.0  # coarsening of curvature and nose beyond which cells grow faster again
 _RAMP = 3.0  # cells over which growth sets in behind a trailing edge whose step is asked for
-_EDGE = 0.025  # part of the wall, at either end, where curvature asks for no less than the step of the edge
+_EDGE = 0.025  # part of the wall at either end where curvature sets no cell below the step of the edge
 TURN = math.radians(3.0)
 """How much of the curve's turning one cell may take."""
-_WINDOW = 2e-3  # chords over which curvature is averaged, so that the last digit of the points does not count
+_WINDOW = 2e-3  # chords over which curvature is averaged, against noise of the last digit of the points
 _SAMPLES = 1600
-_SCARCEST = math.log(64.0)  # logarithm of the largest factor by which curvature and the leading edge get less
-_REACH = 8.0  # cells over which the field is bent to meet a step asked for
+_SCARCEST = math.log(64.0)  # logarithm of the largest coarsening of curvature and leading edge
+_REACH = 8.0  # cells over which the sizes are adjusted to meet a prescribed step
 
 
 def arcs_by_curvature(
@@ -38,11 +38,11 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge round the nose to the other.
 
-    The size field h is the smooth least of four terms, 1/h⁴ = Σ 1/hₖ⁴: a step at the trailing and one at the
-    leading edge that grow with the distance from it, `TURN` over the curvature limited to the same growth,
-    and a largest cell chosen so that the integral of ds/h is the number of cells. With too few cells for
-    the first three, curvature and the leading edge get less, and the growth is up to `HURRY` times as fast
-    where it is `hurried`; where that is not enough, all are scaled up together.
+    The cell size h is a smooth minimum of four, 1/h⁴ = Σ 1/hₖ⁴: the steps at the trailing and the leading
+    edge, each growing with the distance from it; `TURN` over the curvature, with growth limited alike; and a
+    largest cell, such that the integral of ds/h is the number of cells. When the cells are too few for the
+    first three, those of curvature and of the leading edge become larger, and growth is up to `HURRY` times
+    as fast (with `hurried`); when that does not suffice, all sizes are scaled up.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def arcs_by_curvature(
     cells : wanted.
     chord : unit of the averaging window.
     steps : cells at the trailing and at the leading edge.
-    exact : whether these are to be met, to 0.5 % where the field can be bent so far.
-    hurried : cells may grow faster where nodes are few, as in C grids, whose wake takes half of them.
+    exact : whether these are to be met, to 0.5 % where the adjustment suffices.
+    hurried : allow `HURRY`, as for C grids, whose wake takes half of the nodes.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)

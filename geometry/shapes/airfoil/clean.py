@@ -1,6 +1,6 @@
-"""From the points of an airfoil as somebody wrote them to a clean ring that starts at the trailing edge.
+"""From the points of an airfoil file to a clean ring that starts at the trailing edge.
 
-Nothing is moved here, except that the two ends of a trailing-edge gap too small to matter become their mean.
+No point is moved, except that the two ends of a negligible trailing-edge gap become their mean.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from meshonet.geometry.polygon.corners import Indices, find_corners, turning
 from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
 SHARP_GAP = 2e-4
-"""Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without it."""
+"""Gap in chords below which a trailing edge counts as sharp: with less, grids of more real files fold."""
 SAME_POINT = 1e-5
-"""Points closer than this, in extents, are one: the direction between them is noise of the last digit."""
+"""Points closer than this, in extents, are one: their direction is noise of the last digit."""
 ON_BASE = 5e-5
 """How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
 MOST_CORNERS = 12
@@ -59,9 +59,8 @@ class Section:
 def clean_section(points: Floats) -> Section:
     """Return the section that `points` (n, 2) describe, whichever way they run around it.
 
-    They may run either way and start anywhere; the usual start at the trailing edge is believed unless the
-    other end is clearly the sharper one. Repeated points are dropped, as are points on a straight base, and
-    neighbours that stand in the wrong order are swapped.
+    They are taken to start at the trailing edge unless the other end is clearly the sharper one. Repeated
+    points and points on a straight base are dropped, and neighbours in the wrong order are swapped.
 
     Raises
     ------

@@ -24,7 +24,7 @@ _PULL = 0.6  # where the control points of the fillet are between its ends (0) a
 _POINTS = 24
 _TURN = 0.5
 """Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
-_MORE = 1.3  # factor up to which cells are added so that neither half has fewer than were asked for
+_MORE = 1.3  # factor up to which cells are added so that neither half has fewer than wanted
 _NEAR = 0.1  # chords from the corner within which the surface is given by points taken from the curve
 
 
@@ -62,9 +62,9 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     """Return distances (n + 1,) from the middle of a rounded base to its lower end, and to its upper end.
 
-    Nodes are shared out by length and by turning together, the latter averaged over two cells to each side:
-    without it the cells where the base turns most are the skewest of the grid, by half of what they turn. A
-    slanted base turns more at one end than at the other, and has more cells there.
+    The density of nodes follows length and turning; turning is averaged over two cells to each side, as the
+    cells where the base turns most are the skewest of the grid. A slanted base turns more at one end, and has
+    more cells there.
 
     Parameters
     ----------
