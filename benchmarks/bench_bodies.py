@@ -28,7 +28,7 @@ from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
@@ -98,7 +98,7 @@ def batches(model: str) -> str:
     edges = [random_body(np.random.default_rng([SEED, k]), 65, 33) for k in range(32)]
     lines = ["\n## 32 bodies in one batch, 65 x 33\n", "| method | CPU ms a grid |", "| --- | --- |"]
     for dtype in ("float32", "float64"):
-        spent = min(clocked(partial(infer_quads, edges, model, 0, dtype)) for _ in range(5)) / len(edges)
+        spent = min(clocked(partial(load, edges, model, 0, dtype)) for _ in range(5)) / len(edges)
         lines.append(f"| **network in {dtype}** | {1e3 * spent:.2f} |")
     return "\n".join(lines)
 
@@ -118,7 +118,7 @@ def holes(model: str, twin: str) -> str:
         goals = [winslow(one, tol=1e-8, max_cycles=60).grid for one in edges]
         cells = []
         for polish in (0, 2):
-            grids = [found.grid for found in infer_quads(edges, twin, polish)]
+            grids = [found.grid for found in load(twin).solve(edges, polish)]
             errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
             cells.append(f"{np.median(errors):.1e} ({sum(count_folded(grid.nodes) > 0 for grid in grids)})")
         judgements = [
@@ -191,8 +191,8 @@ operator works is in [operators](../operators.md).
 - *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
   of Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the bodies.
-- *gain*: the improvement over Winslow's angle as a share of the improvement that the full variational grid
-  has; in the mean angle over all bodies together and as a median, and in the largest angle.
+- *gain*: how much smaller than Winslow's the angle is, divided by how much smaller that of the full
+  variational grid is. For the mean angle, the sum over all bodies and the median are given.
 - Bodies on which Winslow's equations have no discrete solution, a few in a hundred, are left out.
 - *CPU ms*: processor time of one thread, while other programs used the machine.
 """

@@ -46,7 +46,7 @@ SIZES = (
 )
 HEAD = """# Marched grids for boundary layers: quality and time
 
-<!-- made by benchmarks/bench_hyperbolic.py -->
+<!-- made by python benchmarks/bench_hyperbolic.py --page docs/benchmarks/marching.md -->
 
 Read this page to see how good marched grids are at a given size and first cell. How to make them is in
 [boundary layers](../boundary-layers.md), how the method works in [marching](../marching.md).

@@ -40,7 +40,7 @@ from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.operator import infer
+from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution

@@ -37,9 +37,11 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quads.edges import Edges
-from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.neural.quads.operator import evaluate, near_grids
+from meshonet.solvers.neural.quad.coarse_grids import evaluate
+from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.encoding import LATENT, frame
+from meshonet.solvers.neural.quad.picard import approach
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
@@ -113,7 +115,12 @@ def to_winslow(n: int, boundaries: list[Boundary], network: Callable[..., Soluti
 def near(boundary: Boundary) -> Solution:
     """Return the grid that the network goes out from, evaluated as its own are."""
     edges = Edges.of([boundary])
-    (planes,) = evaluate(near_grids(edges), edges)
+    thin = edges.thinned(LATENT, LATENT)
+    base = thin.interpolated(thin.laws())
+    z = base[:, 0] + 1j * base[:, 1]
+    middle, factor = frame(z, np)
+    z = approach((z - middle) * factor, np)[0] / factor + middle
+    (planes,) = evaluate(np.stack([z.real, z.imag], axis=1), edges)
     return Solution(
         Grid.from_nodes(np.ascontiguousarray(np.moveaxis(planes, 0, -1)), "quad", boundary.patches), "picard"
     )
@@ -162,7 +169,7 @@ def batches(model: str, clock: bool) -> str:
     for dtype in ("float32", "float64"):
         for polish in (0, 2):
             name = f"**network in {dtype}, {polish} steps**"
-            ways[name] = partial(infer_quads, boundaries, model, polish, dtype)
+            ways[name] = partial(load(model).solve, boundaries, polish, dtype=dtype)
     spent = dict.fromkeys(ways, np.inf)
     for _ in range(8):  # in turn: the machine's speed changes
         for name, way in ways.items():
@@ -173,7 +180,8 @@ def batches(model: str, clock: bool) -> str:
     ]
     if clock:
         many = 4 * boundaries
-        rates = [rate(partial(infer_quads, many, model, 0, "float32", n), len(many)) for n in (1, 2)]
+        solve = partial(load(model).solve, many, 0, dtype="float32")
+        rates = [rate(partial(solve, threads=n), len(many)) for n in (1, 2)]
         told = "\nBy the clock, float32: {:.0f} grids a second in one thread, {:.0f} in two."
         lines.append(told.format(*rates))
     return "\n".join(lines)
@@ -214,7 +222,7 @@ def families(twin: str) -> str:
             goals = [winslow(b, tol=1e-8).grid for b in boundaries]
             cells = []
             for polish in (0, 1):
-                grids = [solution.grid for solution in infer_quads(boundaries, twin, polish)]
+                grids = [solution.grid for solution in load(twin).solve(boundaries, polish)]
                 errors = [compare(grid, goal).relative_l2 for grid, goal in zip(grids, goals, strict=True)]
                 folded = sum(count_folded(grid.nodes) > 0 for grid in grids)
                 cells.append(f"{np.median(errors):.1e} ({folded})")
@@ -248,8 +256,8 @@ domains. How the operator works is in [operators](../operators.md).
 - *no worse than Winslow*: share of grids that are valid and whose largest and mean angle do not exceed those
   of Winslow's grid.
 - *angle*: largest included angle of each cell, in degrees; maximum and mean, averaged over the domains.
-- *gain*: the improvement over Winslow's angle as a share of the improvement that the full variational grid
-  has; in the mean angle over all domains together and as a median, and in the largest angle.
+- *gain*: how much smaller than Winslow's the angle is, divided by how much smaller that of the full
+  variational grid is. For the mean angle, the sum over all domains and the median are given.
 - *CPU ms*: processor time of one thread, while other programs used the machine.
 """
 TAIL = """
@@ -261,8 +269,8 @@ TAIL = """
   time of any solver. `--polish 2` to `5` removes folded and kinked cells.
 - **Winslow's grid**: the network gains nothing. The Picard steps alone come as close, and one multigrid cycle
   gains more than either.
-- **Python**: the fastest call is `infer_quads(boundaries, "quad-general", "off", "float32", threads=2)`. The
-  network runs in single precision, on one core for each thread. The grids do not depend on the number of
+- **Python**: the fastest call is `load("quad-general").solve(boundaries, "off", dtype="float32", threads=2)`.
+  The network runs in single precision, on one core for each thread. The grids do not depend on the number of
   threads.
 """
 

@@ -37,10 +37,10 @@ from torch import Tensor, nn
 
 from meshonet.geometry.families.family import family
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.neural.fit.operator_task import OperatorTask
-from meshonet.solvers.neural.models.meshonet import MeshONet
+from meshonet.solvers.neural.fit.operators import OperatorTask
+from meshonet.solvers.neural.models.branch_trunk import MeshONet
+from meshonet.solvers.neural.models.sensors import lift, rim, sensors, square
 from meshonet.solvers.neural.samples import Samples, gathered
-from meshonet.solvers.neural.sensors import lift, rim, sensors, square
 
 POINTS = (1000, 200)
 SEEN = (600, 1_500, 3_000, 6_000, 15_000)

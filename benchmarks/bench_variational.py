@@ -37,8 +37,8 @@ from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.operator import infer as operate
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.inference import infer as operate
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.pipeline.coarse import solve_coarse
 from meshonet.solvers.solution import Solution
 
@@ -79,7 +79,7 @@ def ways(n: int) -> dict[str, Way]:
         found["**variational**"] = variational
     for m in counts:
         found[f"**variational --coarse {m}**"] = partial(solve_coarse, method=variational, n=m, smooth=True)
-    found["neural operator, quad-general"] = lambda b: infer_quads([b], "quad-general")[0]
+    found["neural operator, quad-general"] = lambda b: load("quad-general").solve([b])[0]
     return found
 
 

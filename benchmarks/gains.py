@@ -17,7 +17,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded, measure
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 from meshonet.solvers.solution import Solution
 
 Way = Callable[[Boundary], Solution]
@@ -35,7 +35,7 @@ DISTANCES = (
 
 def operate(model: str, polish: int, boundary: Boundary) -> Solution:
     """Return the solution of `boundary` alone by a quad model."""
-    return infer_quads([boundary], model, polish)[0]
+    return load(model).solve([boundary], polish)[0]
 
 
 def figures(way: Way, boundary: Boundary) -> tuple[float, float, float, float]:

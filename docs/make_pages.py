@@ -18,7 +18,7 @@ from PIL import Image
 
 from meshonet.formats.catalogue import page as formats_page
 from meshonet.geometry.families.family import FAMILIES, family
-from meshonet.solvers.neural.weights import SECOND, described, shipped
+from meshonet.solvers.neural.registry import HEADS, described, shipped
 from meshonet_cli.reference import reference
 
 DOCS = Path(__file__).parent
@@ -68,8 +68,8 @@ def models_page() -> str:
     """Return docs/models.md."""
     lines = [MODELS_HEAD]
     for name in shipped():
-        if name in SECOND:
-            lines += [f"## {name}\n", f"Winslow's grid, predicted by the network of `{SECOND[name]}`.\n"]
+        if name in HEADS:
+            lines += [f"## {name}\n", f"Winslow's grid, predicted by the network of `{HEADS[name][0]}`.\n"]
             continue
         facts = described(name)
         errors = strip_figures if "strips" in facts["figures"] else quad_figures

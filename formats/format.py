@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -98,12 +99,12 @@ class Format:
 
 def later(function: str, **settings: Any) -> Callable[..., Any]:
     """Return what loads the module of `function`, ``package.module:name``, and calls it with `settings`."""
+    return partial(_call, function, **settings)  # which another process can have
 
-    def call(*args: Any) -> Any:
-        module, _, name = function.partition(":")
-        return getattr(importlib.import_module(module), name)(*args, **settings)
 
-    return call
+def _call(function: str, /, *args: Any, **settings: Any) -> Any:
+    module, _, name = function.partition(":")
+    return getattr(importlib.import_module(module), name)(*args, **settings)
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:

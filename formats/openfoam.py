@@ -16,17 +16,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.format import Format, Heights, only_one
-from meshonet.formats.mesh.boundary_patches import Role, patches, roles
+from meshonet.formats.mesh.boundary_patches import kinds
 from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.unstructured import Indices, Unstructured, layer_points, unstructured
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Kind
 
 EMPTY = "frontAndBack"
 """Name of the patch of type ``empty``: the two planes of a grid that is one cell thick."""
 
-_TYPES: dict[Role, str] = {"wall": "wall", "symmetry": "symmetry"}
+_TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry"}
 _DICTIONARIES = {
     "controlDict": "startFrom latestTime;\nstartTime 0;\nstopAt endTime;\nendTime 1000;\ndeltaT 1;\n"
     "writeControl timeStep;\nwriteInterval 1000;\n",
@@ -145,9 +146,9 @@ def _walls(edges: Indices, count: int, layers: int) -> Indices:
 
 def _kinds(grid: Grid) -> dict[str, Patch]:
     """Return title and type of the patch of each part."""
-    role = roles(grid, patches(grid))
-    word = words(role, taken=[EMPTY, "back", "front"], letter=True)
-    return {name: Patch(word[name], _TYPES.get(role[name], "patch"), 0) for name in role}
+    kind = kinds(grid, grid.outer_patches())
+    word = words(kind, taken=[EMPTY, "back", "front"], letter=True)
+    return {name: Patch(word[name], _TYPES.get(kind[name], "patch"), 0) for name in kind}
 
 
 def _write_list(path: Path, kind: str, form: str, rows: NDArray[Any], note: str = "") -> None:

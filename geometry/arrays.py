@@ -38,6 +38,20 @@ def read_only(values: AnyArray) -> AnyArray:
     return values
 
 
+def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
+    """Return `values` as an array of the module `xp`, numpy or torch, where `like` is and as precise.
+
+    Complex values stay complex, real ones real, whichever `like` is.
+    """
+    dtype = like.real.dtype
+    if xp is np:
+        return values.astype(
+            np.result_type(dtype, np.complex64) if np.iscomplexobj(values) else dtype, copy=False
+        )
+    dtype = dtype.to_complex() if np.iscomplexobj(values) else dtype
+    return xp.tensor(values, dtype=dtype, device=like.device)  # a copy: torch warns of read-only memory
+
+
 def planar_nodes(ni: int, nj: int) -> Floats:
     """Return an uninitialised (ni, nj, 2) array whose x and y planes are each contiguous.
 

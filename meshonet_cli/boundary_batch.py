@@ -1,4 +1,4 @@
-"""What `sample-boundary` does with each shape."""
+"""The boundaries of `sample-boundary`: from files, or drawn from a family."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 from meshonet.formats.registry import read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.draw import Draw
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet_cli.batch.destination import Destination
@@ -22,37 +23,36 @@ from meshonet_cli.session import Session
 
 @dataclass
 class Sampled(Timed):
-    """What there is to tell of a boundary."""
+    """The report of a boundary."""
 
     boundary: Boundary
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         edges = self.boundary
-        parts = [part.name for part in edges.patches]
+        parts = [patch.name for patch in edges.patches]
         facts = {"ni": edges.ni, "nj": edges.nj, "topology": edges.topology, "parts": parts}
-        told = {"notes": list(edges.notes)} if edges.notes else {}
-        return {**self.member_json(), **facts, **told, "seconds": self.times_json()}
+        notes = {"notes": list(edges.notes)} if edges.notes else {}
+        return {**self.member_json(), **facts, **notes, "seconds": self.times_json()}
 
     def line(self) -> str:
         """Return it for people."""
         size = f"{self.boundary.ni} x {self.boundary.nj} nodes, {self.boundary.topology}"
-        return "\n  ".join(
-            [f"{self.item.label} -> {self.output}: {size}, {self.times()}", *self.boundary.notes]
-        )
+        head = f"{self.item.label} -> {self.output}: {size}, {self.times()}"
+        return "\n  ".join([head, *self.boundary.notes])
 
     lines = line
 
 
 @dataclass(frozen=True)
 class Sampler:
-    """Samples shapes."""
+    """Samples members of a batch, and keeps so many boundary nodes as sensors."""
 
     sampling: Sampling
     sensors: int | None = None
 
-    def boundary(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
-        """Return the boundary of one shape and what there is to tell of it."""
+    def __call__(self, item: Item[Shape]) -> tuple[Boundary, Sampled]:
+        """Return the boundary of one shape and the report."""
         begun = time.perf_counter()
         boundary = edges_of(item.what, self.sampling)
         if self.sensors is not None:
@@ -62,63 +62,34 @@ class Sampler:
         return boundary, report
 
 
-def from_files(
-    sources: Sequence[str], output: str, to_format: str | None, session: Session, fmt: str | None
-) -> tuple[Iterator[Item[Any]], Destination]:
-    """Return the shapes of `sources` (in format `fmt`, or None to find out) and where they go."""
-    destination = Destination(output, to_format, "boundaries")
-    prepare(sources, destination, session)
-    return items(sources, lambda source: read_shapes(source, fmt), session), destination
-
-
-def from_family(
-    drawn: tuple[str, int, str | None, int, str | None], output: str, to_format: str | None, session: Session
-) -> tuple[Iterator[Item[Any]], Destination]:
-    """Return members of a family and where they go.
-
-    Parameters
-    ----------
-    drawn : family, count, range, seed and split, as `meshonet.geometry.families.draw.draws` takes them.
-    """
-    from meshonet.geometry.families.draw import draws
-
-    members = draws(*drawn)
-    session.batch = len(members) > 1
-    destination = Destination(output, to_format, "boundaries")
-    prepare([drawn[0]], destination, session)
-
-    def items() -> Iterator[Item[Any]]:
-        for member in members:
-            session.begin(drawn[0], len(members) if session.batch else None)
-            yield Item(member.index, drawn[0], member, 0.0, not session.batch)
-
-    return items(), destination
-
-
-def sample(
-    found: Iterator[Item[Any]],
-    sampling: Sampling,
-    destination: Destination,
-    session: Session,
-    *,
-    sensors: int | None = None,
-    skip_existing: bool = False,
-    jobs: int = 1,
-) -> int:
-    """Sample every shape of `found` into `destination`, with `sensors` each, and return the exit code.
+def write_boundaries(
+    sources: Sequence[str] | Sequence[Draw], output: str, sampler: Sampler, session: Session, *,
+    from_format: str | None = None, to_format: str | None = None, skip_existing: bool = False, jobs: int = 1,
+) -> int:  # fmt: skip
+    """Sample the shapes of `sources`, files or members of a family, into `output`; return the exit code.
 
     Raises
     ------
     InputError
-        sensors, and a format without room for them.
+        a format without room for sensors, or for several members.
     """
-    if sensors is not None and destination.format.name != "hdf5":
+    destination = Destination(output, to_format, "boundaries")
+    if sampler.sensors is not None and destination.format.name != "hdf5":
         raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
-
-    def tell(report: Sampled, path: str) -> None:
-        report.finished(path)
-        session.tell(report)
-
-    make = Sampler(sampling, sensors).boundary
-    deliver(found, one_by_one(make), destination, session, tell, skip_existing=skip_existing, jobs=jobs)
+    files = [source for source in sources if isinstance(source, str)]
+    prepare(files, destination, session)
+    found: Iterator[Item[Any]] = items(files, lambda source: read_shapes(source, from_format), session)
+    if not files:
+        found = _drawn([source for source in sources if isinstance(source, Draw)], session)
+    deliver(
+        found, one_by_one(sampler), destination, session, session.written,
+        skip_existing=skip_existing, jobs=jobs,
+    )  # fmt: skip
     return session.finish()
+
+
+def _drawn(members: Sequence[Draw], session: Session) -> Iterator[Item[Draw]]:
+    session.batch = len(members) > 1
+    for member in members:
+        session.begin(member.kind, len(members) if session.batch else None)
+        yield Item(member.index, member.kind, member, 0.0, not session.batch)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -83,87 +82,61 @@ def learn(sources: Sequence[str], run: Run, session: Session, *, fmt: str | None
 def _trained(
     name: str, sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None
 ) -> dict[str, Any]:
-    from meshonet.solvers.neural.registry import QUAD, STRIP, operator
+    from meshonet.solvers.neural.fit.train import standard, train
 
-    recipe = {"command": "meshonet train", "datasets": [Path(s).name for s in sources]}
-    rest: dict[str, Any] = {"recipe": recipe, "resume": run.resume}
-    output = Path(run.output)
-    if run.initial is not None and name != QUAD:
+    if run.initial is not None and name != "quad":
         raise InputError(f"--initial is of no use to {name}", "leave it out, or use --model quad")
-    if name == STRIP:
-        return _train_strip(sources, run, session, fellows, fmt, rest)
-    if name == QUAD:
-        return _train_quads(sources, run, session, fellows, fmt, rest)
-    from meshonet.solvers.neural.fit.operators import PLAN, train_operator
-
-    samples = _samples(sources, run, fmt)
-    model = operator(name, samples.topology, _settings(run.settings))
-    plan = _planned(PLAN, run.plan, long=True)
+    plan = _planned(standard(name), run.plan, long=name not in ("strip", "quad"))
+    data, choices = _data(name, sources, run, session, fmt)
     log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
-    figures = train_operator(
-        samples, output, name, model, plan, fellows, held_out=run.held_out or 0, report=log, **rest
-    )
+    recipe = {"command": "meshonet train", "datasets": [Path(s).name for s in sources]}
+    rest: dict[str, Any] = {"recipe": recipe, "held_out": run.held_out, "resume": run.resume, **choices}
+    figures = train(name, data, Path(run.output), plan, fellows, report=log, **rest)
+    for line in _notes(name, figures):
+        session.note(f"{run.output}: {line}")
+    return {"shapes": len(data), "figures": figures}
+
+
+def _data(
+    name: str, sources: Sequence[str], run: Run, session: Session, fmt: str | None
+) -> tuple[Any, dict[str, Any]]:
+    """Return what a model is trained on, and its choices as `train` takes them."""
+    if name == "strip":
+        from meshonet.solvers.neural.strip.dataset import solve_strips
+
+        if run.settings:
+            raise InputError("the strip operator takes no --set", "leave it out, or choose another --model")
+        _refuse_splits(run, name)
+        strips = solve_strips(_boundaries(sources, fmt), _counted(session))
+        session.note(f"{len(strips)} shapes lifted and solved")
+        return strips, {}
+    if name == "quad":
+        from meshonet.solvers.neural.fit.quad_grids import quads_of
+        from meshonet.solvers.neural.registry import load
+
+        _refuse_splits(run, name)
+        initial = None if run.initial is None else load(run.initial)
+        domains = quads_of(read_grids(source, fmt) for source in sources)
+        session.note(f"{len(domains)} domains solved by both methods")
+        return domains, {"initial": initial, "weights": _settings(run.settings)}
+    return _samples(sources, run, fmt), {"settings": _settings(run.settings)}
+
+
+def _notes(name: str, figures: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what is said of a trained model."""
+    if name == "strip":
+        network, base = figures["network"]["median"], figures["base"]["median"]
+        yield f"held-out error {network:.1e}, without the network {base:.1e} (medians)"
+    for head in ("winslow", "variational") if name == "quad" else ():
+        error, base = figures[head]["relative_l2"]["median"], figures[head]["base"]
+        yield f"held-out distance to {head} grids {error:.1e}, without the network {base:.1e} (medians)"
     for kind in ("train", "test"):
         if kind in figures:
-            told = figures[kind]
-            session.note(
-                f"{run.output}: relative L2 error of {told['grids']} {kind} grids "
-                f"{told['median']:.1e} (median), {told['worst']:.1e} (worst); "
-                f"boundary off by {told['boundary']:.1e}"
+            own = figures[kind]
+            yield (
+                f"relative L2 error of {own['grids']} {kind} grids {own['median']:.1e} (median), "
+                f"{own['worst']:.1e} (worst); boundary off by {own['boundary']:.1e}"
             )
-    return {"shapes": len(samples), "figures": figures}
-
-
-def _train_strip(
-    sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
-) -> dict[str, Any]:
-    from meshonet.solvers.neural.fit.strip import HELD_OUT, PLAN, train_strip
-    from meshonet.solvers.neural.strip_dataset import solve_strips
-
-    if run.settings:
-        raise InputError("the strip operator takes no --set", "leave it out, or choose another --model")
-    _refuse_splits(run, "strip")
-    plan = _planned(PLAN, run.plan, long=False)
-    strips = solve_strips(_boundaries(sources, fmt), _counted(session))
-    session.note(f"{len(strips)} shapes lifted and solved")
-    held_out = HELD_OUT if run.held_out is None else run.held_out
-    log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
-    figures = train_strip(strips, Path(run.output), plan, fellows, held_out=held_out, report=log, **rest)
-    network, base = figures["network"]["median"], figures["base"]["median"]
-    session.note(f"{run.output}: held-out error {network:.1e}, without the network {base:.1e} (medians)")
-    return {"shapes": len(strips), "figures": figures}
-
-
-def _train_quads(
-    sources: Sequence[str], run: Run, session: Session, fellows: Team, fmt: str | None, rest: dict[str, Any]
-) -> dict[str, Any]:
-    from meshonet.solvers.neural.fit.quad_grids import quads
-    from meshonet.solvers.neural.fit.quads import HELD_OUT, PLAN, train_quads
-    from meshonet.solvers.neural.quads.encoding import HEADS
-    from meshonet.solvers.neural.quads.model import load_quads
-    from meshonet.solvers.neural.weights import model_path
-
-    _refuse_splits(run, "quad")
-    plan = _planned(PLAN, run.plan, long=False)
-    initial = None if run.initial is None else load_quads(model_path(run.initial))
-    solved = dict(_by_method(source, fmt) for source in sources)
-    if sorted(solved) != sorted(HEADS):
-        told = f"grids by {' and '.join(sorted(solved))} for the quad operator"
-        raise InputError(
-            told, "give one dataset of solve-pde --method winslow and one of --method variational"
-        )
-    given = quads(solved["variational"], solved["winslow"])
-    session.note(f"{len(given)} domains solved by both methods")
-    held_out = HELD_OUT if run.held_out is None else run.held_out
-    log = Log(session, plan, run.log_csv, resume=run.resume, leads=fellows.leads)
-    rest |= {"held_out": held_out, "initial": initial, "weights": _settings(run.settings), "report": log}
-    figures = train_quads(given, Path(run.output), plan, fellows, **rest)
-    for head in HEADS:
-        told = (
-            f"{figures[head]['relative_l2']['median']:.1e}, without the network {figures[head]['base']:.1e}"
-        )
-        session.note(f"{run.output}: held-out distance to {head} grids {told} (medians)")
-    return {"shapes": len(given), "figures": figures}
 
 
 def _refuse_splits(run: Run, name: str) -> None:
@@ -171,15 +144,6 @@ def _refuse_splits(run: Run, name: str) -> None:
     if run.split or run.plan.get("points"):
         told = f"the {name} operator takes no --split or --points"
         raise InputError(told, "leave them out, or choose another --model")
-
-
-def _by_method(source: str, fmt: str | None) -> tuple[str, Samples]:
-    """Return the method that made the first grid of a dataset, and all its grids."""
-    from meshonet.solvers.neural.samples import gathered
-
-    grids = read_grids(source, fmt)
-    first = next(grids)
-    return str(first.provenance.get("method", "an unknown method")), gathered(chain([first], grids))
 
 
 def _planned(standard: Plan, given: Mapping[str, Any], *, long: bool) -> Plan:

@@ -1,4 +1,4 @@
-"""One run of a command over its members: what is told, where it goes, and the worst outcome so far."""
+"""One run of a command over its members: its output on screen, and the worst outcome so far."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stopping import check
 
 GATE_NOT_MET = 1
-_BAR = 24
+_BAR_LENGTH = 24
 
 
-class Told(Protocol):
+class Printed(Protocol):
     """A report of something that is done."""
 
     def as_json(self) -> Mapping[str, Any]:
@@ -31,7 +31,7 @@ class Told(Protocol):
         ...
 
 
-class Brief(Told, Protocol):
+class Brief(Printed, Protocol):
     """A report that can be short, for batches."""
 
     def line(self) -> str:
@@ -48,7 +48,7 @@ class Written(Brief, Protocol):
 
 
 class Session:
-    """Says what happens and remembers the worst exit code.
+    """Prints what happens and remembers the worst exit code.
 
     Results for programs (``--json``) and tables go to standard output, everything else to standard error.
 
@@ -57,7 +57,6 @@ class Session:
     quiet : no progress and no reports, only warnings and errors.
     as_json : one JSON object a member on standard output, in place of reports.
     debug : tracebacks of failing members too.
-    output : the ``--output`` of the command; results cannot share standard output with JSON.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
@@ -80,31 +79,31 @@ class Session:
             self.fail(label, source or label, error)
 
     def fail(self, label: str, source: str, error: Exception) -> None:
-        """Tell of a member that failed."""
+        """Report a member that failed."""
         self.failed += 1
         code = error.exit_code if isinstance(error, MeshonetError) else 2
         self.worst = max(self.worst, code)
-        told = explained(error, label)
+        line = explained(error, label)
         if self.debug:
             import traceback
 
             self._write("".join(traceback.format_exception(error)).rstrip())
-        self._write(f"error: {told}")
+        self._write(f"error: {line}")
         if self.as_json:
-            self.result({"input": source, "output": None, "error": told, "exit_code": code})
+            self.result({"input": source, "output": None, "error": line, "exit_code": code})
 
     def gate(self, name: str, problems: Sequence[str]) -> None:
-        """Tell of gates that a member did not meet."""
+        """Report gates that a member did not meet."""
         for problem in problems:
             self.worst = max(self.worst, GATE_NOT_MET)
             self._write(f"gate not met: {name}: {with_options(problem)}")
 
     def warn(self, text: str) -> None:
-        """Tell of something the user should know even when quiet."""
+        """Print what the user should know even when quiet."""
         self._write(f"warning: {text}")
 
     def tell(self, report: Brief) -> None:
-        """Tell of a member that is done: as JSON, in full when it is alone, on one line in a batch."""
+        """Report a member that is done: as JSON, in full when it is alone, on one line in a batch."""
         self.done += 1
         if self.as_json:
             self.result(report.as_json())
@@ -112,11 +111,11 @@ class Session:
             self.note(report.line() if self.batch else report.lines())
 
     def written(self, report: Written, path: str) -> None:
-        """Tell of a member whose result is in the file `path`."""
+        """Report a member whose result is in the file `path`."""
         report.finished(path)
         self.tell(report)
 
-    def show(self, report: Told) -> None:
+    def show(self, report: Printed) -> None:
         """Print a report that is itself the result: on standard output, in full, even when quiet."""
         self.done += 1
         if self.as_json:
@@ -124,15 +123,15 @@ class Session:
         else:
             self.print(report.lines())
 
-    def conclude(self, total: Told) -> None:
-        """Print what is said of all members together: on standard output, even when quiet."""
+    def conclude(self, total: Printed) -> None:
+        """Print the report of all members together: on standard output, even when quiet."""
         if self.as_json:
             self.result(total.as_json())
         else:
             self.print(total.lines())
 
     def note(self, text: str) -> None:
-        """Tell what happened, unless quiet or speaking JSON."""
+        """Print what happened, unless quiet or in JSON."""
         if not (self.quiet or self.as_json):
             self._write(text)
 
@@ -161,46 +160,35 @@ class Session:
         """Show on a terminal what is going on, in place of what was shown before."""
         if self._bar:
             self._clear()
-            self._draw(text)
-
-    def _draw(self, line: str) -> None:
-        width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
-        sys.stderr.write(line[:width])
-        sys.stderr.flush()
-        self._bar_shown = True
+            width = (os.get_terminal_size(sys.stderr.fileno()).columns or 80) - 1
+            sys.stderr.write(printable(text)[:width])
+            sys.stderr.flush()
+            self._bar_shown = True
 
     def begin(self, name: str, count: int | None = None) -> None:
         """Show on a terminal which member of how many (None: not known) is at work; stop if asked to."""
         check()
         self.members += 1
-        if not self._bar or (count is None and self.members == 1):
-            return
         done = self.members - 1
-        spent = time.perf_counter() - self._begun
-        left = f", {(count - done) * spent / done:.0f} s left" if count and done else ""
-        filled = _BAR * done // count if count else 0
-        bar = (
-            f"[{'#' * filled}{'-' * (_BAR - filled)}] {self.members}/{count}" if count else f"{self.members}"
-        )
-        self._clear()
-        self._draw(f"{bar}{left}: {printable(name)}")
+        if count:
+            spent = time.perf_counter() - self._begun
+            left = f", {(count - done) * spent / done:.0f} s left" if done else ""
+            self.status(f"{_bar(done, count)} {self.members}/{count}{left}: {name}")
+        elif done:
+            self.status(f"{self.members}: {name}")
 
     def progress(self, done: int, count: int, text: str) -> bool:
         """Show on a terminal how far one long task is; say whether there is one."""
-        if not self._bar:
-            return False
-        filled = _BAR * done // count
-        self._clear()
-        self._draw(f"[{'#' * filled}{'-' * (_BAR - filled)}] {printable(text)}")
-        return True
+        self.status(f"{_bar(done, count)} {text}")
+        return self._bar
 
     def skip(self, name: str, path: str) -> None:
-        """Tell of a member whose result is there already."""
+        """Report a member whose result is there already."""
         self.skipped += 1
         self.note(f"{name} -> {path}: there already")
 
     def finish(self) -> int:
-        """Tell how a batch went and return the exit code."""
+        """Report how a batch went and return the exit code."""
         self._clear()
         if self.batch and not (self.quiet or self.as_json):
             spent = time.perf_counter() - self._begun
@@ -217,3 +205,8 @@ class Session:
         if self._bar_shown:
             sys.stderr.write("\r\x1b[2K")
             self._bar_shown = False
+
+
+def _bar(done: int, count: int) -> str:
+    filled = _BAR_LENGTH * done // count
+    return f"[{'#' * filled}{'-' * (_BAR_LENGTH - filled)}]"

@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 from meshonet.geometry.errors import InputError
 
@@ -48,14 +48,46 @@ class Method(Protocol):
         ...
 
 
+class OneByOne:
+    """Solves one boundary after the other: base of methods that gain nothing from many."""
+
+    together: ClassVar[Topology | None] = None
+
+    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
+        """Return a solution for each of the boundaries, which may start from a grid each."""
+        starts: Sequence[Grid | None] = [None] * len(problems) if start is None else start
+        return [self.solve_one(*pair) for pair in zip(problems, starts, strict=True)]
+
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of one boundary."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class Each:
-    """A method that solves one boundary after the other.
+class Wrapper(OneByOne):
+    """Solves by calling another method, whose name it has."""
+
+    method: Method
+
+    @property
+    def name(self) -> str:
+        """That of the method."""
+        return self.method.name
+
+    def inner(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the other method's solution of one boundary."""
+        return self.method.solve([boundary], None if start is None else [start])[0]
+
+
+@dataclass(frozen=True)
+class Each(OneByOne):
+    """A function of one boundary as a method.
 
     Parameters
     ----------
     name : in `METHODS`.
-    function : of a boundary, its settings and perhaps ``initial``, a grid to start from.
+    target : a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or
+        ``module:name`` of one, which is loaded when it is needed.
     settings : keywords of the function.
 
     Raises
@@ -65,23 +97,26 @@ class Each:
     """
 
     name: str
-    function: Callable[..., Solution]
+    target: str | Callable[..., Solution]
     settings: Mapping[str, Any] = field(default_factory=dict)
-    together: None = None
 
     def __post_init__(self) -> None:
-        _check_settings(self.name, self.function, self.settings)
+        if self.settings:
+            _check_settings(self.name, self.function, self.settings)
+
+    @property
+    def function(self) -> Callable[..., Solution]:
+        """The function."""
+        return _loaded(self.target) if isinstance(self.target, str) else self.target
 
     def takes(self, setting: str) -> bool:
         """Return whether the function has such a keyword."""
         return setting in inspect.signature(self.function).parameters
 
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries."""
-        if start is None or not self.takes("initial"):
-            return [self.function(problem, **self.settings) for problem in problems]
-        pairs = zip(problems, start, strict=True)
-        return [self.function(problem, **self.settings, initial=grid) for problem, grid in pairs]
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return what the function makes of a boundary, from `start` when it can start from a grid."""
+        more = {"initial": start} if start is not None and self.takes("initial") else {}
+        return self.function(boundary, **self.settings, **more)
 
     def having(self, **settings: Any) -> Each:
         """Return the method with more settings."""
@@ -104,6 +139,11 @@ class Row(NamedTuple):
     solves: bool = True
     sweeps: bool = True
 
+    @property
+    def is_class(self) -> bool:
+        """Whether the target is a class, whose name begins with a capital."""
+        return self.target.partition(":")[2][0].isupper()
+
 
 METHODS: Mapping[str, Row] = MappingProxyType(
     {
@@ -125,7 +165,7 @@ METHODS: Mapping[str, Row] = MappingProxyType(
         ),
         "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
         "conformal": Row(
-            "meshonet.solvers.neural.method:Conformal",
+            "meshonet.solvers.conformal.method:Conformal",
             "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
         ),
         "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),
@@ -151,14 +191,19 @@ def method_named(name: str, **settings: Any) -> Method:
     if base not in METHODS or (model and base != "operator"):
         known = "use one of " + ", ".join(METHODS)
         raise InputError(f"method {name!r} is not known", known, parameter="method")
-    module, _, attribute = METHODS[base].target.partition(":")
-    target = getattr(import_module(module), attribute)
-    if not isinstance(target, type):
-        return Each(base, target, settings)
+    row = METHODS[base]
+    if not row.is_class:
+        return Each(base, row.target, settings)
+    target = _loaded(row.target)
     settings |= {"model": model} if model else {}
     _check_settings(base, target, settings)
     method: Method = target(**settings)
     return method
+
+
+def _loaded(target: str) -> Any:
+    module, _, name = target.partition(":")
+    return getattr(import_module(module), name)
 
 
 def _check_settings(name: str, function: Callable[..., Any], settings: Mapping[str, Any]) -> None:

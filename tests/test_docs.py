@@ -13,8 +13,7 @@ from pathlib import Path
 
 import pytest
 
-import meshonet
-from meshonet.solvers.neural.weights import described
+from meshonet.solvers.neural.registry import described
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
@@ -141,8 +140,6 @@ def test_the_commands_of_a_page_run_in_their_order(page: Path, inputs: Path) -> 
 def test_the_python_of_a_page_runs(page: Path, inputs: Path) -> None:
     """And prints the numbers behind `# about`; docs/python.md has a test of its own."""
     text = "\n".join(blocks(page, "python"))
-    if "meshonet.grid(" in text and not hasattr(meshonet, "grid"):
-        pytest.skip("meshonet.grid is not there yet")
     if "import torch" in text:
         pytest.importorskip("torch")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}

@@ -18,7 +18,7 @@ from torch import Tensor
 
 from meshonet.formats.vtk.vts import write_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.solvers.neural.quads.differentiable import QuadGrids
+from meshonet.solvers.neural.differentiable import QuadGrids
 
 LENGTH, HEIGHT, THROAT = 3.0, 1.0, 0.6
 NODES = 121, 41

@@ -17,22 +17,22 @@ from numpy.typing import NDArray
 from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child, root
 from meshonet.formats.format import Heights, at_least_one
 from meshonet.formats.hdf5.file import created
-from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
+from meshonet.formats.mesh.boundary_patches import kinds
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.names import words
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.patches import Kind
 
 Integers = NDArray[np.int32]
 
-_CONDITIONS: dict[Role, str] = {
+_CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall",
     "farfield": "BCFarfield",
-    "inflow": "BCInflow",
-    "outflow": "BCOutflow",
+    "inlet": "BCInflow",
+    "outlet": "BCOutflow",
     "symmetry": "BCSymmetryPlane",
-    "other": "BCGeneral",
 }
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
@@ -56,7 +56,7 @@ def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> Non
         base = child(root(file), "Base", "CGNSBase_t", np.full(2, dimension, np.int32))
         child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
         zones: set[str] = set()
-        families: dict[str, Role] = {}
+        families: dict[str, Kind] = {}
         for grid in chain([first], rest):
             title = grid.name or "Zone"
             zone = words([title], NAME_LENGTH, {"DataClass", *zones, *families})[title]
@@ -65,12 +65,12 @@ def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> Non
             families = {**role, **families}
         for family, kind in families.items():
             node = child(base, family, "Family_t")
-            child(node, "FamilyBC", "FamilyBC_t", _CONDITIONS[kind])
+            child(node, "FamilyBC", "FamilyBC_t", _CONDITIONS.get(kind, "BCGeneral"))
 
 
 def _write_zone(
     base: Node, name: str, grid: Grid, heights: tuple[float, ...], zones: set[str]
-) -> dict[str, Role]:
+) -> dict[str, Kind]:
     """Add a zone and return the families of its parts, called otherwise than all `zones`."""
     dims = [grid.ni, grid.nj, len(heights)][: 3 if heights else 2]
     size = np.array([dims, [n - 1 for n in dims], [0] * len(dims)], np.int32)
@@ -82,7 +82,7 @@ def _write_zone(
     for axis, values in enumerate(_coordinates(grid, heights)):
         node = child(coordinates, f"Coordinate{'XYZ'[axis]}", "DataArray_t", values)
         child(node, "DimensionalExponents", "DimensionalExponents_t", _METRE)
-    _write_cut(zone, name, grid, len(heights))
+    _write_connections(zone, name, grid, len(heights))
     return _write_conditions(zone, grid, len(heights), zones)
 
 
@@ -94,11 +94,11 @@ def _coordinates(grid: Grid, heights: tuple[float, ...]) -> Iterator[Floats]:
         yield np.broadcast_to(np.array(heights)[:, None, None], (len(heights), grid.nj, grid.ni)).copy()
 
 
-def _write_conditions(zone: Node, grid: Grid, planes: int, zones: set[str]) -> dict[str, Role]:
+def _write_conditions(zone: Node, grid: Grid, planes: int, zones: set[str]) -> dict[str, Kind]:
     """Add a boundary condition for each outer stretch and, of a layer, for its two planes."""
-    stretches = patches(grid)
-    role = roles(grid, stretches)
-    ranges = [(part.name, _range(part, grid, planes)) for part in stretches]
+    patches = grid.outer_patches()
+    role = kinds(grid, patches)
+    ranges = [(p.name, _range(p.side, p.start, p.stop, grid, planes)) for p in patches]
     for plane, k in (("back", 1), ("front", planes))[:planes]:
         role.setdefault(plane, "symmetry")
         ranges.append((plane, np.array([[1, 1, k], [grid.ni, grid.nj, k]], np.int32)))
@@ -114,32 +114,29 @@ def _write_conditions(zone: Node, grid: Grid, planes: int, zones: set[str]) -> d
     return {family[name]: role[name] for name in role}
 
 
-def _write_cut(zone: Node, name: str, grid: Grid, planes: int) -> None:
-    """Join the two sides of an O or C cut, once from each."""
-    seam = cut(grid)
-    if seam is None:
+def _write_connections(zone: Node, name: str, grid: Grid, planes: int) -> None:
+    """Join the two sides of each connection of the block to itself, once from each."""
+    if not grid.connections:
         return
     node = child(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
-    spans = [_range(part, grid, planes) for part in seam]
-    turned = grid.topology == "c"
-    transform = np.array([-1, -2, 3] if turned else [1, 2, 3], np.int32)[: 3 if planes else 2]
-    for label, own, other in (("Cut1", spans[0], spans[1]), ("Cut2", spans[1], spans[0])):
-        donor = other.copy()
-        if turned:  # i runs against i
-            donor[:, 0] = donor[::-1, 0]
-        joint = child(node, label, "GridConnectivity1to1_t", name)
-        child(joint, "PointRange", "IndexRange_t", own)
-        child(joint, "PointRangeDonor", "IndexRange_t", donor)
-        child(joint, "Transform", '"int[IndexDimension]"', transform)
+    count = 0
+    for connection in grid.connections:
+        (along,) = connection.orientation
+        first, second = connection.stretches(0)
+        for own, donor in ((first, second), (second, first)):
+            count += 1
+            joint = child(node, f"Cut{count}", "GridConnectivity1to1_t", name)
+            (side, *ends), across = donor, PLACES[own[0]]
+            child(joint, "PointRange", "IndexRange_t", _range(*own, grid, planes))
+            child(joint, "PointRangeDonor", "IndexRange_t", _range(side, *ends[::along], grid, planes))
+            transform = np.array([along, along, 3], np.int32)[: 3 if planes else 2]
+            transform[across[0]] = -1 if across[1] == PLACES[side][1] else 1
+            transform[:2] *= [1, 2]
+            child(joint, "Transform", '"int[IndexDimension]"', transform)
 
 
-def _range(part: Patch, grid: Grid, planes: int) -> Integers:
+def _range(side: Side, first: int, last: int, grid: Grid, planes: int) -> Integers:
     """Return the first and the last node (2, 2 or 3) of a stretch, counted from 1."""
-    start, stop = part.start + 1, part.stop + 1
-    if part.side in ("south", "north"):
-        j = 1 if part.side == "south" else grid.nj
-        span = [[start, j], [stop, j]]
-    else:
-        i = 1 if part.side == "west" else grid.ni
-        span = [[i, start], [i, stop]]
-    return np.array([[*span[0], 1], [*span[1], planes]] if planes else span, np.int32)
+    i, j = (1 if side == "west" else grid.ni), (1 if side == "south" else grid.nj)
+    ends = [[k + 1, j] if side in ("south", "north") else [i, k + 1] for k in (first, last)]
+    return np.array([[*ends[0], 1], [*ends[1], planes]] if planes else ends, np.int32)

@@ -23,7 +23,7 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     """Write the outer edges of the one grid of `grids`, a line for each cell at them."""
     grid = only_one(grids, "a .geo file")
     number = node_numbers(grid) + 1
-    ends = (0, grid.ni - 1) if not grid.around_body else (0, (grid.ni - 1) // 2, grid.ni - 1)
+    ends = (0, grid.ni - 1) if not grid.connections else (0, (grid.ni - 1) // 2, grid.ni - 1)
     loops = [_loop(number, first, last) for first, last in pairwise(ends)]
     sides = np.concatenate([np.stack([loop, np.roll(loop, -1)], axis=1) for loop, _ in loops])
     lines, which = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)

@@ -1,4 +1,24 @@
-"""HDF5: datasets of boundaries and grids, and what CGNS needs of it."""
+"""HDF5 datasets of many boundaries or grids of one size.
+
+::
+
+    attributes   format = "meshonet-boundary" or "meshonet-grid", version = 1, topology
+    south, north (n, ni, 2)   west, east (n, nj, 2)   float64, corners shared
+    nodes        (n, ni, nj, 2), grids only
+    names, split, parts, provenance   (n,) text, where there is any
+    parameters   (n, p), its attribute names (p,)
+    sensors      (n, m, 2), sub-sampled boundary nodes, when they are wanted
+
+Everything is chunked by sample, or by a few where these are small, and resizable along n. `parts`, a list of
+``[name, side, start, stop]``, and `provenance` are JSON; the first grid's provenance is repeated as attributes of
+the file, for reading by eye. Grids of several blocks, or of other blocks than plane ones, have version 2::
+
+    attributes   format = "meshonet-grid", version = 2, connections (JSON)
+    blocks/0, blocks/1 ...   (n, ni, nj, 2), (n, ni, nj, nk, 3) or (n, ni, nj, 3)
+    parts        rows are [name, side, start, stop, block, across, kind]
+
+in place of the edges, `nodes` and the topology. https://docs.h5py.org
+"""
 
 from meshonet.formats.format import Format, later
 
@@ -13,10 +33,10 @@ FORMATS = (
         name="hdf5",
         suffixes=(".h5", ".hdf5"),
         description="HDF5 dataset of boundaries or grids",
-        read_shapes=later(f"{__name__}.dataset:read_shapes"),
-        read_grids=later(f"{__name__}.dataset:read_grids"),
-        write_grids=later(f"{__name__}.dataset:write_grids"),
-        write_boundaries=later(f"{__name__}.dataset:write_boundaries"),
+        read_shapes=later(f"{__name__}.read:read_shapes"),
+        read_grids=later(f"{__name__}.read:read_grids"),
+        write_grids=later(f"{__name__}.write:write_grids"),
+        write_boundaries=later(f"{__name__}.write:write_boundaries"),
         sniff=sniff,
         names_patches=True,
         many=True,

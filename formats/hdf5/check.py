@@ -1,17 +1,28 @@
-"""An HDF5 dataset opened and checked: layout, shapes, types and sizes, before any memory is taken."""
+"""An HDF5 dataset opened and checked: layout, shapes, types and sizes, before any memory is taken.
+
+Of texts of variable length, which h5py makes by default, the library (1.14 and before) trusts two numbers of a
+damaged file: the sizes in a heap of texts, where a free object of size 0 keeps it for ever, out of reach of any
+signal, and a text's length, of which it takes up to 4 GiB before it looks for the text. Both are looked at
+first. Layout: HDF5 File Format Specification, III.E, https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
+"""
 
 from __future__ import annotations
 
 import contextlib
+import json
+import mmap
+import re
+import struct
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.hdf5.heap import check_heaps, check_texts
 from meshonet.formats.mesh.recover_topology import known_topology
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import SIDES, Floats, Topology
+from meshonet.geometry.blocks.block import Range
+from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,6 +33,9 @@ TOGETHER = 1 << 17
 
 _DEFLATE_LIMIT = 1032
 """Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
+_MOST_SEARCHED = 1 << 28
+"""Bytes of files that are searched for heaps: that must stay a small part of reading."""
+_TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 
 
 class Checked:
@@ -35,7 +49,10 @@ class Checked:
     Attributes
     ----------
     count : number of samples n.
-    topology : the one all samples share.
+    version : of the layout; `meshonet.formats.hdf5` has both.
+    topology : the one all samples share; ``blocks`` in version 2.
+    blocks : count of blocks in version 2, else 0.
+    connections : of all samples in version 2.
     """
 
     def __init__(self, file: h5py.File, source: Source) -> None:
@@ -48,12 +65,26 @@ class Checked:
                 "is HDF5 but not a dataset of boundaries or grids",
                 "set its attributes format ('meshonet-boundary' or 'meshonet-grid'), version and topology",
             )
-        if _attribute(file, "version") != "1":
+        self.version = _attribute(file, "version")
+        self.topology: Topology = "blocks"
+        self.blocks = 0
+        self.connections: tuple[Connection, ...] = ()
+        if self.version == "1":
+            self._check_edges(file, kind)
+        elif self.version == "2" and kind == "meshonet-grid":
+            self._check_blocks(file)
+        else:
             raise InputError(
-                f"has layout version {_attribute(file, 'version')!r}",
-                "this program reads version 1: get a newer one",
+                f"has layout version {self.version!r}",
+                "this program reads version 1, and version 2 of grids: get a newer one",
             )
-        self.topology: Topology = known_topology(_attribute(file, "topology"))
+        if self.count == 0:
+            raise InputError("holds no samples", "write at least one")
+        if "parameters" in self and self._shape("parameters", 2)[0] != self.count:
+            raise InputError("dataset 'parameters' has another count than 'south'", "give one row a sample")
+
+    def _check_edges(self, file: h5py.File, kind: str) -> None:
+        self.topology = known_topology(_attribute(file, "topology"))
         self.count, ni = self._shape("south", 3)[:2]
         nj = self._shape("west", 3)[1]
         wanted = {"south": (ni, 2), "north": (ni, 2), "west": (nj, 2), "east": (nj, 2), "nodes": (ni, nj, 2)}
@@ -64,10 +95,19 @@ class Checked:
                     f"dataset {name!r} has shape {shape}",
                     f"it must be {(self.count, *wanted[name])} as 'south' and 'west' say",
                 )
-        if self.count == 0:
-            raise InputError("holds no samples", "write at least one")
-        if "parameters" in self and self._shape("parameters", 2)[0] != self.count:
-            raise InputError("dataset 'parameters' has another count than 'south'", "give one row a sample")
+
+    def _check_blocks(self, file: h5py.File) -> None:
+        import h5py
+
+        group = file.get("blocks") if isinstance(file.get("blocks", getlink=True), h5py.HardLink) else None
+        self.blocks = len(group) if isinstance(group, h5py.Group) else 0
+        if not self.blocks:
+            raise InputError("has no blocks", "store their nodes as blocks/0, blocks/1 ...")
+        counts = {self._shape(f"blocks/{k}", 4, 5)[0] for k in range(self.blocks)}
+        self.count = counts.pop()
+        if counts:
+            raise InputError("its blocks have different counts of samples", "give each sample every block")
+        self.connections = connections_from(_attribute(file, "connections"))
 
     def __contains__(self, name: str) -> bool:
         return name in self._file
@@ -114,7 +154,7 @@ class Checked:
             if data is not None and (data.ndim != 1 or h5py.check_string_dtype(data.dtype) is None):
                 raise InputError(f"dataset {name!r} is not a list of texts", "store strings, one a sample")
             if data is not None:
-                check_texts(data, self._source)
+                _check_texts(data, self._source)
             self._text_cache[name] = data
         data = self._text_cache[name]
         if data is None or k >= len(data):
@@ -154,18 +194,41 @@ class Checked:
             raise InputError(f"dataset {name!r} lies in another file", "store it in this one")
         return data
 
-    def _shape(self, name: str, ndim: int) -> tuple[int, ...]:
+    def _shape(self, name: str, *ndim: int) -> tuple[int, ...]:
         """Return the shape of a numeric dataset once its type, rank and stored size are plausible."""
         data = self._dataset(name)
-        if data.dtype.kind not in "fiu" or data.ndim != ndim:
+        if data.dtype.kind not in "fiu" or data.ndim not in ndim:
+            wanted = " or ".join(map(str, ndim))
             raise InputError(
-                f"dataset {name!r} is {data.dtype} with {data.ndim} axes", f"store float64 with {ndim} axes"
+                f"dataset {name!r} is {data.dtype} with {data.ndim} axes", f"store float64 with {wanted} axes"
             )
         if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
             raise InputError(
                 f"dataset {name!r} claims shape {data.shape} but holds next to nothing", "write it again"
             )
         return tuple(int(n) for n in data.shape)
+
+
+def connections_from(text: str) -> tuple[Connection, ...]:
+    """Return the connections of a JSON text (`meshonet.formats.hdf5.write.connections_text`)."""
+    try:
+        rows = json.loads(text or "[]")
+        return tuple(
+            Connection(
+                block, side, _range(span), donor, donor_side, _range(donor_span), tuple(ways), _motion(move)
+            )
+            for block, side, span, donor, donor_side, donor_span, ways, move in rows
+        )
+    except (ValueError, TypeError, KeyError, RecursionError):
+        raise InputError("its connections are not those of blocks", "write the dataset again") from None
+
+
+def _range(span: list[list[int]]) -> Range:
+    return tuple((int(first), int(last)) for first, last in span)
+
+
+def _motion(move: dict[str, Any] | None) -> Motion | None:
+    return Motion(tuple(move["shift"]), tuple(map(tuple, move["turn"]))) if move else None
 
 
 @contextlib.contextmanager
@@ -180,7 +243,7 @@ def opened(source: Source) -> Iterator[h5py.File]:
     """Open `source` for reading; whatever goes wrong inside becomes an InputError."""
     import h5py
 
-    check_heaps(source)
+    _check_heaps(source)
     with contextlib.ExitStack() as stack:
         try:
             given = source.path or stack.enter_context(source.open())
@@ -204,3 +267,43 @@ def _attribute(file: h5py.File, name: str) -> str:
 
 def _short(error: Exception) -> str:
     return printable(str(error).splitlines()[0] if str(error) else type(error).__name__)[:120]
+
+
+def _check_heaps(source: Source) -> None:
+    """Raise InputError where the sizes in a heap of texts do not lead from its start to its end."""
+    if source.size > _MOST_SEARCHED:
+        return
+    with source.open() as stream, contextlib.ExitStack() as stack:
+        data: bytes | mmap.mmap = source.data or b""
+        if source.data is None:
+            data = stack.enter_context(mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ))
+        for heap in re.finditer(rb"GCOL\x01\0\0\0(.{8})", data, re.DOTALL):
+            at, end = heap.end(), heap.start() + int.from_bytes(heap[1], "little")
+            while at + 16 <= end <= len(data):
+                index, size = struct.unpack_from("<H6xQ", data, at)
+                step = 16 + (size + 7) // 8 * 8 if index else size
+                at = at + step if step >= 16 else end + 1
+            if not at <= end <= len(data):
+                raise InputError(
+                    "HDF5 data is damaged (a heap of texts)",
+                    "write the file again",
+                    place=f"byte {heap.start()}",
+                )
+
+
+def _check_texts(data: h5py.Dataset, source: Source) -> None:
+    """Raise InputError when a text of a (n,) dataset of them claims to be longer than the file."""
+    if not data.id.get_type().is_variable_str() or data.id.get_create_plist().get_nfilters():
+        return
+    pieces = [(data.id.get_offset() or 0, data.id.get_storage_size())]
+    if data.chunks is not None:
+        chunks = map(data.id.get_chunk_info, range(data.id.get_num_chunks()))
+        pieces = [(chunk.byte_offset, chunk.size) for chunk in chunks]
+    with source.open() as stream:
+        for offset, size in pieces:
+            stream.seek(offset)
+            raw = stream.read(size)
+            lengths = np.frombuffer(raw, _TEXT, len(raw) // _TEXT.itemsize)["length"]
+            if (lengths > source.size).any():
+                problem = f"dataset {data.name.lstrip('/')!r} claims a text longer than the file"
+                raise InputError(problem, "write the file again")

@@ -72,7 +72,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 
 
 def usable(nodes: Floats) -> Floats:
-    """Return `nodes` (ni, nj, 2) as they are.
+    """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) as they are.
 
     Raises
     ------
@@ -80,9 +80,10 @@ def usable(nodes: Floats) -> Floats:
         a coordinate is not finite, or so large that products of two are not.
     """
     if not -LARGEST < nodes.min() <= nodes.max() < LARGEST:  # NaN passes through min and compares false
-        i, j, axis = (int(k) for k in np.argwhere(~(np.abs(nodes) < LARGEST))[0])
+        place = tuple(np.argwhere(~(np.abs(nodes) < LARGEST))[0].tolist())
+        node = ", ".join(f"{name}={k}" for name, k in zip("ijk", place[:-1], strict=False))
         raise InputError(
-            f"node i={i}, j={j} has {'xy'[axis]} = {nodes[i, j, axis]:.6g}",
+            f"node {node} has {'xyz'[place[-1]]} = {nodes[place]:.6g}",
             "check the file for wrong numbers",
         )
     return nodes

@@ -9,7 +9,6 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.mesh.boundary_patches import patches
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
@@ -91,6 +90,6 @@ def _edges(grid: Grid, number: Indices) -> dict[str, Indices]:
         "west": np.stack([number[0, 1:], number[0, :-1]], axis=-1),
     }
     found: dict[str, list[Indices]] = {}
-    for part in patches(grid):
-        found.setdefault(part.name, []).append(sides[part.side][part.start : part.stop])
+    for patch in grid.outer_patches():
+        found.setdefault(patch.name, []).append(sides[patch.side][patch.start : patch.stop])
     return {name: np.concatenate(pieces) for name, pieces in found.items()}

@@ -11,18 +11,18 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from meshonet.formats.format import Heights, only_one
-from meshonet.formats.mesh.boundary_patches import Role, cut, patches, roles
+from meshonet.formats.mesh.boundary_patches import kinds
 from meshonet.formats.mesh.names import words
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.patches import Kind
 
 _FACES: dict[Side, int] = {"west": 3, "east": 4, "south": 5, "north": 6}
-_TYPES: dict[Role, str] = {
+_TYPES: dict[Kind, str] = {
     "wall": "VISCOUS",
     "farfield": "FARFIELD",
-    "inflow": "INFLOW",
-    "outflow": "OUTFLOW",
+    "inlet": "INFLOW",
+    "outlet": "OUTFLOW",
     "symmetry": "SYMMETRY",
 }
 _RULE = "# " + "=" * 78
@@ -39,27 +39,25 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
 
 
 def _write(path: Path, grid: Grid, planes: int) -> None:
-    stretches = patches(grid)
-    role = roles(grid, stretches)
-    word = words(part.name for part in stretches)
-    rows = [f"{_TYPES.get(role[part.name], word[part.name])} {_range(part, planes)}" for part in stretches]
+    patches = grid.outer_patches()
+    kind, word = kinds(grid, patches), words(patch.name for patch in patches)
+    rows = [
+        f"{_TYPES.get(kind[p.name], word[p.name])} {_range(p.side, p.start, p.stop, planes)}" for p in patches
+    ]
     if planes > 1:
         rows += [f"SYMMETRY 1 {face} 1 {grid.ni} 1 {grid.nj}" for face in (1, 2)]
-    seam = cut(grid)
-    if seam:
-        other = _range(seam[1], planes, turned=grid.topology == "c")
-        rows.append(f"ONE_TO_ONE {_range(seam[0], planes)} {other} FALSE")
+    for connection in grid.connections:
+        own, (side, *ends) = connection.stretches(0)
+        donor = _range(side, *ends[:: connection.orientation[0]], planes)
+        rows.append(f"ONE_TO_ONE {_range(*own, planes)} {donor} FALSE")
     text = [_RULE, "# Block# IDIM JDIM KDIM", _RULE, "1", f"1 {grid.ni} {grid.nj} {planes}", _RULE]
     text += ["# Type B1 F1 S1 E1 S2 E2 [B2 F2 S1 E1 S2 E2 Swap]", _RULE, *rows, ""]
     path.write_text("\n".join(text), encoding="ascii")
 
 
-def _range(part: Patch, planes: int, *, turned: bool = False) -> str:
-    """Return block, face and the two ranges of a stretch; `turned` has its nodes run backwards."""
-    first, last = part.start + 1, part.stop + 1
-    if turned:
-        first, last = last, first
-    spans = [f"{first} {last}", f"1 {planes}"]
-    if part.side in ("south", "north"):
+def _range(side: Side, first: int, last: int, planes: int) -> str:
+    """Return block, face and the two ranges of a stretch from node `first` to `last`."""
+    spans = [f"{first + 1} {last + 1}", f"1 {planes}"]
+    if side in ("south", "north"):
         spans.reverse()
-    return f"1 {_FACES[part.side]} {' '.join(spans)}"
+    return f"1 {_FACES[side]} {' '.join(spans)}"

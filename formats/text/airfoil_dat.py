@@ -56,9 +56,8 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
         points, order, upper = _once_around(*_columns(rows), blocks)
         _check_run(points, [rows[k].number for k in order])
         places = [f"line {rows[k].number}" for k in order]
-        airfoil = Airfoil(points, _name(lines, rows[0].number) or stem or source, places)
-        airfoil.notes = (*left_out(lines), *_wrong_counts(counts, len(rows), upper), *airfoil.notes)
-        return airfoil
+        notes = (*left_out(lines), *_wrong_counts(counts, len(rows), upper))
+        return Airfoil(points, _name(lines, rows[0].number) or stem or source, places, notes)
     except InputError as error:
         error.source = error.source or source
         raise

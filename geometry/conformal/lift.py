@@ -22,9 +22,8 @@ Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Mot
 
 from __future__ import annotations
 
-from cmath import exp
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -34,21 +33,19 @@ from meshonet.kernels import _native
 
 SECOND_PRONG = 0.25  # as in kernels/conformal/lift.c
 
-Plane = TypeVar("Plane", complex, Complexes)
-
 
 @dataclass(frozen=True)
 class Corner:
-    """One corner removal: p, q before, P, Q after, exterior angle k pi."""
+    """One corner removal: p, q before, P, Q after, exterior angle k pi; numbers, or tensors of torch."""
 
-    p: complex
-    q: complex
-    P: complex
-    Q: complex
-    k: float
+    p: Any
+    q: Any
+    P: Any
+    Q: Any
+    k: Any
 
-    def restore(self, v: Plane) -> Plane:
-        """Return v for v'."""
+    def restore(self, v: Any) -> Any:
+        """Return v for v', an array of numpy or torch."""
         r = ((v - self.P) / (v - self.Q)) ** self.k
         return (self.q * r - self.p) / (r - 1.0)
 
@@ -58,25 +55,18 @@ class Lift:
     """The composed map of one body: `lift_body` makes it.
 
     `centre` and `quarter` carry the user's position, rotation and size; `phase` is what puts
-    the first wall node at phi = 0.
+    the first wall node at phi = 0. All are numbers, or tensors of torch.
     """
 
-    centre: complex
-    quarter: complex
+    centre: Any
+    quarter: Any
     corners: tuple[Corner, ...]
-    pole: complex
-    phase: float
+    pole: Any
+    phase: Any
 
-    def to_plane(self, w: Complexes) -> Complexes:
-        """Return z for strip points w, any shape."""
-        zeta = self.pole + np.exp(w + 1j * self.phase)
-        for corner in reversed(self.corners):
-            zeta = corner.restore(zeta)
-        return self.centre + self.quarter * (zeta + 1.0 / zeta)
-
-    def point(self, w: complex) -> complex:
-        """Return z for one strip point: `to_plane` without the cost of an array."""
-        zeta = self.pole + exp(w + 1j * self.phase)
+    def to_plane(self, w: Any, xp: Any = np) -> Any:
+        """Return z for strip points w, any shape, of the module `xp`: numpy or torch."""
+        zeta = self.pole + xp.exp(w + 1j * self.phase)
         for corner in reversed(self.corners):
             zeta = corner.restore(zeta)
         return self.centre + self.quarter * (zeta + 1.0 / zeta)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from meshonet.solvers.neural.weights import described, shipped
+from meshonet.solvers.neural.registry import described, shipped
 
 
 def models() -> list[dict[str, Any]]:

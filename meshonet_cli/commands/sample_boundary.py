@@ -81,19 +81,18 @@ def sample_boundary(
 ) -> int:
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
-    from meshonet_cli.boundary_batch import from_family, from_files, sample
+    from meshonet.geometry.families.draw import draws
+    from meshonet_cli.boundary_batch import Sampler, write_boundaries
 
     if bool(source) == bool(family):
         problem = "both a source and {family}" if source else "neither a source nor {family}"
         raise InputError(problem, "give one of them, see meshonet sample-boundary --help")
     o.only_with("family", family is not None, range=spread, split=split, count=count, seed=seed)
-    settings, session = sampling.settings(), printing.session()
-    if family is not None:
-        draw = (family, 1 if count is None else count, spread, seed or 0, split)
-        found, destination = from_family(draw, output, files.to_format, session)
-    else:
-        found, destination = from_files(source or [], output, files.to_format, session, files.from_format)
-    return sample(
-        found, settings, destination, session,
-        sensors=sensors, skip_existing=files.skip_existing, jobs=jobs,
+    sampler = Sampler(sampling.settings(), sensors)
+    members = (
+        draws(family, 1 if count is None else count, spread, seed or 0, split) if family else source or []
+    )
+    return write_boundaries(
+        members, output, sampler, printing.session(), from_format=files.from_format,
+        to_format=files.to_format, skip_existing=files.skip_existing, jobs=jobs,
     )  # fmt: skip

@@ -20,22 +20,22 @@ EXAMPLES = (
 
 _option = o.option_of(o.METHOD)
 
-SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves}
 AUTO = (
-    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless {coarse}, "
-    "{refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless "
+    "{coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
 )
+SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
     MethodName: TypeAlias = str
 else:
-    MethodName = Literal[("auto", *SOLVERS)]
+    MethodName = Literal[tuple(SOLVERS)]
 
 # fmt: off
 Method = Annotated[
     MethodName,
     _option(
-        "--method", metavar="|".join(("auto", *SOLVERS)), show_default=True,
-        help=spelled(" ".join(f"{name}: {summary}." for name, summary in {**SOLVERS, "auto": AUTO}.items()), o.spelling),
+        "--method", metavar="|".join(SOLVERS), show_default=True,
+        help=spelled(" ".join(f"{name}: {text}." for name, text in SOLVERS.items()), o.spelling),
     ),
 ]
 Tolerance = Annotated[

@@ -1,4 +1,4 @@
-"""Chebyshev points of the unit interval and interpolation between them, as a matrix.
+"""Chebyshev points of the unit interval, and interpolation from points as a matrix.
 
 Berrut & Trefethen, Barycentric Lagrange Interpolation, SIAM Review 46 (2004) 501.
 """
@@ -15,22 +15,28 @@ def points(n: int) -> Floats:
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.arange(n) / (n - 1)))
 
 
-def interpolation(n: int, where: Floats) -> Floats:
-    """Return the (len(where), n) matrix from values at `points(n)` to values at `where`.
+def weights(n: int) -> Floats:
+    """Return the barycentric weights of `points(n)`."""
+    signs = (-1.0) ** np.arange(n)
+    signs[[0, -1]] *= 0.5
+    return np.asarray(signs, dtype=np.float64)
 
-    Exact at the points themselves: a row there has one 1.
+
+def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
+    """Return the (len(nodes), len(x)) matrix that takes values at `nodes` to values at `x`.
+
+    Exact at the nodes themselves: a column there has one 1.
 
     Examples
     --------
-    >>> interpolation(5, np.array([0.0, 0.3])) @ points(5) ** 4
+    >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
     """
-    weights = (-1.0) ** np.arange(n)
-    weights[[0, -1]] *= 0.5
-    gap = where[:, None] - points(n)[None, :]
+    gap = x[None, :] - nodes[:, None]
     hit = gap == 0.0
     gap[hit] = 1.0
-    matrix = weights / gap
-    matrix[hit.any(axis=1)] = 0.0
+    matrix = weights[:, None] / gap
+    matrix[:, hit.any(axis=0)] = 0.0
     matrix[hit] = 1.0
-    return np.asarray(matrix / matrix.sum(axis=1, keepdims=True))
+    matrix /= matrix.sum(axis=0)
+    return np.asarray(matrix)

@@ -16,7 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.kernels._native import strip_rows
@@ -110,7 +110,7 @@ class StripGrid:
 @lru_cache(maxsize=8)
 def _interpolation(eta: bytes) -> Floats:
     """Return `interpolation`, kept for bodies that follow on the same levels."""
-    return interpolation(np.frombuffer(eta))
+    return read_only(interpolation(np.frombuffer(eta)))
 
 
 def _widened(low: Complexes, ahead: Complexes, behind: Complexes) -> Complexes:
@@ -162,7 +162,7 @@ class _HighModes:
 
     def _felt(self, depth: Floats) -> list[tuple[int, int]]:
         """Return, highest octave of modes first, how many levels feel it and how many modes it ends."""
-        found: list[tuple[int, int]] = []
+        octaves: list[tuple[int, int]] = []
         strength = np.abs(self.ahead) + np.abs(self.behind[::-1])
         begin = 0
         while begin < len(strength):
@@ -170,6 +170,6 @@ class _HighModes:
             end = min(begin + low, len(strength))
             total = float(strength[begin:end].sum())
             felt = np.log(max(total / FAINT, 1.0)) / (low * self.height)
-            found.append((int(np.searchsorted(depth, felt)), end))
+            octaves.append((int(np.searchsorted(depth, felt)), end))
             begin = end
-        return found[::-1]
+        return octaves[::-1]

@@ -20,7 +20,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.kernels._native import fourier_columns
 
 TAPS = 14  # as in kernels/conformal/strip_rows.h
@@ -44,10 +44,10 @@ def columns(modes: Complexes) -> Floats:
     """
     count, wide = len(modes), -(-len(modes) // LANES) * LANES
     gain, unit = _transform(columns_for(modes.shape[1] // 2))
-    found = np.zeros((2 * len(unit), 2, wide))
+    samples = np.zeros((2 * len(unit), 2, wide))
     if count:
-        fourier_columns(np.ascontiguousarray(modes), gain, unit, found)
-    return found
+        fourier_columns(np.ascontiguousarray(modes), gain, unit, samples)
+    return samples
 
 
 @lru_cache(maxsize=16)
@@ -61,4 +61,5 @@ def _transform(count: int) -> tuple[Floats, Complexes]:
     window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))
     angle = np.pi * TAPS / count * np.outer(np.arange(count // 4 + 1), x)
     unit = np.exp(2j * np.pi * np.arange(count // 2) / count)
-    return np.asarray(steps / (0.5 * TAPS) / (np.cos(angle) @ window)), unit
+    gain: Floats = steps / (0.5 * TAPS) / (np.cos(angle) @ window)
+    return read_only(gain), read_only(unit)

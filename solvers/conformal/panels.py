@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.solvers.conformal.chebyshev import barycentric
 
 NODES = 16
 NEAREST = 0.25  # psi from the wall's outermost point to the first panel
@@ -47,7 +48,7 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     list of Panel
         without gaps, outwards, ending at `last`; empty when none is worth it.
     """
-    found: list[Panel] = []
+    chosen: list[Panel] = []
     distance = NEAREST
     while spread + distance < height:
         far = spread + 2.0 * distance
@@ -55,11 +56,11 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
         start = max(int(ends[0]), first)
         stop = last if far >= height else min(int(ends[1]), last)
         if stop - start >= WORTH * NODES:
-            found.append(_panel(eta, start, stop))
+            chosen.append(_panel(eta, start, stop))
         elif stop > start:
-            found.clear()  # too few levels here: they and all before them are evaluated themselves
+            chosen.clear()  # too few levels here: they and all before them are evaluated themselves
         distance *= 2.0
-    return found
+    return chosen
 
 
 def _panel(eta: Floats, start: int, stop: int) -> Panel:
@@ -67,11 +68,4 @@ def _panel(eta: Floats, start: int, stop: int) -> Panel:
     angle = np.pi * (np.arange(NODES) + 0.5) / NODES
     points = 0.5 * (a + b) - 0.5 * (b - a) * np.cos(angle)
     weights = np.sin(angle) * (-1.0) ** np.arange(NODES)
-    gap = eta[None, start:stop] - points[:, None]
-    hit = gap == 0.0
-    gap[hit] = 1.0
-    matrix = weights[:, None] / gap
-    matrix[:, hit.any(axis=0)] = 0.0
-    matrix[hit] = 1.0
-    matrix /= matrix.sum(axis=0)
-    return Panel(start, stop, points, matrix)
+    return Panel(start, stop, points, barycentric(points, weights, eta[start:stop]))

@@ -17,11 +17,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
-from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
 from meshonet.kernels._native import picard_step
+from meshonet.solvers.conformal.chebyshev import barycentric, weights
 
 MODES = 63  # as in kernels/conformal/picard.h, like the next two
 COLUMNS = 128  # samples along theta
@@ -57,61 +59,50 @@ def across() -> Across:
     d1 = -2.0 * d / rate[:, None]
     d2 = d1 @ d1
     values, vectors = np.linalg.eig(d2[1:-1, 1:-1])
-    return Across(s, eta, d1, d2, values.real, vectors.real, np.linalg.inv(vectors.real))
+    arrays = (s, eta, d1, d2, values.real, vectors.real, np.linalg.inv(vectors.real))
+    return Across(*(read_only(array) for array in arrays))
 
 
 def interpolation(eta: Floats) -> Floats:
-    """Return the (LEVELS, len(eta)) matrix that takes values at the Chebyshev points to values at `eta`.
-
-    Barycentric formula; exact at the points themselves. Berrut & Trefethen, SIAM Review 46 (2004) 501.
-    """
-    points = across().s
+    """Return the (LEVELS, len(eta)) matrix from values at the Chebyshev points to values at `eta`."""
     s = np.log1p(eta * np.expm1(CLUSTERING)) / CLUSTERING
-    weights = (-1.0) ** np.arange(LEVELS)
-    weights[[0, -1]] *= 0.5
-    gap = s[None, :] - points[:, None]
-    hit = gap == 0.0
-    gap[hit] = 1.0
-    matrix = weights[:, None] / gap
-    matrix[:, hit.any(axis=0)] = 0.0
-    matrix[hit] = 1.0
-    matrix /= matrix.sum(axis=0)
-    return matrix
+    return barycentric(across().s, weights(LEVELS), s)
 
 
-def modes(F: Complexes, count: int = MODES) -> Complexes:
-    """Return Fourier coefficients (2 count + 1, ...) of F (n, ...) for k = 0, 1 .. count, -count .. -1.
+def modes(F: Any, xp: Any = np) -> Any:
+    """Return Fourier coefficients (..., 2 MODES + 1) of F (..., n) for k = 0, 1 .. MODES, -MODES .. -1.
 
-    Modes that n samples cannot tell are zero.
+    Modes that n samples do not resolve are zero.
+
+    Parameters
+    ----------
+    xp : the module, numpy or torch, that F is an array of; the same in the functions below.
     """
-    n = len(F)
-    c = np.fft.fft(F, axis=0) / n
-    keep = min(count, (n - 1) // 2)
-    out = np.zeros((2 * count + 1, *F.shape[1:]), complex)
-    out[: keep + 1] = c[: keep + 1]
-    if keep:
-        out[-keep:] = c[-keep:]
-    return out
+    n = F.shape[-1]
+    c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)
+    zeros = _zeros(c, 2 * (MODES - kept), xp)
+    return xp.concatenate([c[..., : kept + 1], zeros, c[..., n - kept :]], -1)
 
 
-def wavenumbers(count: int = MODES) -> Floats:
-    """Return k in the order of `modes`."""
-    return np.concatenate([np.arange(count + 1.0), np.arange(-count, 0.0)])
+def wavenumbers(like: Any = None, xp: Any = np) -> Any:
+    """Return k in the order of `modes`, an array `like` another if one is named."""
+    k = np.concatenate([np.arange(MODES + 1.0), np.arange(-MODES, 0.0)])
+    return k if like is None else array_like(k, like, xp)
 
 
-def decay(k: Floats, T: float, eta: Floats) -> tuple[Floats, Floats]:
-    """Return how mode k of the wall and of the far field reach eta: two (len(k), len(eta)) arrays.
+def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
+    """Return how mode k of the wall and of the far field reach eta: two (..., len(k), len(eta)) arrays.
 
-    sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), written without overflow.
+    sinh(kT(1-eta))/sinh(kT) and sinh(kT eta)/sinh(kT), written without overflow. T, the height of the strip,
+    is a number or (..., 1, 1).
     """
-    kT = np.where(k == 0, 1.0, np.abs(k) * T)[:, None]
-    e = eta[None, :]
-    whole = 1.0 - np.exp(-2.0 * kT)
-    wall = (np.exp(-kT * e) - np.exp(-kT * (2.0 - e))) / whole
-    far = (np.exp(-kT * (1.0 - e)) - np.exp(-kT * (1.0 + e))) / whole
+    k = abs(k)[:, None]
     flat = k == 0
-    wall[flat], far[flat] = 1.0 - e, e
-    return wall, far
+    kT = xp.where(flat, 1.0, k * T)
+    whole = 1.0 - xp.exp(-2.0 * kT)
+    wall = (xp.exp(-kT * eta) - xp.exp(-kT * (2.0 - eta))) / whole
+    far = (xp.exp(-kT * (1.0 - eta)) - xp.exp(-kT * (1.0 + eta))) / whole
+    return xp.where(flat, 1.0 - eta, wall), xp.where(flat, eta, far)
 
 
 def smoothing() -> Floats:
@@ -119,23 +110,30 @@ def smoothing() -> Floats:
     return np.asarray(np.exp(-36.0 * (np.abs(wavenumbers()) / (MODES + 1)) ** 12))
 
 
-def harmonic(wall: Complexes, far: Complexes, eta: Floats) -> Complexes:
-    """Return modes (2 MODES + 1, len(eta)) of the harmonic function with these modes on the two walls."""
-    T = float((far[0] - wall[0]).real)
-    count = (len(wall) - 1) // 2
-    near, away = decay(np.arange(count + 1.0), T, eta)
-    found = np.empty((len(wall), len(eta)), complex)  # k = 0, 1 .. count and -count .. -1 decay alike
-    found[: count + 1] = wall[: count + 1, None] * near + far[: count + 1, None] * away
-    found[count + 1 :] = wall[count + 1 :, None] * near[:0:-1] + far[count + 1 :, None] * away[:0:-1]
-    return found
+def harmonic(wall: Any, far: Any, eta: Floats, xp: Any = np) -> Any:
+    """Return modes (..., 2 MODES + 1, len(eta)) of the harmonic function with these on the two walls."""
+    count, T = MODES + 1, (far - wall)[..., :1, None].real
+    k = wavenumbers(wall, xp)[:count]  # k and -k decay alike
+    near, away = decay(k, T, array_like(eta, wall, xp), xp)
+    back = [xp.flip(ratio[..., 1:, :], (-2,)) for ratio in (near, away)]
+    ahead = wall[..., :count, None] * near + far[..., :count, None] * away
+    return xp.concatenate([ahead, wall[..., count:, None] * back[0] + far[..., count:, None] * back[1]], -2)
 
 
-def to_columns(c: Complexes, axis: int = 0) -> Complexes:
-    """Return samples at `COLUMNS` equal steps of theta of the functions whose modes lie along `axis` of c."""
-    c = np.moveaxis(c, axis, -1)
-    full = np.zeros((*c.shape[:-1], COLUMNS), complex)
-    full[..., : MODES + 1], full[..., -MODES:] = c[..., : MODES + 1], c[..., -MODES:]
-    return np.moveaxis(np.fft.ifft(full, norm="forward"), -1, axis)
+def to_columns(c: Any, xp: Any = np) -> Any:
+    """Return samples at `COLUMNS` equal steps of theta of the functions with modes c (..., 2 MODES + 1)."""
+    zeros = _zeros(c, COLUMNS - 2 * MODES - 1, xp)
+    return xp.fft.ifft(xp.concatenate([c[..., : MODES + 1], zeros, c[..., MODES + 1 :]], -1), norm="forward")
+
+
+def from_columns(values: Any, xp: Any = np) -> Any:
+    """Return modes (..., 2 MODES + 1) of samples at `COLUMNS` equal steps of theta."""
+    spectrum = xp.fft.fft(values) / COLUMNS
+    return xp.concatenate([spectrum[..., : MODES + 1], spectrum[..., -MODES:]], -1)
+
+
+def _zeros(like: Any, count: int, xp: Any) -> Any:
+    return xp.zeros((*like.shape[:-1], count), dtype=like.dtype, device=like.device)
 
 
 def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
@@ -163,4 +161,5 @@ def _kernels() -> tuple[Floats, Floats, Floats]:
     inner = np.zeros((2, LEVELS, LEVELS))
     inner[:, 1:-1, 1:-1] = grid.inverse, grid.vectors
     matrices = np.concatenate([[grid.d1, grid.d2], inner]).swapaxes(1, 2).copy()
-    return matrices, np.pad(grid.eigenvalues, 1, constant_values=-1.0), smoothing()
+    eigenvalues = np.pad(grid.eigenvalues, 1, constant_values=-1.0)
+    return read_only(matrices), read_only(eigenvalues), read_only(smoothing())

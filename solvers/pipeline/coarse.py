@@ -7,7 +7,7 @@ and its grid is evaluated inside the full edges (`meshonet.solvers.algebraic.res
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
@@ -15,8 +15,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
-from meshonet.solvers.elliptic.kinks import sweep_kinks
-from meshonet.solvers.method import METHODS, Method
+from meshonet.solvers.method import METHODS, Wrapper
 from meshonet.solvers.solution import Solution
 
 LEAST_NODES = 9
@@ -24,36 +23,18 @@ LEAST_NODES = 9
 
 
 @dataclass(frozen=True)
-class Coarse:
+class Coarse(Wrapper):
     """`method` on at most n x n nodes, evaluated at the counts of the boundary (`solve_coarse`)."""
 
-    method: Method
     n: int
-    together: None = None
 
-    @property
-    def name(self) -> str:
-        """That of the method."""
-        return self.method.name
-
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries.
-
-        Raises
-        ------
-        InputError
-            grids to start from, which have the counts of the result.
-        """
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of a boundary; raise InputError for a grid to start from."""
         if start is not None:
-            raise InputError(
-                "a coarse solve has no use for a grid to start from", "drop {initial} or {coarse}"
-            )
+            problem = "a coarse solve has no use for a grid to start from"
+            raise InputError(problem, "drop {initial} or {coarse}")
         smooth = self.name not in METHODS or METHODS[self.name].sweeps
-
-        def solve(boundary: Boundary) -> Solution:
-            return self.method.solve([boundary])[0]
-
-        return [solve_coarse(problem, solve, self.n, smooth=smooth) for problem in problems]
+        return solve_coarse(boundary, self.inner, self.n, smooth=smooth)
 
 
 def solve_coarse(
@@ -89,6 +70,8 @@ def solve_coarse(
     solution = solve(thinned(boundary, *counts))
     nodes = evaluate(solution.grid.nodes, boundary)
     if smooth:
+        from meshonet.solvers.elliptic.kinks import sweep_kinks
+
         winslow = solution.method == "winslow" or count_folded(nodes) > 0
         sweep_kinks(nodes, boundary, counts, only_better=not winslow)
     facts = {**solution.grid.provenance, "coarse": counts}

@@ -13,13 +13,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
+from typing import Any
 
 from meshonet.geometry.arrays import SIDES, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.layers.first_cells import Heights
-from meshonet.solvers.method import Each, Method, method_named
+from meshonet.solvers.method import Each, Method, Wrapper, method_named
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
@@ -71,14 +72,14 @@ class FirstCells:
 
 
 @dataclass(frozen=True)
-class Layered:
+class Layered(Wrapper):
     """`method`, and first cells of given heights at the walls of its grids.
 
     Parameters
     ----------
     method : makes the grids with even rows.
     cells : heights and layers.
-    turning : the method that turns lines at walls by sources.
+    turning : settings of ``steger-sorenson``, whose sources turn lines at walls.
     full : `method` as it solves on all nodes; None when it is not to.
     marched : topologies that are marched from the wall when there is a height off walls.
     channels : make lines leave the walls of four-sided domains at right angles when there is such a height.
@@ -86,33 +87,22 @@ class Layered:
     chosen : settings that were given by name, to be refused where they are of no use.
     """
 
-    method: Method
     cells: FirstCells
-    turning: Method
+    turning: Mapping[str, Any] = field(default_factory=dict)
     full: Method | None = None
     marched: tuple[Topology, ...] = ()
     channels: bool = False
     slide: bool | None = None
     chosen: tuple[str, ...] = ()
-    together: None = None
 
-    @property
-    def name(self) -> str:
-        """That of the method."""
-        return self.method.name
-
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries, its first cells as high as asked.
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of a boundary, its first cells as high as asked.
 
         Raises
         ------
         InputError
-            heights or settings that do not suit a boundary or the method.
+            heights or settings that do not suit the boundary or the method.
         """
-        grids = [None] * len(problems) if start is None else [[grid] for grid in start]
-        return [self._solve(*each) for each in zip(problems, grids, strict=True)]
-
-    def _solve(self, boundary: Boundary, start: Sequence[Grid] | None) -> Solution:
         if boundary.around_body and self.cells.sides:
             raise InputError(
                 f"a height off a single side, around a body (topology {boundary.topology})",
@@ -137,7 +127,7 @@ class Layered:
         solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
         return replace(solution, notes=(cells.note, *solution.notes)) if cells.note else solution
 
-    def _in_layers(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
+    def _in_layers(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` with layers; the grid's time is that of all this."""
         from meshonet.solvers.elliptic import steger_sorenson  # noqa: F401 - loaded before the clock starts
         from meshonet.solvers.layers import slide_nodes  # noqa: F401
@@ -152,7 +142,7 @@ class Layered:
         note = (self.cells.note,) if self.cells.note else ()
         return replace(solution, notes=(*note, *solution.notes), seconds=seconds)
 
-    def _even(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
+    def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` with even rows, wall nodes slid or lines turned as they are to be."""
         channel = self.channels and not boundary.around_body and self.cells.height is not None
         slide = channel and boundary.sampled if self.slide is None else self.slide
@@ -163,23 +153,23 @@ class Layered:
             return solution
         if channel:
             self._refuse(("model", "polish", "answer"), "a channel with given wall nodes")
-        if self.full is not None and (channel or self.name == self.turning.name):
+        if self.full is not None and (channel or self.name == "steger-sorenson"):
             return self._turned(boundary, heights, start)
-        return self.method.solve([boundary], start)[0]
+        return self.inner(boundary, start)
 
-    def _slid(self, boundary: Boundary, start: Sequence[Grid] | None) -> Solution:
+    def _slid(self, boundary: Boundary, start: Grid | None) -> Solution:
         from meshonet.solvers.layers.slide_nodes import slide_walls
 
         slid, controls = slide_walls(boundary)
         method = self.method
         if controls is not None and isinstance(self.full, Each) and self.full.takes("controls"):
             method = self.full.having(controls=controls)
-        solution = method.solve([slid], start)[0]
+        solution = method.solve([slid], None if start is None else [start])[0]
         note = "wall nodes slid along south and north"
         return replace(solution, boundary=slid, notes=(*solution.notes, note))
 
     def _upright(
-        self, solution: Solution, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None
+        self, solution: Solution, boundary: Boundary, heights: Heights, start: Grid | None
     ) -> Solution:
         """Return `solution`, its wall nodes slid; where lines still lean, sources turn them.
 
@@ -198,10 +188,10 @@ class Layered:
         kept = self._turned(boundary, heights, start)
         return kept if largest_lean(kept.grid.nodes, boundary) < lean else turned
 
-    def _turned(self, boundary: Boundary, heights: Heights, start: Sequence[Grid] | None) -> Solution:
+    def _turned(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         sides = {side: height for side in SIDES if (height := getattr(heights, side))}
-        turning = self.turning.having(heights=sides) if isinstance(self.turning, Each) else self.turning
-        return turning.solve([boundary], start)[0]
+        turning = method_named("steger-sorenson", **self.turning, heights=sides)
+        return turning.solve([boundary], None if start is None else [start])[0]
 
     def _refuse(self, settings: Iterable[str], what: str, chosen: Sequence[str] | None = None) -> None:
         """Raise InputError when one of `settings` was given, which are of no use to `what`."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from meshonet.geometry.arrays import SIDES, TOPOLOGIES
 from meshonet.geometry.blocks.grid import Grid
@@ -14,9 +14,11 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
 from meshonet.solvers.method import METHODS, Method, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
-from meshonet.solvers.pipeline.layered import FirstCells, Layered
 from meshonet.solvers.pipeline.select import best, elliptic, fewer_on_quads
 from meshonet.solvers.pipeline.sequence import Sequenced
+
+if TYPE_CHECKING:
+    from meshonet.solvers.pipeline.layered import FirstCells
 
 OPERATOR_SETTINGS = ("model", "polish", "device")
 """Settings any of which asks for a network."""
@@ -155,6 +157,8 @@ class GridRequest:
 
     def first_cells(self) -> FirstCells:
         """Return the heights of first cells and the layers that begin with them."""
+        from meshonet.solvers.pipeline.layered import FirstCells
+
         height, note = self._height(), ""
         if self.y_plus is not None:
             note = (
@@ -190,14 +194,15 @@ class GridRequest:
         method = self._at_any_resolution(base)
         if not self.at_walls and not self._sides() and not self.slide:
             return method
+        from meshonet.solvers.pipeline.layered import Layered
+
         automatic = self.method in ("best", "auto") or self._operator
         full = None if self.refine or isinstance(self.coarse, int) else base
         own = full is not None and base.name in ("winslow", "steger-sorenson")
-        turning = method_named("steger-sorenson", **(self.settings if own else {}), **self._angle())
         return Layered(
             method,
             self.first_cells(),
-            turning,
+            {**(self.settings if own else {}), **self._angle()},
             full,
             marched=TOPOLOGIES if self.method == "hyperbolic" else ("o", "c") if automatic else (),
             channels=automatic,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.method import Each, Method, method_named
+from meshonet.solvers.method import Each, Method, OneByOne, Wrapper, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.solution import Solution
 
@@ -20,7 +20,7 @@ Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of t
 
 
 @dataclass(frozen=True)
-class Auto:
+class Auto(OneByOne):
     """A method for each topology.
 
     Parameters
@@ -32,48 +32,31 @@ class Auto:
     o: Method
     c: Method
     name: str = "auto"
-    together: None = None
 
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries."""
-        grids = [None] * len(problems) if start is None else [[grid] for grid in start]
-        return [
-            getattr(self, problem.topology).solve([problem], grid)[0]
-            for problem, grid in zip(problems, grids, strict=True)
-        ]
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of a boundary by the method of its topology."""
+        method: Method = getattr(self, boundary.topology)
+        return method.solve([boundary], None if start is None else [start])[0]
 
 
 @dataclass(frozen=True)
-class Fewer:
+class Fewer(Wrapper):
     """`method` on fewer nodes where that measures as good; where those fold, on twice as many."""
 
-    method: Method
-    together: None = None
-
-    @property
-    def name(self) -> str:
-        """That of the method."""
-        return self.method.name
-
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries."""
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of a boundary, on all nodes when there is a grid to start from."""
         above, n = FEWER_NODES.get(self.name, (0, 0))
-        if not n or start is not None:
-            return self.method.solve(problems, start)
-        return [self._solve(problem, above, n) for problem in problems]
-
-    def _solve(self, boundary: Boundary, above: int, n: int) -> Solution:
-        if max(boundary.ni, boundary.nj) <= above:
-            return self.method.solve([boundary])[0]
-        solution = Coarse(self.method, n).solve([boundary])[0]
+        if not n or start is not None or max(boundary.ni, boundary.nj) <= above:
+            return self.inner(boundary, start)
+        solution = Coarse(self.method, n).solve_one(boundary)
         if count_folded(solution.grid.nodes) == 0:
             return solution
-        finer = Coarse(self.method, 2 * n - 1).solve([boundary])[0]
+        finer = Coarse(self.method, 2 * n - 1).solve_one(boundary)
         return min(finer, solution, key=lambda each: count_folded(each.grid.nodes))
 
 
 @dataclass(frozen=True)
-class AroundWake:
+class AroundWake(OneByOne):
     """C grids: marched with a first cell of its own choice, or where that does not suit variational.
 
     Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
@@ -85,21 +68,14 @@ class AroundWake:
 
     note: str = ""
     name: str = "auto"
-    together: None = None
 
-    def solve(
-        self,
-        problems: Sequence[Boundary],
-        start: Sequence[Grid] | None = None,  # noqa: ARG002 - a march starts from the wall
-    ) -> list[Solution]:
-        """Return a solution for each of the boundaries."""
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
+        """Return the solution of a boundary; a march starts from the wall, and from no grid."""
         from meshonet.solvers.hyperbolic.default_spacing import march_unasked
 
-        minimise = Fewer(method_named("variational"))
-        found = [march_unasked(problem) or minimise.solve([problem])[0] for problem in problems]
-        if not self.note:
-            return found
-        return [replace(each, notes=(f"{self.note} {each.method}", *each.notes)) for each in found]
+        solution = march_unasked(boundary) or Fewer(method_named("variational")).solve_one(boundary)
+        notes = (f"{self.note} {solution.method}", *solution.notes) if self.note else solution.notes
+        return replace(solution, notes=notes)
 
 
 def elliptic() -> Auto:
@@ -123,4 +99,4 @@ def solve_automatic(boundary: Boundary, solve: Callable[[Boundary], Solution], n
     """Solve with `solve`, the method `name`, as `elliptic` (``auto``) or `fewer_on_quads` would."""
     method = Each("winslow" if name == "auto" else name, solve)
     auto = Auto(Fewer(method), method, AroundWake() if name == "auto" else method)
-    return auto.solve([boundary])[0]
+    return auto.solve_one(boundary)

@@ -11,39 +11,29 @@ as a coarse one is (`meshonet.solvers.algebraic.resample.grids`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.solvers.algebraic.resample.grids import evaluate
-from meshonet.solvers.method import Method
+from meshonet.solvers.method import Wrapper
 from meshonet.solvers.solution import Solution
 
 
 @dataclass(frozen=True)
-class Sequenced:
+class Sequenced(Wrapper):
     """`method` on every 2^levels-th node, then on twice as many cells until on all (`solve_refined`)."""
 
-    method: Method
     levels: int
-    together: None = None
 
-    @property
-    def name(self) -> str:
-        """That of the method."""
-        return self.method.name
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+        """Return the solution of a boundary; a grid to start from has the coarsest counts."""
+        return solve_refined(boundary, self._from, self.levels, start)
 
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a solution for each of the boundaries; grids to start from have the coarsest counts."""
-        grids = [None] * len(problems) if start is None else list(start)
-
-        def solve(boundary: Boundary, initial: Grid | None = None) -> Solution:
-            return self.method.solve([boundary], None if initial is None else [initial])[0]
-
-        pairs = zip(problems, grids, strict=True)
-        return [solve_refined(problem, solve, self.levels, grid) for problem, grid in pairs]
+    def _from(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
+        return self.inner(boundary, initial)
 
 
 def solve_refined(

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from command_line import ROOT, Meshonet, Outcome, Process, dataset, duct, ellipse, wave
 
-from meshonet.solvers.neural.quads.encoding import HEADS
-from meshonet.solvers.neural.quads.export import write_model
-from meshonet.solvers.neural.quads.network import shapes
+from meshonet.solvers.neural.model_file import QUAD, write_model
+from meshonet.solvers.neural.quad.encoding import HEADS
+from meshonet.solvers.neural.quad.network import shapes
 from meshonet_cli.app import run
 
 
@@ -76,7 +76,9 @@ def quad_model(tmp_path: Path) -> str:
     """A quad model with random weights."""
     rng = np.random.default_rng(0)
     weights = {
-        name: 0.1 * rng.normal(size=shape) for name, shape in shapes((1, 2), (0, 1), len(HEADS)).items()
+        name: 0.1 * rng.normal(size=shape).astype(np.float32)
+        for name, shape in shapes((1, 2), (0, 1), len(HEADS)).items()
     }
-    write_model(tmp_path / "quads.safetensors", weights, name="random", recipe={}, figures={})
-    return str(tmp_path / "quads.safetensors")
+    path = tmp_path / "quads.safetensors"
+    write_model(path, QUAD, weights, name="random", topology="quad", recipe={}, figures={})
+    return str(path)

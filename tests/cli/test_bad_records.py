@@ -55,16 +55,16 @@ def test_an_iterator_goes_on_behind_a_bad_record(tmp_path: Path) -> None:
 def test_memory_that_ends_while_many_are_solved_ends_nothing(
     meshonet: Meshonet, tmp_path: Path, quad_model: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from meshonet.solvers.neural.quads import inference
+    from meshonet.solvers.neural.quad import operator
 
-    solve = inference._solved
+    solve = operator.polished
 
     def limited(boundaries, *more):  # type: ignore[no-untyped-def]
         if len(boundaries) > 1:
             raise MemoryError
         return solve(boundaries, *more)
 
-    monkeypatch.setattr(inference, "_solved", limited)
+    monkeypatch.setattr(operator, "polished", limited)
     dataset(tmp_path / "three.h5", "quad", *[duct(bump=0.1 * k) for k in range(3)])
     done = meshonet("infer", "three.h5", "--model", quad_model, "-o", "g.h5")
     assert (done.code, len(list(read_grids("g.h5")))) == (0, 3)

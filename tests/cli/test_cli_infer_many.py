@@ -10,7 +10,7 @@ from command_line import Meshonet
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.solvers.neural.inference import infer
-from meshonet.solvers.neural.quads.operator import in_batches
+from meshonet.solvers.neural.operator import in_batches
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """How many boundaries went into each call of the solver."""
     counts: list[int] = []
     monkeypatch.setattr(
-        "meshonet.solvers.neural.quads.inference.in_batches",
+        "meshonet.solvers.neural.quad.operator.in_batches",
         lambda boundaries, threads: counts.append(len(boundaries)) or in_batches(boundaries, threads),
     )
     return counts

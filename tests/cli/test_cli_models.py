@@ -4,7 +4,7 @@ from pathlib import Path
 
 from command_line import Meshonet
 
-from meshonet.solvers.neural.weights import shipped
+from meshonet.solvers.neural.registry import shipped
 
 
 def test_models_are_listed(meshonet: Meshonet) -> None:

@@ -326,7 +326,7 @@ def test_the_quad_operator_learns_from_grids_by_both_methods(meshonet: Meshonet)
     assert Path("q.safetensors").stat().st_size > 10_000
     refused = meshonet("train", "winslow.h5", "--model", "quad", "-o", "r.safetensors")
     assert refused.code == 2
-    assert "grids by winslow for the quad operator; give one dataset" in refused.err
+    assert "grids by winslow for the quad operator; give grids of the same boundaries" in refused.err
     assert not Path("r.safetensors").exists()
 
 

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -10,17 +11,15 @@ import pytest
 from format_shapes import c_grid, channel, memory, ring
 
 from meshonet.formats.hdf5.check import Checked
-from meshonet.formats.hdf5.dataset import (
-    Writer,
-    read_grids,
-    read_parameters,
-    read_shapes,
-    write_boundaries,
-    write_grids,
-)
+from meshonet.formats.hdf5.read import read_grids, read_parameters, read_shapes
+from meshonet.formats.hdf5.write import Writer, write_boundaries, write_grids
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 
@@ -190,7 +189,8 @@ ELSEWHERE = "del f['east']; f.create_dataset('east', (1, 5, 2), 'f8', external=[
 NEEDS_EAST = "has no dataset 'east'; store south, north, west and east"
 CASES = {
     "del f.attrs['format']": "is HDF5 but not a dataset of boundaries or grids; set its",
-    "f.attrs['version'] = 2": "has layout version '2'; this program reads version 1",
+    "f.attrs['version'] = 2": "has no blocks; store their nodes as blocks/0",
+    "f.attrs['version'] = 3": "has layout version '3'; this program reads version 1",
     "f.attrs['topology'] = 'x'": "topology 'x' is not known; use quad, o or c",
     "del f['east']": NEEDS_EAST,
     "del f['nodes']": "has no dataset 'nodes'",
@@ -282,3 +282,79 @@ def test_a_text_that_would_take_all_memory_is_refused(more: str) -> None:
     spoilt = data[:descriptor] + b"\xff" * 4 + data[descriptor + 4 :]
     with pytest.raises(InputError, match="dataset 'names' claims a text longer than the file; write"):
         list(read_grids(memory(spoilt)))
+
+
+def two_blocks(shift: float = 0.0, name: str = "pair", turned: bool = False) -> Grid:
+    """Two blocks whose east and west sides meet, the second one with its eta reversed when `turned`."""
+    whole = channel(9, 5).nodes + shift
+    first, second = whole[:5], whole[4:][:, ::-1] if turned else whole[4:]
+    joint = Connection(0, "east", ((0, 4),), 1, "west", ((0, 4),), (-1 if turned else 1,))
+    patches = (Patch("inlet", "west", 0, 4), Patch("slot", "south", 1, 3, block=1, kind="outlet"))
+    return Grid(
+        (Block(first), Block(second)), patches, (joint,), name, {"seed": 3}, Origin((("a", 1.5),), "train")
+    )
+
+
+def cube() -> Grid:
+    """A block of three directions, periodic in the third."""
+    nodes = np.stack(np.meshgrid(np.arange(3.0), np.arange(4.0), np.arange(2.0), indexing="ij"), axis=-1)
+    motion = Motion((0.0, 0.0, 1.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    sides = ((0, 2), (0, 3))
+    joint = Connection(0, "bottom", sides, 0, "top", sides, (1, 2), motion)
+    return Grid((Block(nodes),), (Patch("part", "south", 0, 1, (0, 1)),), (joint,), "cube")
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_grids_of_several_blocks_come_back_with_connections_and_patches(turned: bool, tmp_path: Path) -> None:
+    grids = [two_blocks(k, f"pair {k}", turned) for k in range(3)]
+    with written(tmp_path / "g.h5", grids) as file:
+        assert (file.attrs["version"], "topology" in file.attrs, "south" in file) == (2, False, False)
+        assert file["blocks/0"].shape == file["blocks/1"].shape == (3, 5, 5, 2)
+    back = list(read_grids(open_source(str(tmp_path / "g.h5"))))
+    for one, other in zip(back, grids, strict=True):
+        for found, block in zip(one.blocks, other.blocks, strict=True):
+            np.testing.assert_array_equal(found.nodes, block.nodes)
+        assert (one.patches, one.connections, one.name) == (other.patches, other.connections, other.name)
+        assert (one.provenance, one.origin) == (other.provenance, other.origin)
+    with pytest.raises(InputError, match="holds grids of 2 blocks, not boundaries; give a grid of one"):
+        list(read_shapes(open_source(str(tmp_path / "g.h5"))))
+
+
+def test_a_block_in_space_comes_back_with_its_periodic_connection(tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.h5", [cube()])
+    (back,) = read_grids(open_source(str(tmp_path / "g.h5")))
+    np.testing.assert_array_equal(back.blocks[0].nodes, cube().blocks[0].nodes)
+    assert (back.connections, back.patches) == (cube().connections, cube().patches)
+
+
+def test_samples_of_other_blocks_or_connections_are_refused(tmp_path: Path) -> None:
+    open_pair = replace(two_blocks(), connections=())
+    for other, problem in (
+        (cube(), r"sample 1 is blocks of 3x4x2x3 and the first is blocks of 5x5x2, 5x5x2"),
+        (open_pair, "the first is connected otherwise"),
+        (channel(), "sample 1 is 7x5 quad and the first is blocks of 5x5x2"),
+    ):
+        with pytest.raises(InputError, match=problem):
+            write_grids(tmp_path / "g.h5", [two_blocks(), other])
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ("del f['blocks/0']", "has no dataset 'blocks/0'"),
+        ("del f['blocks']; f['blocks'] = h5py.ExternalLink('/etc/passwd', '/')", "has no blocks"),
+        ("f.attrs['connections'] = '[[0]]'", "its connections are not those of blocks"),
+        ("f.attrs['connections'] = '{'", "its connections are not those of blocks"),
+        ("f['blocks/1'][0, 0, 2] += 1", "east of block 0 to west of block 1 is open"),
+        ("f['blocks/1'][0, 0, 2] = np.nan", "node i=0, j=2 has x = nan"),
+        ("s = f['blocks/1'][:]; del f['blocks/1']; f['blocks/1'] = s[[0, 0]]", "different counts of samples"),
+        ("f['parts'][0] = '[[\"a\", \"south\", 0, 1, 7]]'", "patch 'a' is on block 7 of 2"),
+        ("f.attrs['format'] = 'meshonet-boundary'", "has layout version '2'"),
+    ],
+)
+def test_damaged_blocks_are_refused(change: str, problem: str, tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.h5", [two_blocks()])
+    with h5py.File(tmp_path / "g.h5", "r+") as f:
+        exec(change, {"f": f, "np": np, "h5py": h5py})  # noqa: S102
+    with pytest.raises(InputError, match=problem):
+        list(read_grids(memory((tmp_path / "g.h5").read_bytes())))

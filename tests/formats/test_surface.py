@@ -203,7 +203,7 @@ def test_a_body_takes_no_other_topology() -> None:
     assert read is not None
     (found,) = read(memory(data))
     assert named(found.boundary(Sampling(21, 5))) == {"in": "south", "out": "north"}
-    with pytest.raises(InputError, match="a body in a far field makes an O grid; use --topology o"):
+    with pytest.raises(InputError, match="a body in a far field makes an O grid; use topology o"):
         found.boundary(Sampling(21, 5, topology="quad"))
 
 

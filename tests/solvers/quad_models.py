@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from meshonet.geometry.arrays import Topology
-from meshonet.solvers.neural.quads.encoding import HEADS
-from meshonet.solvers.neural.quads.export import write_model
-from meshonet.solvers.neural.quads.network import shapes
+from meshonet.solvers.neural.model_file import QUAD, write_model
+from meshonet.solvers.neural.quad.encoding import HEADS
+from meshonet.solvers.neural.quad.network import shapes
 
 WIDTHS, BLOCKS = (1, 2, 2), (0, 1, 1)
 
@@ -22,5 +22,6 @@ def random_model(path: Path, size: float = 0.05, topology: Topology = "quad") ->
         for name, shape in shapes(WIDTHS, BLOCKS, len(HEADS)).items()
     }
     weights["project"] *= size
-    write_model(path, weights, name="random", topology=topology, recipe={}, figures={})
+    arrays = {name: array.astype(np.float32) for name, array in weights.items()}
+    write_model(path, QUAD, arrays, name="random", topology=topology, recipe={}, figures={})
     return path

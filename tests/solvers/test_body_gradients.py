@@ -13,10 +13,10 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.bodies import boundary
 from meshonet.geometry.shapes.far_field import straight
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 
 torch = pytest.importorskip("torch")
-from meshonet.solvers.neural.quads.differentiable_around import BodyGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable import BodyGrids  # noqa: E402 - it imports torch
 
 torch.set_num_threads(1)  # tests run side by side
 
@@ -42,7 +42,7 @@ def walls(boundaries: list[Boundary]) -> list[Any]:
 def test_torch_equals_numpy(model: str, ni: int, nj: int) -> None:
     boundaries = bodies(ni, nj)
     found = BodyGrids(model)(*walls(boundaries), nj).numpy()
-    for one, solution in zip(found, infer_quads(boundaries, model, "off"), strict=True):
+    for one, solution in zip(found, load(model).solve(boundaries, "off"), strict=True):
         expected = solution.grid.nodes
         np.testing.assert_allclose(one, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
 
@@ -89,7 +89,7 @@ def test_what_it_does_not_take_is_told(tmp_path: Path) -> None:
         BodyGrids()(south, north, 1)
     with pytest.raises(InputError, match="opposite sides need equal counts"):
         BodyGrids()(south, north[:, ::2], 9)
-    with pytest.raises(InputError, match="do not go once round a middle of a body"):
+    with pytest.raises(InputError, match="do not go once round a middle of the body"):
         BodyGrids()(south + 1e3, north, 9)
     quads = str(random_model(tmp_path / "quads.safetensors"))
     with pytest.raises(InputError, match="makes quad grids; use one for bodies"):

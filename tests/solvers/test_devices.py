@@ -67,5 +67,5 @@ def test_what_is_left_here_is_found() -> None:
 def test_a_missing_device_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
     for model, given in (("hole-o", bodies), ("quad-general", domains), ("airfoil-o", sections)):
-        with pytest.raises(InputError, match="torch sees no CUDA device; use --device cpu, or leave it out"):
+        with pytest.raises(InputError, match="torch sees no CUDA device; use device cpu, or leave it out"):
             infer_many(given(), model, device="cuda")

@@ -11,7 +11,7 @@ from meshonet.geometry.families.family import family
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.solvers.elliptic.solve import solve as winslow
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 
 GOLDEN = {
     "hole-o": [[0.4028057080448652, -0.02293693289481455], [-0.6803300878792513, 0.5814152731912777]],
@@ -30,13 +30,13 @@ def hole(height: float, ni: int = 101, nj: int = 101) -> Boundary:
 
 @pytest.mark.parametrize("model", list(GOLDEN))
 def test_golden_nodes(model: str) -> None:
-    nodes = infer_quads([hole(0.2, 65, 33)], model, "off")[0].grid.nodes
+    nodes = load(model).solve([hole(0.2, 65, 33)], "off")[0].grid.nodes
     np.testing.assert_allclose(nodes[[5, 40], [8, 20]], GOLDEN[model], rtol=0, atol=1e-9)
 
 
 def test_polished_grids_are_valid_and_nearer_to_right_angles_than_winslows() -> None:
     edges = bodies()
-    found = [solution.grid for solution in infer_quads(edges, "hole-o")]
+    found = [solution.grid for solution in load("hole-o").solve(edges)]
     assert sum(count_folded(grid.nodes) for grid in found) == 0
     own, other = (
         np.array([[measure(grid)["max_angle"].max, measure(grid)["max_angle"].mean] for grid in grids])
@@ -52,7 +52,7 @@ def test_the_papers_hole_is_nearer_to_winslows_grid_than_the_papers_model_and_ne
     goals = [winslow(one, tol=1e-8).grid for one in edges]
     worst = []
     for polish in (0, 2):
-        found = [solution.grid for solution in infer_quads(edges, "hole-winslow", polish)]
+        found = [solution.grid for solution in load("hole-winslow").solve(edges, polish)]
         assert sum(count_folded(grid.nodes) for grid in found) == 0
         worst.append(max(compare(grid, goal).relative_l2 for grid, goal in zip(found, goals, strict=True)))
     assert worst[0] < 3e-2  # MeshONet: 3.2e-2

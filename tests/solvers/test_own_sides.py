@@ -11,8 +11,8 @@ from random_quads import random_quad
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.neural.quads.canonical_sides import Element, OwnSides
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.quad.canonical import Element, canonical
+from meshonet.solvers.neural.registry import load
 
 
 def domain(seed: int = 2003, ni: int = 33, nj: int = 33) -> Boundary:
@@ -46,7 +46,7 @@ def rim(boundary: Boundary) -> Complexes:
 
 
 def polished(boundary: Boundary) -> Complexes:
-    nodes: Floats = infer_quads([boundary], "quad-general", 5)[0].grid.nodes
+    nodes: Floats = load("quad-general").solve([boundary], 5)[0].grid.nodes
     return np.asarray(nodes[..., 0] + 1j * nodes[..., 1])
 
 
@@ -61,14 +61,14 @@ def test_named_otherwise_a_domain_has_the_same_grid_to_rounding(element: Element
 
 def test_unequal_counts_keep_their_axes() -> None:
     boundary = domain(ni=41, nj=25)
-    frame = OwnSides.of(boundary)
+    frame = canonical(boundary)
     assert (frame.boundary.ni, frame.boundary.nj) == (41, 25)
     assert polished(boundary).shape == (41, 25)
 
 
 def test_the_way_there_and_back_ends_where_it_began() -> None:
     boundary = domain()
-    frame = OwnSides.of(boundary)
+    frame = canonical(boundary)
     back = frame.back(np.moveaxis(tfi(frame.boundary).nodes, -1, 0))
     np.testing.assert_allclose(np.moveaxis(back, 0, -1), tfi(boundary).nodes, rtol=0, atol=1e-8)
     np.testing.assert_array_equal(back[:, 0].T, boundary.west)
@@ -78,6 +78,6 @@ def test_nodes_nearer_than_the_rounding_stay_where_they_are() -> None:
     z = rim(domain())
     z[1, 0] = z[0, 0] + 1e-11 * (z[2, 0] - z[0, 0])
     boundary = inside(z)
-    frame = OwnSides.of(boundary)
+    frame = canonical(boundary)
     assert frame.boundary is boundary
     np.testing.assert_array_equal(frame.back(np.stack([z.real, z.imag])), np.stack([z.real, z.imag]))

@@ -17,12 +17,12 @@ from meshonet.geometry.families.bodies import boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.kernels._native import activate, upsample
-from meshonet.solvers.neural.quads.features import features
-from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.neural.quads.inside import inside
-from meshonet.solvers.neural.quads.network import Network, shapes
-from meshonet.solvers.neural.quads.picard import approach
-from meshonet.solvers.neural.quads.unrolled import TURN, even, middles, rolled, unrolled
+from meshonet.solvers.neural.quad.encoding import features
+from meshonet.solvers.neural.quad.inside import inside
+from meshonet.solvers.neural.quad.network import Network, shapes
+from meshonet.solvers.neural.quad.picard import approach
+from meshonet.solvers.neural.quad.unrolled import TURN, even, middles, rolled, unrolled
+from meshonet.solvers.neural.registry import load
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
 
@@ -55,7 +55,7 @@ def model(tmp_path: Path) -> str:
 
 
 def nodes(edges: Boundary, model: str, polish: int = 0) -> Floats:
-    return infer_quads([edges], model, polish)[0].grid.nodes
+    return load(model).solve([edges], polish)[0].grid.nodes
 
 
 def test_activation_goes_round_along_the_first_axis() -> None:
@@ -79,7 +79,7 @@ def test_finer_copies_go_round_along_the_first_axis() -> None:
 
 def test_numpy_equals_torch() -> None:
     torch = pytest.importorskip("torch")
-    from meshonet.solvers.neural.models.quad_unet import QuadUNet
+    from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
 
     held, z = weights(), strips()
     net = QuadUNet(WIDTHS, BLOCKS, around=True).double()
@@ -189,7 +189,7 @@ def test_a_body_begun_a_quarter_further_has_the_same_grid(model: str) -> None:
 
 
 def test_together_is_as_each_alone(model: str) -> None:
-    many = infer_quads(bodies(5), model, 0)
+    many = load(model).solve(bodies(5), 0)
     for edges, found in zip(bodies(5), many, strict=True):
         np.testing.assert_array_equal(found.grid.nodes, nodes(edges, model))
 
@@ -199,7 +199,7 @@ def test_a_quad_boundary_is_refused(model: str) -> None:
     low, left = np.stack([t, 0 * t], 1), np.stack([0 * t, t], 1)
     square = Boundary(low, low + np.array([0.0, 1.0]), left, left + np.array([1.0, 0.0]))
     with pytest.raises(InputError, match="makes o grids, and this boundary is quad; use another model"):
-        infer_quads([square], model)
+        load(model).solve([square])
 
 
 def clip(ni: int = 66, nj: int = 9) -> Boundary:
@@ -249,7 +249,7 @@ def test_grids_around_bent_bodies_move_and_mirror_with_them(model: str) -> None:
 
 
 def test_polished_grids_around_bent_bodies_are_valid() -> None:
-    assert count_folded(infer_quads([clip(130, 33)], "hole-o")[0].grid.nodes) == 0
+    assert count_folded(load("hole-o").solve([clip(130, 33)])[0].grid.nodes) == 0
 
 
 def test_a_body_outside_its_far_field_is_refused(model: str) -> None:
@@ -257,4 +257,4 @@ def test_a_body_outside_its_far_field_is_refused(model: str) -> None:
     cut = straight(edges.south[0] + 90.0, edges.north[0], edges.nj)
     away = replace(edges, south=edges.south + 90.0, west=cut, east=cut)
     with pytest.raises(InputError, match="a clip: its walls do not go once round a middle of the body"):
-        infer_quads([away], model)
+        load(model).solve([away])

@@ -10,10 +10,10 @@ from quad_models import random_model
 from random_quads import random_quad
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 
 torch = pytest.importorskip("torch")
-from meshonet.solvers.neural.quads.differentiable import QuadGrids  # noqa: E402 - it imports torch
+from meshonet.solvers.neural.differentiable import QuadGrids  # noqa: E402 - it imports torch
 
 SIDES = ("south", "north", "west", "east")
 
@@ -37,7 +37,7 @@ def edges(boundaries: list[Boundary]) -> list[Any]:
 def test_torch_equals_numpy(model: str, ni: int, nj: int, name: str) -> None:
     boundaries, name = domains(ni, nj), model if name == "random" else name
     found = QuadGrids(name)(*edges(boundaries)).numpy()
-    for one, solution in zip(found, infer_quads(boundaries, name, "off"), strict=True):
+    for one, solution in zip(found, load(name).solve(boundaries, "off"), strict=True):
         np.testing.assert_allclose(one, solution.grid.nodes, rtol=0, atol=1e-12)
 
 

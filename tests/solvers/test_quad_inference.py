@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,11 +16,12 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.inference import infer
-from meshonet.solvers.neural.quads import operator
-from meshonet.solvers.neural.quads.edges import Edges
-from meshonet.solvers.neural.quads.inference import infer_quads
-from meshonet.solvers.neural.quads.model import load_quads
-from meshonet.solvers.neural.quads.symmetry import ELEMENTS, ORDER
+from meshonet.solvers.neural.operator import in_batches
+from meshonet.solvers.neural.quad import coarse_grids
+from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.encoding import WINSLOW
+from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER
+from meshonet.solvers.neural.registry import load
 
 SHAPES = [shape(ni, nj) for shape in (arch, hexagon, wrench) for ni, nj in ((33, 33), (65, 41), (20, 129))]
 
@@ -32,7 +32,7 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 
 def nodes(boundary: Boundary, model: str, polish: int = 0) -> Floats:
-    return infer_quads([boundary], model, polish)[0].grid.nodes
+    return load(model).solve([boundary], polish)[0].grid.nodes
 
 
 @pytest.mark.parametrize("polish", [0, 2])
@@ -89,7 +89,7 @@ def test_a_relabelled_or_mirrored_domain_has_the_relabelled_grid(model: str, ele
 
 
 def test_a_batch_has_the_grids_of_its_members_alone(model: str) -> None:
-    together = infer_quads(SHAPES, model, 1)
+    together = load(model).solve(SHAPES, 1)
     for boundary, solution in zip(SHAPES, together, strict=True):
         assert solution.grid.name == boundary.name
         np.testing.assert_array_equal(solution.grid.nodes, nodes(boundary, model, 1))
@@ -98,8 +98,8 @@ def test_a_batch_has_the_grids_of_its_members_alone(model: str) -> None:
 def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
     boundary = arch(90, 70)
     edges = Edges.of([boundary])
-    coarse = operator.coarse_grids(edges, load_quads(Path(model)), 1)
-    (found,) = operator.evaluate(coarse, edges)
+    coarse = coarse_grids.coarse_grids(edges, load(model).network(), 1)
+    (found,) = coarse_grids.evaluate(coarse, edges)
     expected = evaluate(np.ascontiguousarray(np.moveaxis(coarse[0], 0, -1)), boundary)
     np.testing.assert_allclose(np.moveaxis(found, 0, -1), expected, rtol=0, atol=1e-14)
     thin = edges.thinned(33, 33)
@@ -110,8 +110,8 @@ def test_evaluation_is_that_of_coarse_solves(model: str) -> None:
 
 
 def test_single_precision_of_the_network_changes_the_sixth_digit(model: str) -> None:
-    exact = infer_quads(SHAPES, model, "off")
-    rough = infer_quads(SHAPES, model, "off", dtype="float32")
+    exact = load(model).solve(SHAPES, "off")
+    rough = load(model).solve(SHAPES, "off", dtype="float32")
     for one, other in zip(exact, rough, strict=True):
         gap = np.abs(one.grid.nodes - other.grid.nodes).max()
         assert 0 < gap < 1e-5 * np.ptp(one.grid.nodes)
@@ -134,16 +134,11 @@ def test_polish_descends_the_functional(model: str) -> None:
     assert values[0] > values[1] > values[2]
 
 
-def test_cycles_bring_the_winslow_answer_to_winslows_solution(
-    model: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("meshonet.solvers.neural.quads.inference.model_path", lambda _: Path(model))
+def test_cycles_bring_the_winslow_answer_to_winslows_solution(model: str) -> None:
+    operator = replace(load(model), head=WINSLOW)  # type: ignore[call-arg]
     boundary = arch(65, 65)
     goal = winslow(boundary, tol=1e-10).grid.nodes
-    errors = [
-        np.linalg.norm(infer_quads([boundary], "quad-winslow", steps)[0].grid.nodes - goal)
-        for steps in (0, 1, 2)
-    ]
+    errors = [np.linalg.norm(operator.solve([boundary], steps)[0].grid.nodes - goal) for steps in (0, 1, 2)]
     assert errors[1] < 0.3 * errors[0]
     assert errors[2] < 0.3 * errors[1]
 
@@ -167,7 +162,7 @@ def test_domains_far_from_any_in_training_give_finite_grids(model: str) -> None:
     ("count", "threads", "sizes"), [(70, 1, [35, 35]), (192, 2, 4 * [48]), (3, 4, [1, 1, 1])]
 )
 def test_batches_keep_every_thread_at_work_to_the_end(count: int, threads: int, sizes: list[int]) -> None:
-    found = list(operator.in_batches(count * [arch(5, 4)], threads))
+    found = list(in_batches(count * [arch(5, 4)], threads))
     assert [len(batch) for batch in found] == sizes
     assert [k for batch in found for k in batch] == list(range(count))
 
@@ -176,8 +171,8 @@ def test_batches_keep_every_thread_at_work_to_the_end(count: int, threads: int, 
 def test_threads_change_nothing(model: str, polish: int) -> None:
     sizes = [(33, 33), (41, 37), (33, 33), (25, 30)]
     boundaries = [arch(ni, nj) for ni, nj in sizes] + [hexagon(ni, nj) for ni, nj in sizes]
-    alone = infer_quads(boundaries, model, polish)
-    together = infer_quads(boundaries, model, polish, threads=3)
+    alone = load(model).solve(boundaries, polish)
+    together = load(model).solve(boundaries, polish, threads=3)
     for one, other in zip(alone, together, strict=True):
         np.testing.assert_array_equal(one.grid.nodes, other.grid.nodes)
         assert one.grid.name == other.grid.name

@@ -11,13 +11,13 @@ from quad_models import BLOCKS, WIDTHS, random_model
 from safetensors.numpy import load_file, save_file
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quads.encoding import KIND, VERSION
-from meshonet.solvers.neural.quads.model import load_quads
-from meshonet.solvers.neural.weights import HEADER
+from meshonet.solvers.neural.model_file import HEADER, QUAD
+from meshonet.solvers.neural.quad.operator import QuadOperator
+from meshonet.solvers.neural.registry import load
 
 
 def header(**changes: object) -> dict[str, str]:
-    return {HEADER: json.dumps({"kind": KIND, "encoding": VERSION, **changes})}
+    return {HEADER: json.dumps({"kind": QUAD.text, "encoding": QUAD.version, **changes})}
 
 
 def copied(folder: Path, metadata: dict[str, str], **arrays: np.ndarray) -> Path:
@@ -27,7 +27,8 @@ def copied(folder: Path, metadata: dict[str, str], **arrays: np.ndarray) -> Path
 
 
 def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
-    found = load_quads(copied(tmp_path, header()))
+    found = load(copied(tmp_path, header()))
+    assert isinstance(found, QuadOperator)
     assert (found.name, found.widths, found.blocks) == ("copy", WIDTHS, BLOCKS)
     assert found.network().heads == 2
 
@@ -42,7 +43,7 @@ def test_a_copy_is_the_same_model(tmp_path: Path) -> None:
 def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, object], told: str) -> None:
     path = copied(tmp_path, header(**changes))
     with pytest.raises(InputError, match=told) as caught:
-        load_quads(path)
+        load(path)
     assert str(path) in str(caught.value)
 
 
@@ -59,4 +60,4 @@ def test_files_that_do_not_fit_are_refused(tmp_path: Path, changes: dict[str, ob
 )
 def test_arrays_that_do_not_fit_are_refused(tmp_path: Path, arrays: dict[str, np.ndarray], told: str) -> None:
     with pytest.raises(InputError, match=told):
-        load_quads(copied(tmp_path, header(), **arrays))
+        load(copied(tmp_path, header(), **arrays))

@@ -10,7 +10,7 @@ from solver_shapes import arch
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.solvers.elliptic.solve import solve as winslow
-from meshonet.solvers.neural.quads.inference import infer_quads
+from meshonet.solvers.neural.registry import load
 
 GOLDEN = {
     "quad-general": [[0.25623959530059837, 0.23436326840032312], [0.4999999999999999, 0.7090582647742003]],
@@ -21,14 +21,14 @@ GOLDEN = {
 
 @pytest.mark.parametrize("model", list(GOLDEN))
 def test_golden_nodes(model: str) -> None:
-    nodes = infer_quads([arch(65, 65)], model, "off")[0].grid.nodes
+    nodes = load(model).solve([arch(65, 65)], "off")[0].grid.nodes
     np.testing.assert_allclose(nodes[[16, 32], [16, 48]], GOLDEN[model], rtol=0, atol=1e-9)
 
 
 def test_polished_grids_are_valid_and_no_worse_than_winslows() -> None:
     drawn = (random_quad(seed, 65, 65) for seed in range(2000, 2012))
     boundaries = [boundary for boundary in drawn if boundary is not None]
-    for boundary, solution in zip(boundaries, infer_quads(boundaries, "quad-general"), strict=True):
+    for boundary, solution in zip(boundaries, load("quad-general").solve(boundaries), strict=True):
         assert count_folded(solution.grid.nodes) == 0
         own, other = (measure(grid)["max_angle"] for grid in (solution.grid, winslow(boundary).grid))
         assert own.mean < other.mean
@@ -41,7 +41,7 @@ def test_the_twin_is_near_winslows_grid_and_a_cycle_brings_it_nearer() -> None:
     goals = [winslow(boundary, tol=1e-8).grid for boundary in boundaries]
     medians = [
         np.median([compare(s.grid, goal).relative_l2 for s, goal in zip(found, goals, strict=True)])
-        for found in (infer_quads(boundaries, "quad-winslow", steps) for steps in (0, 1))
+        for found in (load("quad-winslow").solve(boundaries, steps) for steps in (0, 1))
     ]
     assert medians[0] < 3e-4
     assert medians[1] < 1e-4

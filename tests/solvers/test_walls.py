@@ -139,7 +139,7 @@ def test_folds_are_repaired_before_the_lines_are_used() -> None:
     boundary = arch(41, 41)
     nodes = solve(boundary).grid.nodes.copy(order="K")
     nodes[20, 20], nodes[20, 21] = nodes[20, 21].copy(), nodes[20, 20].copy()
-    grid = solve(boundary).grid.__class__(nodes)
+    grid = boundary.grid(nodes)
     made = spread(guard(Solution(grid, "winslow"), boundary), boundary, Heights(south=1e-4))
     assert made.path == ("repair",)
     assert folded(made.grid.nodes) == 0

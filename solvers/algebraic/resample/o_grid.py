@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
+from meshonet.geometry.arrays import Floats, array_like, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.kernels._native import add_spline_rows
 from meshonet.solvers.algebraic.resample.spline import bending, places, spline_matrix
@@ -31,7 +31,7 @@ SQUARINGS = 3
 def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside the O `boundary` from a grid (m, n, 2) inside its thinned edges."""
     m, ni, nj = len(coarse), boundary.ni, boundary.nj
-    lines, share = _along_lines(coarse[..., 0] + 1j * coarse[..., 1], nj)
+    lines, share = map(np.ascontiguousarray, along_lines(coarse[..., 0] + 1j * coarse[..., 1], nj))
     first, weights = places(m, ni)
     straight = weights * (1.0, 1.0, 0.0, 0.0)
     shares, nodes = np.zeros((ni, nj)), planar_nodes(ni, nj)
@@ -52,46 +52,49 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
     return nodes
 
 
-def _along_lines(z: Complexes, nj: int) -> tuple[Complexes, Floats]:
-    """Return nj nodes on each of the m lines `z` (m, n) and their shares of its length, (m, nj) both."""
-    n = z.shape[1]
-    steps = np.maximum(np.abs(np.diff(z)), 1e-300)
-    length = np.concatenate([np.zeros((len(z), 1)), np.cumsum(steps, axis=1)], axis=1)
+def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
+    """Return nj nodes on each of the lines `z` (..., n), complex, and their shares of its length.
+
+    Parameters
+    ----------
+    xp : the module, numpy or torch, that `z` is an array of.
+    """
+    n = z.shape[-1]
+    moves = z[..., 1:] - z[..., :-1]
+    steps = xp.clip(abs(moves), 1e-300, None)
+    length = xp.concatenate([xp.zeros_like(steps[..., :1]), xp.cumsum(steps, -1)], -1)
     first = places(n, nj)[0]
-    t = np.arange(nj) * ((n - 1) / (nj - 1)) - first
-    t[-1] = 1.0
-    at = _hermite(length, _slopes(length, steps), first, t, 1.0)
-    span = steps[:, first]
-    within = (at - length[:, first]) / span
-    new = _hermite(z, _tangents(np.diff(z) / steps, steps), first, within, span)
-    return new, np.ascontiguousarray(at / at[:, -1:])
+    way = np.arange(nj) * ((n - 1) / (nj - 1)) - first
+    way[-1] = 1.0
+    t = array_like(way, z, xp)
+    at = _hermite(length, _slopes(length, steps, xp), first, t, 1.0)
+    span = steps[..., first]
+    within = (at - length[..., first]) / span
+    return _hermite(z, _tangents(moves / steps, steps, xp), first, within, span), at / at[..., -1:]
 
 
-def _hermite(values: Any, slopes: Any, first: NDArray[np.intp], t: Floats, span: Floats | float) -> Any:
-    """Return cubics through `values` (m, n) with `slopes`, at t of the way across spans from `first` on."""
+def _hermite(values: Any, slopes: Any, first: NDArray[np.intp], t: Any, span: Any) -> Any:
+    """Return cubics through `values` (..., n) with `slopes`, at t of the way across spans from `first` on."""
     rest = 1.0 - t
-    ends = (1.0 + 2.0 * t) * rest**2 * values[:, first] + (3.0 - 2.0 * t) * t**2 * values[:, first + 1]
-    return ends + span * t * rest * (rest * slopes[:, first] - t * slopes[:, first + 1])
+    ends = (1.0 + 2.0 * t) * rest**2 * values[..., first] + (3.0 - 2.0 * t) * t**2 * values[..., first + 1]
+    return ends + span * t * rest * (rest * slopes[..., first] - t * slopes[..., first + 1])
 
 
-def _slopes(length: Floats, steps: Floats) -> Floats:
-    """Return the slopes by index of rising `length` (m, n), a spline's where steps vary little."""
-    n = length.shape[1]
-    bends = length @ bending(n, False).T
-    slopes = np.empty_like(length)
-    slopes[:, :-1] = steps - (2.0 * bends[:, :-1] + bends[:, 1:]) / 6.0
-    slopes[:, -1] = steps[:, -1] + (bends[:, -2] + 2.0 * bends[:, -1]) / 6.0
-    before, after = steps[:, :-1], steps[:, 1:]
-    mean = np.concatenate([steps[:, :1], 2.0 / (1.0 / before + 1.0 / after), steps[:, -1:]], axis=1)
-    return np.clip(slopes, FLAT * mean, STEEP * mean)
+def _slopes(length: Any, steps: Any, xp: Any) -> Any:
+    """Return the slopes by index of rising `length` (..., n), a spline's where steps vary little."""
+    bends = length @ array_like(bending(length.shape[-1], False), length, xp).T
+    before, after = steps[..., :-1], steps[..., 1:]
+    inner = steps - (2.0 * bends[..., :-1] + bends[..., 1:]) / 6.0
+    last = steps[..., -1:] + (bends[..., -2:-1] + 2.0 * bends[..., -1:]) / 6.0
+    mean = xp.concatenate([steps[..., :1], 2.0 / (1.0 / before + 1.0 / after), steps[..., -1:]], -1)
+    return xp.clip(xp.concatenate([inner, last], -1), FLAT * mean, STEEP * mean)
 
 
-def _tangents(directions: Complexes, steps: Floats) -> Complexes:
-    """Return the tangents (m, n) of lines whose pieces have `directions` and lengths `steps` (m, n-1)."""
-    if steps.shape[1] == 1:
-        return np.repeat(directions, 2, axis=1)
-    before, after = steps[:, :-1], steps[:, 1:]
-    inner = (directions[:, :-1] * after + directions[:, 1:] * before) / (before + after)
-    start = 2.0 * directions[:, :1] - inner[:, :1]
-    stop = 2.0 * directions[:, -1:] - inner[:, -1:]
-    return np.concatenate([start, inner, stop], axis=1)
+def _tangents(directions: Any, steps: Any, xp: Any) -> Any:
+    """Return the tangents (..., n) of lines whose pieces have `directions` and lengths `steps` (..., n-1)."""
+    if steps.shape[-1] == 1:
+        return xp.concatenate([directions, directions], -1)
+    before, after = steps[..., :-1], steps[..., 1:]
+    inner = (directions[..., :-1] * after + directions[..., 1:] * before) / (before + after)
+    start = 2.0 * directions[..., :1] - inner[..., :1]
+    return xp.concatenate([start, inner, 2.0 * directions[..., -1:] - inner[..., -1:]], -1)

@@ -44,8 +44,8 @@ def extremes(z: Tensor) -> tuple[Tensor, Tensor]:
     u, v = z.diff(dim=1), z.diff(dim=2)
     south, north, west, east = u[:, :, :-1], u[:, :, 1:], v[:, :-1], v[:, 1:]
     corners = ((south, west), (east, -south), (-north, -east), (-west, north))
-    found = torch.stack([_angle(p, q) for p, q in corners])
-    return found.amin(0), found.amax(0)
+    angles = torch.stack([_angle(p, q) for p, q in corners])
+    return angles.amin(0), angles.amax(0)
 
 
 def _angle(u: Tensor, v: Tensor) -> Tensor:

@@ -31,8 +31,8 @@ def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():
             raise SolverError(
-                f"{name} is not finite after epoch {state['epoch']}; go on from the last checkpoint with "
-                "--resume and a smaller --rate"
+                f"{name} is not finite after epoch {state['epoch']}; resume from the last "
+                "checkpoint with a smaller learning rate"
             )
     part = path.with_name(path.name + ".part")
     with part.open("wb") as file:
@@ -67,8 +67,8 @@ def load_checkpoint(path: Path, facts: Mapping[str, Any]) -> dict[str, Any] | No
         )
     keys = [key for key in (*facts, *had) if key not in FREE and had.get(key) != facts.get(key)]
     if keys:
-        other = ", ".join(f"{key} {had.get(key)!r}" for key in dict.fromkeys(keys))
+        settings = ", ".join(f"{key} {had.get(key)!r}" for key in dict.fromkeys(keys))
         raise InputError(
-            f"the checkpoint was made with {other}", "repeat that or remove it", source=str(path)
+            f"the checkpoint was made with {settings}", "repeat that or remove it", source=str(path)
         )
     return state

@@ -81,11 +81,11 @@ def fit(
     """
     optimiser = _optimiser(task, plan)
     state = _State()
-    found = load_checkpoint(checkpoint, facts) if resume else None
-    if found is not None:
-        task.load_state_dict({**task.state_dict(), **found["task"]})
-        optimiser.load_state_dict(found["optimiser"])
-        state = _State(**found["state"])
+    saved = load_checkpoint(checkpoint, facts) if resume else None
+    if saved is not None:
+        task.load_state_dict({**task.state_dict(), **saved["task"]})
+        optimiser.load_state_dict(saved["optimiser"])
+        state = _State(**saved["state"])
     run = _wrapped(task, plan, team)
     begun, first = time.perf_counter(), state.epoch
     while state.epoch < plan.epochs:
@@ -150,8 +150,8 @@ def _one_epoch(
         parts = team.mean(parts.detach())
         if not torch.isfinite(parts).all():
             raise SolverError(
-                f"the loss is not finite in epoch {state.epoch + 1}; the last checkpoint is kept: go on from "
-                "it with --resume and a smaller --rate"
+                f"the loss is not finite in epoch {state.epoch + 1}; resume from the "
+                "last checkpoint with a smaller learning rate"
             )
         if plan.clip is not None:
             torch.nn.utils.clip_grad_norm_(task.parameters(), plan.clip)
@@ -166,13 +166,13 @@ def _explained(error: Exception, plan: Plan) -> Exception:
     if plan.compiled and type(error).__module__.startswith(("torch._dynamo", "torch._inductor")):
         first = str(error).splitlines()[0]
         return InputError(
-            f"torch.compile cannot ({first})", "leave it out, or install a C++ compiler", source="--compile"
+            f"torch.compile cannot ({first})", "leave it out, or install a C++ compiler", parameter="compile"
         )
     short = isinstance(error, (torch.OutOfMemoryError, MemoryError)) or "allocate memory" in str(error)
     if not short:
         return error
     return SolverError(
-        f"not enough memory for {plan.batch} shapes a step; use a smaller --batch or --points (the last "
+        f"not enough memory for {plan.batch} shapes a step; use a smaller batch or fewer points (the last "
         "checkpoint is kept)"
     )
 
@@ -183,7 +183,7 @@ def _judged(task: Task, plan: Plan, state: _State) -> dict[str, float]:
     if plan.patience is None:
         return figures
     if "loss" not in figures:
-        raise InputError("stopping early needs shapes held out", "use --held-out", source="--patience")
+        raise InputError("stopping early needs shapes held out", "use {held_out}", parameter="patience")
     if figures["loss"] < state.best:
         state.best, state.best_epoch = figures["loss"], state.epoch
         state.kept = {name: value.detach().cpu().clone() for name, value in task.named_parameters()}

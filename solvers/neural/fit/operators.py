@@ -1,107 +1,164 @@
-"""Training of operator models, from solved grids to a model file."""
+"""Training of the paper's models: batches over geometries and over places drawn at random."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
-from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
+import torch
+from torch import Tensor
+from torch.nn.functional import mse_loss
 
-from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.compare import compare
-from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress, fit
-from meshonet.solvers.neural.fit.operator_task import OperatorTask
+from meshonet.solvers.conformal.harmonic import extend
+from meshonet.solvers.neural.fit.model_task import ModelTask, tensor, tensors
 from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.inference import answered
-from meshonet.solvers.neural.model_file import Trained, load_trained, write_trained
+from meshonet.solvers.neural.models.architecture import Architecture
 from meshonet.solvers.neural.models.mgnet import MGNet
-from meshonet.solvers.neural.models.model import Frame, Operator
-from meshonet.solvers.neural.registry import settings_of
+from meshonet.solvers.neural.registry import architecture, settings_of
 from meshonet.solvers.neural.samples import Samples
 
 PLAN = Plan(epochs=15_000, points=(1000, 200))
 """The authors' published settings, with their thirty shapes in one step and places drawn at random."""
+
+HELD_OUT = 0
+
 MACHINE = ("device", "compiled", "log_every", "validate_every", "checkpoint_every")
 """Settings that a resumed run may change without changing what it computes."""
 
 
-def train_operator(
-    samples: Samples,
-    output: Path,
-    kind: str,
-    model: Operator,
-    plan: Plan,
-    team: Team,
-    *,
-    held_out: int = 0,
-    recipe: Mapping[str, Any],
-    resume: bool = False,
-    report: Callable[[Progress], None] | None = None,
-) -> dict[str, Any]:
-    """Fit `model` to the training grids of `samples`, write it to `output` and return its figures.
+class OperatorTask(ModelTask):
+    """An operator model on solved grids.
+
+    ::
+
+        loss = interior * mean |error|^2 inside + boundary * mean |error|^2 on the boundary
+
+    over the places of a step, in squares of the unit of length; error = answer - (grid - base). Where there
+    is a base, both are divided by the mean square of grid - base, so that the loss is of the order of 1.
 
     Parameters
     ----------
-    kind : name of the model in the registry.
-    held_out : training grids, spread evenly, that are kept out to watch the loss; test grids never are seen.
+    model : what is trained.
+    training, held_out : its shapes.
+    points : places drawn for a step, inside and on the boundary; None takes all.
+    seed : of the first weights and of the places.
+    """
+
+    parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
+
+    def __init__(
+        self, model: Architecture, training: Samples, held_out: Samples | None,
+        points: tuple[int, int] | None, seed: int, device: torch.device,
+    ) -> None:  # fmt: skip
+        targets = differences(model, training)
+        super().__init__(model, training, targets, points, seed, device)
+        self.inputs = tensors(model.encode(training.boundaries()), device)
+        # places first: those of a step are then whole rows of a matrix, which torch gathers fastest
+        self.targets = tensor(_by_place(targets).reshape(training.ni * training.nj, -1)).to(device)
+        size = float((targets**2).mean()) if model.base != "none" else 1.0
+        self.weights = model.interior / size, model.boundary / size
+        self.places = model.seen(torch, self.places)
+        self.held_out: tuple[dict[str, Tensor], Tensor] | None = None
+        if held_out is not None and len(held_out):
+            goal = tensor(_by_place(differences(model, held_out))).to(device)
+            self.held_out = tensors(model.encode(held_out.boundaries()), device), goal
+        self.to(device)
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the interior and the boundary part of the loss over the shapes `rows`."""
+        index, inner = self._drawn(step)
+        place = torch.from_numpy(index).to(self.places.device)
+        goal = self.targets.index_select(0, place).view(len(place), self.count, 2)
+        inputs = self.inputs
+        if len(rows) < self.count:  # of all shapes the order does not matter
+            inputs = {name: value[rows] for name, value in inputs.items()}
+            goal = goal.index_select(1, rows)
+        answer = self._answer(inputs, self.places[place], place)
+        return self._weighted(answer.float().transpose(0, 1), goal, inner)
+
+    def validate(self) -> dict[str, float]:
+        """Return the loss over the held-out shapes and the median of their relative L2 error."""
+        if self.held_out is None:
+            return {}
+        inputs, goal = self.held_out
+        index = np.concatenate([self.inside, self.outside])
+        place = torch.from_numpy(index).to(self.places.device)
+        with torch.no_grad():
+            answer, goal = self._answer(inputs, self.places[place], place).transpose(0, 1), goal[place]
+            loss = self._weighted(answer, goal, len(self.inside)).sum()
+            return {"loss": float(loss), "mean_square": 2.0 * float(mse_loss(answer, goal))}
+
+    def _answer(self, inputs: Mapping[str, Tensor], points: Tensor, place: Tensor) -> Tensor:
+        weights: dict[str, Any] = {**dict(self.named_parameters()), **self.fixed}
+        return self.model.answer(torch, weights, inputs, points, place)
+
+    def _drawn(self, step: int) -> tuple[np.ndarray[Any, np.dtype[np.intp]], int]:
+        """Return numbers of nodes, those inside first, and how many are inside."""
+        if self.points is None:
+            return np.concatenate([self.inside, self.outside]), len(self.inside)
+        rng = np.random.default_rng([self.seed, 1, step])
+        groups = zip((self.inside, self.outside), self.points, strict=True)
+        drawn = [group[rng.integers(0, len(group), n)] for group, n in groups]
+        return np.concatenate(drawn), self.points[0]
+
+    def _weighted(self, answer: Tensor, goal: Tensor, inner: int) -> Tensor:
+        """Return both parts of the loss of answers (p, batch, 2), of which the first `inner` are inside."""
+        inside, outside = (2.0 * weight for weight in self.weights)  # two coordinates a place
+        first, second = mse_loss(answer[:inner], goal[:inner]), mse_loss(answer[inner:], goal[inner:])
+        return torch.stack([inside * first, outside * second])
+
+
+def differences(model: Architecture, samples: Samples) -> Floats:
+    """Return the grids less the model's base (n, ni, nj, 2)."""
+    if model.base == "none":
+        return samples.nodes
+    return samples.nodes - np.array([extend(boundary) for boundary in samples.boundaries()])
+
+
+def _by_place(nodes: Floats) -> Floats:
+    """Return nodes (n, ni, nj, 2) as (ni nj, n, 2)."""
+    return nodes.reshape(len(nodes), -1, 2).swapaxes(0, 1)
+
+
+def run(
+    model: str,
+    data: Samples,
+    plan: Plan,
+    team: Team,
+    held_out: int,
+    settings: Mapping[str, Any] | None = None,
+) -> Run:
+    """Return what `train` needs of the training grids of `data`; its test grids are never trained on.
+
+    Parameters
+    ----------
+    held_out : training grids, spread evenly, that are kept out to watch the loss.
+    settings : of the model, in place of its defaults.
 
     Raises
     ------
     InputError
-        too few grids, a checkpoint of another model, data or settings.
-    SolverError
-        as `meshonet.solvers.neural.fit.loop.fit`.
+        too few grids; settings that the model does not have.
     """
-    rows = np.arange(len(samples)) if model.physics else samples.where("train")
+    made = architecture(model, data.topology, settings)
+    rows = np.arange(len(data)) if made.physics else data.where("train")
     apart = rows[np.linspace(0, len(rows) - 1, held_out + 2).astype(int)[1:-1]]
     rows = np.setdiff1d(rows, apart)
-    if len(rows) < (1 if model.physics else 2) or len(np.unique(apart)) < held_out:
+    if len(rows) < (1 if made.physics else 2) or len(np.unique(apart)) < held_out:
         raise InputError(f"{len(rows)} grids to train on", "give at least 2, or hold fewer out")
-    training = samples.pick(rows)
-    task: OperatorTask | PhysicsTask
-    if isinstance(model, MGNet):
-        task = PhysicsTask(model, training, plan.points, plan.seed, team.device)
+    training = data.pick(rows)
+    task: ModelTask
+    if isinstance(made, MGNet):
+        task = PhysicsTask(made, training, plan.points, plan.seed, team.device)
     else:
-        task = OperatorTask(model, training, samples.pick(apart), plan.points, plan.seed, team.device)
-    made = {key: value for key, value in asdict(plan).items() if key not in MACHINE}
-    facts = {"model": kind, **settings_of(model), **made, "grids": len(rows), "data": samples.fingerprint()}
-    checkpoint = beside(output)
-    epoch = fit(task, plan, team, checkpoint=checkpoint, facts=facts, resume=resume, report=report)
-    frame = Frame(training.topology, training.ni, training.nj, len(training))
-    trained = Trained(output.stem, model, frame, task.arrays(), {})
-    found = {name: judged(trained, samples.pick(samples.where(name))) for name in ("train", "test")}
-    figures: dict[str, Any] = {"epoch": epoch, **{name: told for name, told in found.items() if told}}
-    if team.leads:
-        told = {"recipe": {**recipe, **made, "grids": len(rows)}, "figures": figures}
-        write_trained(output, output.stem, model, kind, frame, task.arrays(), **told)
-        load_trained.cache_clear()
-        checkpoint.unlink(missing_ok=True)
-    return figures
-
-
-def judged(trained: Trained, samples: Samples) -> dict[str, float]:
-    """Return what a model does on samples, before its boundary is replaced: nothing when there are none.
-
-    `median` and `worst` are of the relative L2 error against the solved grids, `boundary` is the largest
-    distance of a boundary node from its place, `folded` counts the folded cells of all.
-    """
-    away, errors, folded = 0.0, [], 0
-    for nodes, edges in zip(samples.nodes, samples.boundaries(), strict=True):
-        found, off = answered(trained, edges, paste=False)
-        away, folded = max(away, off), folded + count_folded(found)
-        errors.append(
-            compare(
-                Grid.from_nodes(found, samples.topology), Grid.from_nodes(nodes, samples.topology)
-            ).relative_l2
-        )
-    if not errors:
-        return {}
-    median, worst = float(np.median(errors)), float(np.max(errors))
-    return {"median": median, "worst": worst, "boundary": away, "folded": folded, "grids": len(errors)}
+        task = OperatorTask(made, training, data.pick(apart), plan.points, plan.seed, team.device)
+    task.samples = data
+    recipe = {key: value for key, value in asdict(plan).items() if key not in MACHINE}
+    return Run(task, {**recipe, "grids": len(rows)}, {**settings_of(made), "data": data.fingerprint()})

@@ -7,78 +7,59 @@ from typing import Any, ClassVar
 
 import numpy as np
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.task import Task
-from meshonet.solvers.neural.layers import Arrays, initial
+from meshonet.solvers.neural.fit.model_task import ModelTask, tensor
 from meshonet.solvers.neural.models.mgnet import MGNet
-from meshonet.solvers.neural.models.model import Frame
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.sensors import rim, square
 
 
-class PhysicsTask(Task):
+class PhysicsTask(ModelTask):
     """Networks of `MGNet` or `MeshNet` on the geometries of `samples`.
 
     Parameters
     ----------
     points : places drawn for a step, inside (anywhere, not only at nodes) and on the boundary (at nodes);
-    None
-        takes every node.
+        None takes every node.
     """
 
+    model: MGNet
     parts: ClassVar[tuple[str, ...]] = ("winslow", "boundary", "data")
 
     def __init__(
         self, model: MGNet, samples: Samples, points: tuple[int, int] | None, seed: int, device: torch.device
     ) -> None:
-        super().__init__()
-        self.model, self.points, self.seed, self.count = model, points, seed, len(samples)
-        frame = Frame(samples.topology, samples.ni, samples.nj, len(samples))
-        for name, value in initial(model.shapes(frame), np.random.default_rng([seed, 0])).items():
-            self.register_parameter(name, nn.Parameter(torch.tensor(value, dtype=torch.float32)))
+        super().__init__(model, samples, samples.nodes, points, seed, device)
         fixed = model.fixed(samples, samples.nodes)
-        self.fixed = {key: torch.tensor(v, dtype=torch.float32).to(device) for key, v in fixed.items()}
-        where = square(samples.ni, samples.nj)
-        scaled = (samples.nodes.reshape(len(samples), -1, 2) - fixed["fixed/centre"][:, None]) / fixed[
-            "fixed/size"
-        ][:, None]
-        on = rim(samples.ni, samples.nj, samples.topology)
-        known = np.flatnonzero(_known(model, samples.ni, samples.nj) & ~on)
-        self.places = torch.tensor(where, dtype=torch.float32).to(device)
-        self.nodes = torch.tensor(scaled, dtype=torch.float32).to(device)
-        self.inside, self.outside = np.flatnonzero(~on), np.flatnonzero(on)
-        self.known = torch.from_numpy(known).to(device)
+        centre, size = (fixed[f"fixed/{name}"][:, None] for name in ("centre", "size"))
+        self.nodes = tensor((samples.nodes.reshape(len(samples), -1, 2) - centre) / size).to(device)
+        known = _known(model, samples.ni, samples.nj)
+        known[self.outside] = False
+        self.known = torch.from_numpy(np.flatnonzero(known)).to(device)
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the parts of the loss over the geometries `rows`."""
         net = {name: value[rows] for name, value in self.named_parameters()}
         inner, outer = self._drawn(step)
-        found = self._plain(net, self.places[outer])
-        boundary = ((found - self.nodes[rows][:, outer]) ** 2).sum(-1).mean()
+        answer = self._plain(net, self.places[outer])
+        boundary = ((answer - self.nodes[rows][:, outer]) ** 2).sum(-1).mean()
         winslow = (self._residual(net, inner) ** 2).sum(-1).mean()
         data = 0.0 * boundary
         if len(self.known):
-            found = self._plain(net, self.places[self.known])
-            data = ((found - self.nodes[rows][:, self.known]) ** 2).sum(-1).mean()
+            answer = self._plain(net, self.places[self.known])
+            data = ((answer - self.nodes[rows][:, self.known]) ** 2).sum(-1).mean()
         return torch.stack([winslow, self.model.rim * boundary, self.model.data * data])
-
-    def arrays(self) -> Arrays:
-        """Return what is trained and what is fixed, by name."""
-        trained = {name: value.detach().cpu().numpy() for name, value in self.named_parameters()}
-        return {**trained, **{name: value.cpu().numpy() for name, value in self.fixed.items()}}
 
     def _drawn(self, step: int) -> tuple[Tensor, Tensor]:
         """Return places inside (p, 2) and numbers of nodes on the boundary."""
         device = self.places.device
         if self.points is None:
-            return self.places[torch.from_numpy(self.inside).to(device)], torch.from_numpy(self.outside).to(
-                device
-            )
+            inside, outside = (torch.from_numpy(k).to(device) for k in (self.inside, self.outside))
+            return self.places[inside], outside
         rng = np.random.default_rng([self.seed, 1, step])
-        inner = torch.tensor(rng.random((self.points[0], 2)), dtype=torch.float32).to(device)
+        inner = tensor(rng.random((self.points[0], 2))).to(device)
         outer = self.outside[rng.integers(0, len(self.outside), self.points[1])]
         return inner, torch.from_numpy(outer).to(device)
 
@@ -142,7 +123,7 @@ def _known(model: MGNet, ni: int, nj: int) -> np.ndarray[Any, np.dtype[np.bool_]
             known[lines if axis == 0 else slice(None), lines if axis == 1 else slice(None)] = True
     if model.coarse:
         if not 3 <= model.coarse <= min(ni, nj):
-            raise InputError(f"coarse={model.coarse}", f"use 3 to {min(ni, nj)}", source="--set")
+            raise InputError(f"coarse={model.coarse}", f"use 3 to {min(ni, nj)}", parameter="set")
         rows, columns = (np.round(np.linspace(0, n - 1, model.coarse)).astype(int) for n in (ni, nj))
         known[np.ix_(rows, columns)] = True
     return known.reshape(-1)

@@ -52,20 +52,20 @@ class Plan:
 
     def __post_init__(self) -> None:
         if not 0 < self.rate < 1:
-            raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", source="--rate")
+            raise InputError(f"{self.rate:g} is no learning rate", "use 0 to 1, e.g. 0.001", parameter="rate")
 
-    def kept(self, given: int, held_out: int, what: str) -> int:
-        """Return how many of the `given` shapes, called `what`, are trained on beside those held out.
+    def kept(self, count: int, held_out: int, what: str) -> int:
+        """Return how many of the `count` shapes, called `what`, are trained on beside those held out.
 
         Raises
         ------
         InputError
             none held out, or fewer than one batch to train on.
         """
-        if held_out < 1 or given < held_out + self.batch:
+        if held_out < 1 or count < held_out + self.batch:
             needed = max(held_out, 1) + self.batch
-            raise InputError(f"{given} {what} to train on", f"give at least {needed} or hold fewer out")
-        return given - held_out
+            raise InputError(f"{count} {what} to train on", f"give at least {needed} or hold fewer out")
+        return count - held_out
 
     def rate_at(self, done: int, steps: int) -> float:
         """Return the learning rate of step `done` (counted from 1) with `steps` an epoch."""

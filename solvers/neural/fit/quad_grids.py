@@ -1,10 +1,8 @@
-"""What the quad operator is trained on: Winslow's and variational grids of the same domains, normalised.
-
-Domains around bodies are unrolled.
-"""
+"""What the quad operator is trained on: Winslow's and variational grids of the same domains, normalised."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +11,13 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quads.edges import Edges, rims
-from meshonet.solvers.neural.quads.encoding import LATENT
-from meshonet.solvers.neural.quads.frame import frame
-from meshonet.solvers.neural.quads.picard import approached
-from meshonet.solvers.neural.quads.unrolled import AROUND, even, factors, middles, unrolled
-from meshonet.solvers.neural.samples import Samples
+from meshonet.solvers.neural.quad.edges import Edges, rims
+from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame
+from meshonet.solvers.neural.quad.picard import approached
+from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
+from meshonet.solvers.neural.samples import Samples, gathered
 
 
 @dataclass(frozen=True)
@@ -27,7 +25,7 @@ class Quads:
     """m domains of unit size: `base`, `winslow` and `variational` grids (m, n, n), complex64.
 
     The base, with the last `step` to it, is what `approach` makes of transfinite grids. Domains `around`
-    bodies are unrolled, (m, 65, n), and theirs begins with even steps from wall to wall.
+    bodies are unrolled, (m, 65, n), and their base is made from even steps between wall and far field.
     """
 
     base: Tensor
@@ -40,9 +38,34 @@ class Quads:
         return len(self.base)
 
     def __getitem__(self, rows: Any) -> Quads:
-        return Quads(
-            self.base[rows], self.step[rows], self.winslow[rows], self.variational[rows], self.around
-        )
+        base, step, winslow, variational = (grids[rows] for grids in self.grids())
+        return Quads(base, step, winslow, variational, self.around)
+
+    def grids(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Return base, step, Winslow's and variational grids."""
+        return self.base, self.step, self.winslow, self.variational
+
+
+def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
+    """Return the domains that datasets of Winslow's and of variational grids have in common, normalised.
+
+    A dataset's first grid says by which method all of it was solved; several may be of one method.
+
+    Raises
+    ------
+    InputError
+        no grids; grids by one of the methods only, or by others; as `quads`.
+    """
+    groups: dict[str, list[Grid]] = {}
+    for dataset in datasets:
+        if grids := list(dataset):
+            method = str(grids[0].provenance.get("method", "an unknown method"))
+            groups.setdefault(method, []).extend(grids)
+    if groups and sorted(groups) != sorted(HEADS):
+        problem = f"grids by {' and '.join(sorted(groups))} for the quad operator"
+        raise InputError(problem, "give grids of the same boundaries by winslow and by variational")
+    winslow, variational = (gathered(groups.get(method, [])) for method in HEADS)
+    return quads(variational, winslow)
 
 
 def quads(variational: Samples, winslow: Samples) -> Quads:
@@ -55,45 +78,41 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
         domain in common.
     """
     around = variational.topology == "o"
-    ni = AROUND if around else LATENT
+    wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)
     for samples in (variational, winslow):
-        if (samples.topology, samples.ni, samples.nj) != ("o" if around else "quad", ni, LATENT):
+        if (samples.topology, samples.ni, samples.nj) != wanted:
             raise InputError(
                 f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
-                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT} (--res, or convert "
-                "--coarsen)",
+                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}",
             )
     sides = slice(2 if around else 4)  # the cut of an O grid is no boundary
     where = {_rim(nodes, sides): k for k, nodes in enumerate(winslow.nodes)}
-    rims = [_rim(nodes, sides) for nodes in variational.nodes]
-    pairs = [(k, where[rim]) for k, rim in enumerate(rims) if rim in where]
+    keys = [_rim(nodes, sides) for nodes in variational.nodes]
+    pairs = [(k, where[key]) for k, key in enumerate(keys) if key in where]
     if not pairs:
         raise InputError("no domain is in both datasets", "solve the same boundaries with both methods")
     first, second = (list(rows) for rows in zip(*pairs, strict=True))
-    goal, other = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
+    best, solved = _complex(variational.nodes[first]), _complex(winslow.nodes[second])
     if around:
-        return _unrolled(goal, other)
-    base = transfinite(goal)
-    middle, factor = frame(base, np)
-
-    base, other, goal = ((z - middle[:, None, None]) * factor[:, None, None] for z in (base, other, goal))
-    return _approached(base, other, goal)
+        return _unrolled(best, solved)
+    base = transfinite(best)
+    middle, factor = (value[:, None, None] for value in frame(base, np))
+    return _approached(*((z - middle) * factor for z in (base, solved, best)))
 
 
-def _unrolled(goal: Complexes, other: Complexes) -> Quads:
+def _unrolled(best: Complexes, solved: Complexes) -> Quads:
     """Return the domains around bodies that both grids go round once in the same sense."""
-    centres = middles(goal[:, :-1, 0])
-    (goal, once), (other, also) = unrolled(goal, centres), unrolled(other, centres)
-    alike = np.abs(goal[:, :, -1] - other[:, :, -1]).max(axis=1) < 1e-6
-    kept = once & also & alike
-    goal, other = goal[kept], other[kept]
-    factor = factors(goal)[:, None, None]
-    return _approached(even(goal, goal.shape[2]) * factor, other * factor, goal * factor, around=True)
+    centres = middles(best[:, :-1, 0])
+    (best, once), (solved, also) = unrolled(best, centres), unrolled(solved, centres)
+    kept = once & also & (np.abs(best[:, :, -1] - solved[:, :, -1]).max(axis=1) < 1e-6)
+    best, solved = best[kept], solved[kept]
+    factor = factors(best)[:, None, None]
+    return _approached(even(best, best.shape[2]) * factor, solved * factor, best * factor, around=True)
 
 
 def _approached(base: Complexes, winslow: Complexes, variational: Complexes, around: bool = False) -> Quads:
     """Return domains by their grids, the base transfinite."""
-    near, step = (p[:, 0] + 1j * p[:, 1] for p in approached(base, around))
+    near, step = (planes[:, 0] + 1j * planes[:, 1] for planes in approached(base, around))
     return Quads(_single(near), _single(step), _single(winslow), _single(variational), around)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -12,22 +12,23 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.arrays import Complexes
-from meshonet.solvers.neural.encoding import CHANNELS, SCALARS, decode, encode
-from meshonet.solvers.neural.export import distance, held_out_figures, write_model
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.conformal.strip import across, harmonic, picard
+from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.models.strip_fno import StripFNO
-from meshonet.solvers.neural.pod import Targets, make_targets
-from meshonet.solvers.neural.strip_dataset import Strips
+from meshonet.solvers.neural.model_file import STRIP, write_model
+from meshonet.solvers.neural.strip.dataset import Strips, make_targets
+from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
 
 PLAN = Plan(
     epochs=24, batch=32, rate=2e-3, schedule="cosine", warm_up=100, weight_decay=1e-4, clip=1.0, device="cpu"
 )
 """The shipped model's."""
+
 HELD_OUT = 300
+
+QUANTILES = {"median": 0.5, "p90": 0.9, "worst": 1.0}
 
 
 @dataclass(frozen=True)
@@ -54,82 +55,88 @@ class StripTask(Task):
 
     def __init__(self, training: Strips, held_out: Strips, sizes: Sizes, device: torch.device) -> None:
         super().__init__()
-        self.targets, self.held_out = make_targets(training, sizes.basis), held_out
+        targets = make_targets(training, sizes.basis)
+        self.held_out, self.basis, self.scale = held_out, targets.basis, targets.scale
         self.net = StripFNO(CHANNELS, SCALARS, 2 * sizes.basis, sizes.width, sizes.modes, sizes.layers)
-        self.count = len(self.targets.wanted)
-        given = (self.targets.channels, self.targets.scalars, self.targets.wanted)
-        self.given = tuple(_tensor(array).to(device) for array in given)
-        self.importance = 1.0 / ((self.given[2] ** 2).sum(1).mean(1) + 0.03) ** 0.75
-        self.device = device
+        self.count, self.device = len(targets.wanted), device
+        self.data = [_tensor(a).to(device) for a in (targets.channels, targets.scalars, targets.wanted)]
+        self.importance = 1.0 / ((self.data[2] ** 2).sum(1).mean(1) + 0.03) ** 0.75
         self.to(device)
 
     def forward(self, rows: Tensor, step: int) -> Tensor:  # noqa: ARG002 - nothing is drawn
-        """Return the weighted mean square of what is missing in the answers to the strips `rows`."""
-        channels, scalars, wanted = (array[rows] for array in self.given)
+        """Return the weighted mean square error of the answers to the strips `rows`."""
+        channels, scalars, wanted = (array[rows] for array in self.data)
         error = self.net(channels, scalars).float() - wanted
         return (self.importance[rows] * (error**2).sum(1).mean(1)).mean()[None]
 
     def validate(self) -> dict[str, float]:
         """Return quantiles of the distance to R over the held-out strips; ``loss`` is the median."""
-        answers = self.answers()
-        errors = [distance(found, goal) for found, goal in zip(answers, self.held_out.residual, strict=True)]
-        median, p90, worst = (float(q) for q in np.quantile(errors, [0.5, 0.9, 1.0]))
+        pairs = zip(self.answers(), self.held_out.residual, strict=True)
+        errors = [distance(answer, goal) for answer, goal in pairs]
+        median, p90, worst = (float(q) for q in np.quantile(errors, list(QUANTILES.values())))
         return {"loss": median, "p90": p90, "worst": worst}
 
     def answers(self) -> list[Complexes]:
         """Return the network's R for every held-out strip."""
-        targets: Targets = self.targets
         channels, scalars, size = encode(self.held_out.wall, self.held_out.far)
         with torch.no_grad():
             out = self.net(_tensor(channels).to(self.device), _tensor(scalars).to(self.device)).cpu()
-        found = out.numpy().astype(np.float64)
-        basis, scale = targets.basis, targets.scale
-        return list(decode(found, basis, scale, size))
+        return list(decode(out.numpy().astype(np.float64), self.basis, self.scale, size))
+
+    def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
+        """Return quantiles of the distance to R over the held-out strips, with the network and without."""
+        test, errors = self.held_out, dict[str, list[float]]()
+        for wall, far, goal, answer in zip(test.wall, test.far, test.residual, self.answers(), strict=True):
+            base = harmonic(wall, far, across().eta)
+            for way, residual in (
+                ("base", np.zeros_like(goal)),
+                ("base + 1 Picard", picard(base, 1)[0] - base),
+                ("base + 2 Picard", picard(base, 2)[0] - base),
+                ("network", answer),
+                ("network + 1 Picard", picard(base + answer, 1)[0] - base),
+            ):
+                errors.setdefault(way, []).append(distance(residual, goal))
+        figures: dict[str, Any] = {
+            "strips": len(test),
+            "error": "root mean square distance to the Winslow solution in the strip, radians",
+        }
+        for way, values in errors.items():
+            figures[way] = {key: float(f"{np.quantile(values, q):.3e}") for key, q in QUANTILES.items()}
+        return figures
+
+    def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
+        """Write the model file: float16 weights, the basis in float32."""
+        arrays = {key: value.cpu().numpy().astype(np.float16) for key, value in self.net.state_dict().items()}
+        arrays["basis"] = self.basis.astype(np.float32)
+        made: dict[str, Any] = {"scale": self.scale, "recipe": recipe, "figures": figures}
+        write_model(path, STRIP, arrays, path.stem, "o", **made)
 
 
-def train_strip(
-    strips: Strips,
-    output: Path,
+def run(
+    model: str,  # noqa: ARG001 - there is one
+    data: Strips,
     plan: Plan,
     team: Team,
-    *,
-    held_out: int = HELD_OUT,
+    held_out: int,
     sizes: Sizes | None = None,
-    recipe: Mapping[str, Any],
-    resume: bool = False,
-    report: Callable[[Progress], None] | None = None,
-) -> dict[str, Any]:
-    """Fit a strip operator, write it to `output` with its recipe and held-out figures, return the figures.
-
-    Parameters
-    ----------
-    held_out : strips, the last ones, that are never trained on.
+) -> Run:
+    """Return what `train` needs; the last `held_out` strips are never trained on.
 
     Raises
     ------
     InputError
-        fewer strips than one batch beside those held out; a checkpoint of other settings.
-    SolverError
-        as `meshonet.solvers.neural.fit.loop.fit`.
+        fewer strips than one batch beside those held out.
     """
-    sizes, kept = sizes or Sizes(), plan.kept(len(strips), held_out, "shapes")
+    sizes, kept = sizes or Sizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)
-    task = StripTask(strips[:kept], strips[kept:], sizes, team.device)
-    told = ("epochs", "batch", "rate", "warm_up", "seed")
-    facts = {key: getattr(plan, key) for key in told} | asdict(sizes)
-    facts |= {"held_out": held_out, "strips": len(strips)}
-    checkpoint = beside(output)
-    same = {"model": "strip", **facts}
-    fit(task, plan, team, checkpoint=checkpoint, facts=same, resume=resume, report=report)
-    figures = held_out_figures(task.answers().__getitem__, task.held_out)
-    if team.leads:
-        state = {key: value.cpu().numpy() for key, value in task.net.state_dict().items()}
-        basis, scale = task.targets.basis, task.targets.scale
-        write_model(
-            output, state, basis, scale, name=output.stem, recipe={**recipe, **facts}, figures=figures
-        )
-        checkpoint.unlink(missing_ok=True)
-    return figures
+    facts = {key: getattr(plan, key) for key in ("epochs", "batch", "rate", "warm_up", "seed")}
+    facts |= asdict(sizes) | {"held_out": held_out, "strips": len(data)}
+    return Run(StripTask(data[:kept], data[kept:], sizes, team.device), facts)
+
+
+def distance(answer: Complexes, goal: Complexes) -> float:
+    """Return the root mean square of |answer - goal| (radians) over the strip, from modes (.., LEVELS)."""
+    return float(np.sqrt((np.abs(answer - goal) ** 2).sum(axis=0).mean()))
 
 
 def _tensor(array: np.ndarray[Any, Any]) -> Tensor:

@@ -1,8 +1,12 @@
-"""What the loop needs of a model and its data."""
+"""What the loop and the trainer need of a model and its data."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from abc import abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
 
 from torch import Tensor, nn
 
@@ -19,13 +23,30 @@ class Task(nn.Module):
     count: int
     parts: ClassVar[tuple[str, ...]] = ("loss",)
 
+    @abstractmethod
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the parts of the loss over the shapes `rows`, weighted, each a mean over them.
 
         `step` seeds what is drawn at random, so that a resumed run and every process draw the same.
         """
-        raise NotImplementedError
 
     def validate(self) -> dict[str, float]:
         """Return ``loss`` and other figures over the held-out shapes; nothing when there are none."""
         return {}
+
+    @abstractmethod
+    def figures(self, epoch: int) -> dict[str, Any]:
+        """Return what the trained model does on the held-out shapes; its weights are of `epoch`."""
+
+    @abstractmethod
+    def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
+        """Write the model file."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A task, with the facts that its recipe tells and those beside them that a resumed run must share."""
+
+    task: Task
+    recipe: Mapping[str, Any]
+    identity: Mapping[str, Any] = field(default_factory=dict)

@@ -65,7 +65,7 @@ def team(device: Device) -> Team:
         ``cuda`` is asked for and there is none.
     """
     if device == "cuda" and not torch.cuda.is_available():
-        raise InputError("torch sees no CUDA device", "use --device cpu or auto", source="--device")
+        raise InputError("torch sees no CUDA device", "use {device} cpu or auto", parameter="device")
     cuda = device != "cpu" and torch.cuda.is_available()
     size = int(os.environ.get("WORLD_SIZE", "1"))
     local = int(os.environ.get("LOCAL_RANK", "0"))

@@ -28,14 +28,14 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, products
+from meshonet.solvers.neural.models.sensors import sensors
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.sensors import sensors
 
 
 @dataclass(frozen=True)
-class MeshONetHard(Operator):
+class MeshONetHard(Architecture):
     """One branch that sees everything, a trunk that vanishes on the boundary.
 
     Parameters
@@ -76,7 +76,7 @@ class MeshONetHard(Operator):
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
         """Return mean and spread of the sensors, size and modes (nodes, modes) of the differences."""
-        seen = np.array([sensors(one, self.sensors) for one in samples.boundaries()])
+        seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
         size = np.sqrt((targets**2).mean())
         fixed = {
@@ -127,9 +127,9 @@ def _modes(targets: Floats, count: int) -> Floats:
     """
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
-    found = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])
+    largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])
     modes: Floats = np.zeros((rows.shape[1], count))
-    modes[:, : len(found)] = found.T
+    modes[:, : len(largest)] = largest.T
     return modes
 
 

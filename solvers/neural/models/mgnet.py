@@ -22,17 +22,17 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.layers import Arrays, Shapes, Weights, dense, dense_shapes
-from meshonet.solvers.neural.models.model import Frame, Operator
+from meshonet.solvers.neural.models.architecture import Architecture, Frame
+from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes
+from meshonet.solvers.neural.models.sensors import sensors
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.sensors import sensors
 
 SAME = 1e-4
 """Largest distance of a sensor, over the geometry's size, at which two geometries are one."""
 
 
 @dataclass(frozen=True)
-class MGNet(Operator):
+class MGNet(Architecture):
     """Dense networks with tanh, one a geometry.
 
     Parameters
@@ -89,8 +89,10 @@ class MGNet(Operator):
         away = np.sqrt(((seen - w["fixed/sensors"][k]) ** 2).sum(-1)).max(axis=1) / w["fixed/size"][k, 0]
         if away.max() > SAME:
             known = len(w["fixed/sensors"])
-            told = f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
-            raise InputError(told, "train it on this one too: it has a network for each geometry")
+            problem = (
+                f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
+            )
+            raise InputError(problem, "train it on this one too: it has a network for each geometry")
 
     def features(self, xp: Any, points: Any) -> Any:
         """Return what the networks see at places (p, 2)."""

@@ -12,7 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.neural.operator import infer
+from meshonet.solvers.neural.inference import infer
 
 torch = pytest.importorskip("torch")
 from meshonet.solvers.neural.differentiable import AirfoilGrids  # noqa: E402 - it imports torch

@@ -11,7 +11,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.nufft import SHARPNESS, TAPS, columns
 from meshonet.solvers.conformal.strip import MODES, across, harmonic, interpolation, modes, wavenumbers
-from meshonet.solvers.neural.operator import walls
+from meshonet.solvers.conformal.walls import walls
 
 
 @pytest.mark.parametrize("designation", ["0012", "4412-sharp"])

@@ -18,12 +18,12 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.conformal.harmonic import extend
 from meshonet.solvers.neural.fit.checkpoint import beside
 from meshonet.solvers.neural.fit.loop import Progress
-from meshonet.solvers.neural.fit.operators import train_operator
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.fit.team import Team, team
-from meshonet.solvers.neural.model_file import load_trained
-from meshonet.solvers.neural.registry import OPERATORS, operator
+from meshonet.solvers.neural.fit.train import train
+from meshonet.solvers.neural.models.operator import PaperOperator
+from meshonet.solvers.neural.registry import ARCHITECTURES, architecture, load
 from meshonet.solvers.neural.samples import Samples
 
 SMALL = Plan(epochs=8, batch=2, rate=3e-3, points=(20, 10), device="cpu")
@@ -37,17 +37,22 @@ def fit(output: Path, plan: Plan = SMALL, samples: Samples | None = None, **rest
     samples = samples or arches()
     told: list[Progress] = []
     kind = str(rest.pop("kind", "meshonet"))
-    model = operator(kind, samples.topology, SMALLER.get(kind, SIZES))
-    given = {"recipe": {}, "report": told.append, **rest}
-    train_operator(samples, output, kind, model, plan, ALONE, **given)  # type: ignore[arg-type]
+    given = {"recipe": {}, "report": told.append, "settings": SMALLER.get(kind, SIZES), **rest}
+    train(kind, samples, output, plan, ALONE, **given)  # type: ignore[arg-type]
     return told
+
+
+def read(path: Path) -> PaperOperator:
+    operator = load(path)
+    assert isinstance(operator, PaperOperator)
+    return operator
 
 
 def losses(told: list[Progress]) -> list[float]:
     return [one.loss for one in told]
 
 
-@pytest.mark.parametrize("kind", [kind for kind in OPERATORS if kind not in ("mgnet", "meshnet")])
+@pytest.mark.parametrize("kind", [kind for kind in ARCHITECTURES if kind not in ("mgnet", "meshnet")])
 @pytest.mark.parametrize("samples", [arches(), rings()], ids=["quad", "o"])
 def test_the_loss_falls(tmp_path: Path, kind: str, samples: Samples) -> None:
     told = fit(tmp_path / "m.safetensors", replace(SMALL, epochs=60), samples, kind=kind)
@@ -60,11 +65,11 @@ def test_the_loss_falls(tmp_path: Path, kind: str, samples: Samples) -> None:
 def test_coefficients_of_modes_are_learnt(tmp_path: Path, samples: Samples) -> None:
     path = tmp_path / "m.safetensors"
     settings = {"sensors": 12, "hidden": [8], "modes": 3}
-    model = operator("meshonet-hard", samples.topology, settings)
+    model = architecture("meshonet-hard", samples.topology, settings)
     plan = replace(SMALL, epochs=120)
-    figures = train_operator(samples, path, "meshonet-hard", model, plan, ALONE, recipe={})
+    figures = train("meshonet-hard", samples, path, plan, ALONE, settings=settings, recipe={})
     assert figures["test"]["boundary"] <= 1e-12
-    found = load_trained(path).model
+    found = read(path).model
     assert (found, found.native) == (model, True)
     bare = np.array([extend(edges) for edges in samples.boundaries()])
     base = np.linalg.norm(bare - samples.nodes) / np.linalg.norm(samples.nodes)
@@ -107,7 +112,7 @@ def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(tmp_path: Path) ->
     resumed = fit(cut, plan, resume=True)
     assert [told.epoch for told in resumed] == [4, 6, 8], "from the checkpoint of epoch 3"
     assert losses(resumed) == losses(whole)[1:], "the sums of the report that was cut are in the checkpoint"
-    first, second = (load_trained(tmp_path / f"{name}.safetensors").weights for name in ("whole", "cut"))
+    first, second = (read(tmp_path / f"{name}.safetensors").weights for name in ("whole", "cut"))
     assert all(np.array_equal(first[key], second[key]) for key in first)
 
 
@@ -170,7 +175,7 @@ def test_a_loss_that_is_not_finite_leaves_the_last_checkpoint(
 
     monkeypatch.setattr(Task, "__call__", broken)
     with pytest.raises(
-        SolverError, match=r"not finite in epoch 5; the last checkpoint is kept.*smaller --rate"
+        SolverError, match=r"not finite in epoch 5; resume from the last checkpoint with a smaller"
     ):
         fit(output)
     monkeypatch.undo()
@@ -197,7 +202,7 @@ def test_too_little_memory_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(Task, "__call__", short)
     with pytest.raises(
-        SolverError, match=r"not enough memory for 2 shapes a step; use a smaller --batch or --p"
+        SolverError, match=r"not enough memory for 2 shapes a step; use a smaller batch or fewer p"
     ):
         fit(tmp_path / "m.safetensors")
 
@@ -208,8 +213,8 @@ def test_it_stops_when_the_held_out_loss_no_longer_falls(tmp_path: Path) -> None
     assert told[-1].epoch < 400
     best = min(told, key=lambda one: one.held_out["loss"])
     assert told[-1].epoch == best.epoch + 5
-    assert load_trained(tmp_path / "m.safetensors").header["figures"]["epoch"] == best.epoch
-    with pytest.raises(InputError, match="--patience: stopping early needs shapes held out; use --held-out"):
+    assert read(tmp_path / "m.safetensors").header["figures"]["epoch"] == best.epoch
+    with pytest.raises(InputError, match="patience: stopping early needs shapes held out; use held_out"):
         fit(tmp_path / "n.safetensors", plan)
 
 
@@ -220,7 +225,7 @@ def test_schedules() -> None:
     cosine = replace(step, schedule="cosine")
     assert cosine.rate_at(30, 2) == pytest.approx(0.5e-3, rel=0.01)
     assert cosine.rate_at(60, 2) == pytest.approx(1e-6)
-    with pytest.raises(InputError, match="--rate: 2 is no learning rate"):
+    with pytest.raises(InputError, match="rate: 2 is no learning rate"):
         replace(step, rate=2.0)
 
 
@@ -231,7 +236,7 @@ def test_too_few_grids_are_refused(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is one")
 def test_a_device_that_is_not_there_is_refused() -> None:
-    with pytest.raises(InputError, match="--device: torch sees no CUDA device; use --device cpu or auto"):
+    with pytest.raises(InputError, match="device: torch sees no CUDA device; use device cpu or auto"):
         team("cuda")
     assert team("auto").device.type == "cpu"
 

@@ -15,13 +15,15 @@ from meshonet.geometry.families import procedural
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.conformal.strip import across, harmonic, picard
-from meshonet.solvers.neural.export import distance
 from meshonet.solvers.neural.fit.loop import Progress
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.strip import Sizes, train_strip
+from meshonet.solvers.neural.fit.strip import Sizes, distance
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.strip_dataset import Strips, solve_strips
-from meshonet.solvers.neural.weights import load_model, read_tensors
+from meshonet.solvers.neural.fit.train import train
+from meshonet.solvers.neural.model_file import read_tensors
+from meshonet.solvers.neural.registry import load
+from meshonet.solvers.neural.strip.dataset import Strips, solve_strips
+from meshonet.solvers.neural.strip.operator import StripOperator
 
 SMALL = Plan(
     epochs=3, batch=8, rate=2e-3, schedule="cosine", warm_up=4, weight_decay=1e-4, clip=1.0, device="cpu"
@@ -39,7 +41,7 @@ def strips() -> Strips:
 
 def fit(strips: Strips, output: Path, plan: Plan = SMALL, **rest: object) -> list[Progress]:
     reports: list[Progress] = []
-    train_strip(strips, output, plan, ALONE, report=reports.append, **{**REST, **rest})  # type: ignore[arg-type]
+    train("strip", strips, output, plan, ALONE, report=reports.append, **{**REST, **rest})  # type: ignore[arg-type]
     return reports
 
 
@@ -54,14 +56,15 @@ def test_strips_solve_winslows_equations(strips: Strips) -> None:
 def test_the_loss_falls_and_the_file_loads(strips: Strips, tmp_path: Path) -> None:
     reports = fit(strips, tmp_path / "m.safetensors", replace(SMALL, epochs=12))
     assert reports[-1].loss < 0.5 * reports[0].loss
-    assert load_model(str(tmp_path / "m.safetensors")).name == "m"
+    assert load(tmp_path / "m.safetensors").name == "m"
     assert not (tmp_path / "m.safetensors.checkpoint").exists()
 
 
 def test_the_file_answers_as_the_network_did(strips: Strips, tmp_path: Path) -> None:
     output = tmp_path / "m.safetensors"
-    figures = train_strip(strips, output, replace(SMALL, epochs=12), ALONE, **REST)  # type: ignore[arg-type]
-    model, test = load_model(str(output)), strips[-4:]
+    figures = train("strip", strips, output, replace(SMALL, epochs=12), ALONE, **REST)  # type: ignore[arg-type]
+    model, test = load(output), strips[-4:]
+    assert isinstance(model, StripOperator)
     answers = model.residual(test.wall, test.far)
     found = [distance(answer, goal) for answer, goal in zip(answers, test.residual, strict=True)]
     assert np.median(found) == pytest.approx(figures["network"]["median"], rel=0.02)
@@ -86,7 +89,7 @@ def test_a_run_that_was_cut_off_goes_on_as_if_it_had_not_been(strips: Strips, tm
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        train_strip(strips, cut, SMALL, ALONE, report=stop, **REST)  # type: ignore[arg-type]
+        train("strip", strips, cut, SMALL, ALONE, report=stop, **REST)  # type: ignore[arg-type]
     assert not cut.exists()
     resumed = fit(strips, cut, resume=True)
     assert [report.epoch for report in resumed] == [3]
@@ -104,7 +107,7 @@ def test_a_checkpoint_of_other_settings_is_refused(strips: Strips, tmp_path: Pat
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        train_strip(strips, output, SMALL, ALONE, report=stop, **REST)  # type: ignore[arg-type]
+        train("strip", strips, output, SMALL, ALONE, report=stop, **REST)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="made with seed 0; repeat that or remove it"):
         fit(strips, output, replace(SMALL, seed=3), resume=True)
     (tmp_path / "m.safetensors.checkpoint").write_bytes(b"no checkpoint")

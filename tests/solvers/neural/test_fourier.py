@@ -5,8 +5,8 @@ import pytest
 import torch
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.models.fno2d import FNO2D
-from meshonet.solvers.neural.models.model import Frame
+from meshonet.solvers.neural.models.architecture import Frame
+from meshonet.solvers.neural.models.fourier import FNO2D
 
 
 def masked(h: np.ndarray, weight: np.ndarray, model: FNO2D) -> np.ndarray:

@@ -6,9 +6,9 @@ import numpy as np
 import torch
 
 from meshonet.solvers.conformal.strip import COLUMNS
-from meshonet.solvers.neural.encoding import CHANNELS, SCALARS
-from meshonet.solvers.neural.models.strip_fno import StripFNO
-from meshonet.solvers.neural.network import StripNetwork
+from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
+from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS
+from meshonet.solvers.neural.strip.network import StripNetwork
 
 
 def test_numpy_equals_torch_to_round_off() -> None:

@@ -18,8 +18,9 @@ from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.neural.operator import Polish, infer, infer_strips
+from meshonet.solvers.neural.inference import infer, infer_many
 
 SECTIONS = ("0012", "0012-sharp", "4412", "23012", "6424-sharp")
 
@@ -127,7 +128,7 @@ def test_polish_brings_the_network_closer_where_few_nodes_are_at_the_nose(design
 def test_halving_the_angle_at_an_edge_moves_only_the_nodes_around_it(monkeypatch: pytest.MonkeyPatch) -> None:
     edges = boundary("4412-sharp", 160, 80, spacing="cosine")
     nudged = infer(edges).grid.nodes
-    monkeypatch.setattr("meshonet.solvers.neural.operator.halve_corners", lambda *_: None)
+    monkeypatch.setattr("meshonet.solvers.conformal.solve.halve_corners", lambda *_: None)
     moved = np.hypot(*np.moveaxis(nudged - infer(edges).grid.nodes, -1, 0))[:80].max(axis=1)
     assert moved[0] > 1e-4
     assert moved[12:].max() < 1e-3 * moved[0], moved
@@ -231,7 +232,7 @@ def test_many_bodies_get_the_grids_they_get_alone(model: str | None, polish: Pol
     bodies = [boundary(designation, 65, 41) for designation in ("0012", "4415", "23012-sharp")]
     bodies.insert(1, boundary("2412", 52, 33))
     bodies.insert(2, family("hole").boundary(0.3, 41, 31))  # refused: it stands between the others
-    for edges, one in zip(bodies, infer_strips(bodies, model, polish), strict=True):
+    for edges, one in zip(bodies, infer_many(bodies, model, polish), strict=True):
         alone = infer(edges, model, polish)
         assert (one.method, one.model, one.cycles) == (alone.method, alone.model, alone.cycles)
         assert one.notes == alone.notes
@@ -239,4 +240,4 @@ def test_many_bodies_get_the_grids_they_get_alone(model: str | None, polish: Pol
 
 
 def test_no_bodies_get_no_grids() -> None:
-    assert infer_strips([], "airfoil-o") == []
+    assert infer_many([], "airfoil-o") == []

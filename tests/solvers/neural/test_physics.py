@@ -13,14 +13,13 @@ from families import arches, rings
 
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.fit.loop import Progress
-from meshonet.solvers.neural.fit.operators import train_operator
 from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
 from meshonet.solvers.neural.fit.team import Team
-from meshonet.solvers.neural.inference import answered
-from meshonet.solvers.neural.model_file import load_trained
+from meshonet.solvers.neural.fit.train import train
 from meshonet.solvers.neural.models.mgnet import MGNet
-from meshonet.solvers.neural.registry import operator
+from meshonet.solvers.neural.models.operator import PaperOperator
+from meshonet.solvers.neural.registry import architecture, load
 from meshonet.solvers.neural.samples import Samples
 
 PLAN = Plan(epochs=300, points=(60, 40), rate=5e-3, schedule="cosine", device="cpu", log_every=50)
@@ -29,7 +28,7 @@ SMALL = {"width": 12, "depth": 2}
 
 
 def task(samples: Samples, **settings: object) -> PhysicsTask:
-    model = operator("mgnet", samples.topology, {**SMALL, **settings})
+    model = architecture("mgnet", samples.topology, {**SMALL, **settings})
     assert isinstance(model, MGNet)
     return PhysicsTask(model, samples, (30, 10), 0, torch.device("cpu")).double()
 
@@ -71,8 +70,8 @@ def fit(
     samples: Samples, output: Path, kind: str = "mgnet", plan: Plan = PLAN, **settings: object
 ) -> list[Progress]:
     told: list[Progress] = []
-    model = operator(kind, samples.topology, {**SMALL, **settings})
-    train_operator(samples, output, kind, model, plan, ALONE, recipe={}, report=told.append)
+    settings = {**SMALL, **settings}
+    train(kind, samples, output, plan, ALONE, settings=settings, recipe={}, report=told.append)
     return told
 
 
@@ -89,16 +88,17 @@ def test_the_loss_falls(tmp_path: Path, kind: str, settings: dict[str, object]) 
 def test_it_answers_the_geometries_it_knows_and_no_other(tmp_path: Path) -> None:
     output = tmp_path / "m.safetensors"
     fit(rings(2), output, plan=replace(PLAN, epochs=30))
-    trained = load_trained(output)
+    trained = load(output)
+    assert isinstance(trained, PaperOperator)
     for edges, nodes in zip(rings(2).boundaries(), rings(2).nodes, strict=True):
-        found, _ = answered(trained, edges)
+        found, _ = trained.nodes(edges)
         assert found.shape == nodes.shape
     with pytest.raises(
         InputError, match=r"knows 2 geometries, and this one is off the nearest by .*train it on"
     ):
-        answered(trained, rings(3).boundaries()[1])
+        trained.nodes(rings(3).boundaries()[1])
 
 
 def test_a_coarse_grid_finer_than_the_grid_is_refused() -> None:
-    with pytest.raises(InputError, match="--set: coarse=40; use 3 to 9"):
+    with pytest.raises(InputError, match="set: coarse=40; use 3 to 9"):
         task(arches(2), coarse=40)

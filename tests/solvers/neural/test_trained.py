@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,30 +13,35 @@ from families import arches, rings
 from safetensors.numpy import load_file, save_file
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.operator_task import differences
-from meshonet.solvers.neural.inference import answered, infer
-from meshonet.solvers.neural.layers import count, initial
-from meshonet.solvers.neural.model_file import Trained, load_trained, write_trained
-from meshonet.solvers.neural.models.model import Frame
-from meshonet.solvers.neural.registry import OPERATORS, operator
+from meshonet.solvers.neural.fit.operators import differences
+from meshonet.solvers.neural.inference import infer
+from meshonet.solvers.neural.model_file import HEADER, PAPER, write_model
+from meshonet.solvers.neural.models.architecture import Frame
+from meshonet.solvers.neural.models.layers import initial
+from meshonet.solvers.neural.models.operator import PaperOperator
+from meshonet.solvers.neural.models.sensors import lift, rim, sensors, square
+from meshonet.solvers.neural.registry import ARCHITECTURES, architecture, load
 from meshonet.solvers.neural.samples import Samples
-from meshonet.solvers.neural.sensors import lift, rim, sensors, square
-from meshonet.solvers.neural.weights import HEADER
 
 FAMILIES = {"quad": arches(), "o": rings()}
 
 
-def random(kind: str, samples: Samples, **settings: object) -> Trained:
+def random(kind: str, samples: Samples, **settings: object) -> PaperOperator:
     """A model with random weights."""
-    model = operator(kind, samples.topology, settings)
+    model = architecture(kind, samples.topology, settings)
     frame = Frame(samples.topology, samples.ni, samples.nj, len(samples))
     fixed = model.fixed(samples, differences(model, samples))
     arrays = initial(model.shapes(frame), np.random.default_rng(3)) | fixed
-    return Trained("random", model, frame, {k: v.astype(np.float32) for k, v in arrays.items()}, {})
+    single = {k: v.astype(np.float32) for k, v in arrays.items()}
+    return PaperOperator("random", samples.topology, {}, model, frame, single)
+
+
+def write(path: Path, trained: PaperOperator, arrays: Mapping[str, np.ndarray]) -> None:
+    write_model(path, PAPER, arrays, name="m", recipe={}, figures={}, **trained.facts())
 
 
 KINDS: list[tuple[str, dict[str, int]]] = [
-    *((kind, {}) for kind in OPERATORS),
+    *((kind, {}) for kind in ARCHITECTURES),
     ("meshonet-hard", {"modes": 4, "within": True}),
 ]
 
@@ -60,15 +66,15 @@ def test_numpy_and_torch_agree(kind: str, settings: dict[str, int], topology: st
 
 
 def test_the_paper_counts_as_many_parameters() -> None:
-    model = operator("meshonet", "quad")
+    model = architecture("meshonet", "quad")
     assert sum(np.prod(shape) for shape in model.shapes(Frame("quad", 101, 101)).values()) == 54_482
 
 
 def test_the_page_counts_every_models_parameters() -> None:
     page = (Path(__file__).parents[3] / "docs" / "paper-models.md").read_text()
-    for kind in OPERATORS:
-        shapes = operator(kind, "quad").shapes(Frame("quad", 101, 101, 1))
-        assert f"| `{kind}` | {count(shapes):,}" in page
+    for kind in ARCHITECTURES:
+        shapes = architecture(kind, "quad").shapes(Frame("quad", 101, 101, 1))
+        assert f"| `{kind}` | {sum(int(np.prod(shape)) for shape in shapes.values()):,}" in page
 
 
 @pytest.mark.parametrize("topology", FAMILIES)
@@ -81,7 +87,7 @@ def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int 
     trained = random("meshonet-hard", samples, modes=modes)
     for edges in samples.boundaries()[:2]:
         boundary = edges.boundary(Sampling(size, size)) if size else edges
-        nodes, away = answered(trained, boundary, paste=False)
+        nodes, away = trained.nodes(boundary, paste=False)
         assert away <= 1e-12
         assert np.abs(nodes[3, 1:-1] - samples.nodes[0, 3, :1]).max() > 0
         if topology == "o":
@@ -92,7 +98,7 @@ def test_a_hard_boundary_is_exact_whatever_the_weights(topology: str, size: int 
 def test_modes_hold_the_differences_they_are_made_of(topology: str) -> None:
     """Six grids have twelve modes of x and y; those that are asked for beyond are zero."""
     samples = FAMILIES[topology]
-    model = operator("meshonet-hard", topology, {"modes": 14})  # type: ignore[arg-type]
+    model = architecture("meshonet-hard", topology, {"modes": 14})  # type: ignore[arg-type]
     wanted = differences(model, samples)
     modes = model.fixed(samples, wanted)["fixed/modes"]
     assert modes.shape == (samples.ni * samples.nj, 14)
@@ -113,9 +119,9 @@ def test_modes_that_do_not_fit_are_found_when_the_file_is_read(tmp_path: Path, s
     modes = arrays.pop("fixed/modes")
     if spoil != "none":
         arrays["fixed/modes"] = modes[:9] if spoil == "nodes" else modes[:, :3]
-    write_trained(path, "m", trained.model, "meshonet-hard", trained.frame, arrays)
+    write(path, trained, arrays)
     with pytest.raises(InputError, match="its header or arrays do not fit"):
-        load_trained(path)
+        load(path)
 
 
 @pytest.mark.parametrize("kind", ["fno1d", "fno2d", "pod-deeponet"])
@@ -187,7 +193,7 @@ def test_the_rim_of_an_o_grid_has_two_sides() -> None:
 def test_answers_are_pasted_or_not(tmp_path: Path) -> None:
     samples, path = FAMILIES["quad"], tmp_path / "m.safetensors"
     trained = random("meshonet", samples)
-    write_trained(path, "m", trained.model, "meshonet", trained.frame, dict(trained.weights))
+    write(path, trained, trained.weights)
     boundary = samples.boundaries()[0]
     raw, pasted = (infer(boundary, str(path), answer=how) for how in ("raw", "pasted"))  # type: ignore[arg-type]
     assert raw.grid.provenance["boundary_error"] > 1e-3
@@ -210,7 +216,7 @@ def test_another_topology_is_refused() -> None:
     [
         ({"kind": "meshonet strip"}, "it holds 'meshonet strip'"),
         ({"version": 9}, "version 9"),
-        ({"model": "perceptron"}, "it holds 'meshonet operator' perceptron"),
+        ({"model": "perceptron"}, "model 'perceptron' is not known"),
         ({"topology": "x"}, "do not fit"),
         ({"ni": 10**9}, "do not fit"),
         ({"settings": {"sensors": 60}}, "do not fit"),
@@ -222,12 +228,12 @@ def test_another_topology_is_refused() -> None:
 )
 def test_foreign_headers_are_refused(tmp_path: Path, change: dict[str, object], told: str) -> None:
     path, trained = tmp_path / "m.safetensors", random("meshonet", FAMILIES["quad"])
-    write_trained(path, "m", trained.model, "meshonet", trained.frame, dict(trained.weights))
+    write(path, trained, trained.weights)
     from safetensors import safe_open
 
     with safe_open(path, framework="numpy") as file:
         header = json.loads(file.metadata()[HEADER])
     save_file(load_file(path), path, metadata={HEADER: json.dumps(header | change)})
     with pytest.raises(InputError, match=told) as caught:
-        load_trained(path)
+        load(path)
     assert str(path) in str(caught.value)

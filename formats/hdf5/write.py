@@ -1,0 +1,227 @@
+"""Writing HDF5 datasets: samples are appended one by one and written in blocks of some MB."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, astuple
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from meshonet.formats.hdf5.file import created
+from meshonet.formats.mesh.metadata import plain
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import InputError
+
+if TYPE_CHECKING:
+    import h5py
+
+BLOCK = 1 << 22
+"""Bytes of samples that are held back to be written together."""
+TEXTS = ("names", "split", "parts", "provenance")
+CHUNK = 1 << 14
+"""Bytes up to which rows of several samples share a chunk."""
+Kind = Literal["meshonet-boundary", "meshonet-grid"]
+
+
+class Writer:
+    """A dataset being written; all samples that were appended are in the file when it is left, however it is.
+
+    Parameters
+    ----------
+    path : file to make.
+    kind : what it will hold.
+    parameter_names : names of the numbers that go with each sample, if any do.
+
+    Raises
+    ------
+    InputError
+        when a sample differs from the first one in size or topology.
+    """
+
+    def __init__(self, path: Path, kind: Kind, parameter_names: Sequence[str] = ()) -> None:
+        self._made = created(path)
+        self._file = self._made.__enter__()
+        self._file.attrs.update(format=kind, version=1)
+        self._data: dict[str, h5py.Dataset] = {}
+        self._shapes: dict[str, tuple[int, ...]] = {}
+        self._held: dict[str, list[tuple[int, Floats | str]]] = {}
+        self._bytes = 0
+        self._count = 0
+        self._first: tuple[str, ...] = ()
+        if parameter_names:
+            self._name_parameters(parameter_names)
+
+    def __enter__(self) -> Writer:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            self._flush()
+        finally:
+            self._made.__exit__(kind, error, trace)
+
+    def append(self, sample: Boundary | Grid, *, parameters: Floats | None = None, split: str = "") -> None:
+        """Add one sample.
+
+        Parameters
+        ----------
+        sample : a grid for a file of grids, else a boundary.
+        parameters : (p,) numbers that made it; None for those of its origin.
+        split : ``train``, ``test`` or nothing; that of its origin when empty.
+        """
+        self._check_size(sample)
+        arrays = _arrays_of(sample)
+        if self._count == 0 and isinstance(sample, Grid):
+            self._facts(sample.provenance)
+        if parameters is None and sample.origin.parameters:
+            parameters = self._parameters(sample.origin)
+        if parameters is not None:
+            arrays["parameters"] = parameters
+        self._check(arrays)
+        texts = {"names": sample.name, "split": split or sample.origin.split}
+        texts["parts"] = json.dumps([_row_of(patch, _is_of_blocks(sample)) for patch in sample.patches])
+        if isinstance(sample, Grid) and sample.provenance:
+            texts["provenance"] = json.dumps(sample.provenance, default=plain)
+        for name, values in arrays.items():
+            self._hold(name, values)
+        for name, text in texts.items():
+            self._hold(name, text)
+        self._count += 1
+        if self._bytes >= BLOCK:
+            self._flush()
+
+    def _check_size(self, sample: Boundary | Grid) -> None:
+        """Raise InputError when a sample is not as the first one, of which the attributes of the file tell."""
+        several = _is_of_blocks(sample)
+        size = _size_of(sample)
+        connections = connections_text(sample.connections) if several else ""
+        if not self._first:
+            self._first = size, connections
+            more = {"version": 2, "connections": connections} if several else {"topology": sample.topology}
+            self._file.attrs.update(more)
+        if (size, connections) != self._first:
+            first = self._first[0] if size != self._first[0] else "connected otherwise"
+            raise InputError(
+                f"sample {self._count} is {size} and the first is {first}",
+                "one dataset has one size and topology: set {res} and {topology}, or write one file each",
+            )
+
+    def _parameters(self, origin: Origin) -> Floats:
+        """Return the numbers of a sample; the first one's names are those of the dataset."""
+        if "parameters" not in self._data and self._count == 0:
+            self._name_parameters([name for name, _ in origin.parameters])
+        return np.array([value for _, value in origin.parameters])
+
+    def _name_parameters(self, names: Sequence[str]) -> None:
+        self._shapes["parameters"] = (len(names),)
+        self._row("parameters").attrs["names"] = list(names)
+
+    def _check(self, arrays: Mapping[str, Floats]) -> None:
+        for name, values in arrays.items():
+            shape = self._shapes.setdefault(name, values.shape)
+            if values.shape != shape:
+                told = f"{name} of sample {self._count} has shape {values.shape}"
+                raise InputError(told, f"the first has {shape}")
+
+    def _hold(self, name: str, value: Floats | str) -> None:
+        """Keep the entry of this sample for the next block; a text of nothing has none."""
+        if isinstance(value, str):
+            if not value and name not in self._data and name not in self._held:
+                return
+            self._bytes += len(value)
+        else:
+            value = np.array(value, dtype=np.float64)
+            self._bytes += value.nbytes
+        self._held.setdefault(name, []).append((self._count, value))
+
+    def _flush(self) -> None:
+        held, self._held, self._bytes = self._held, {}, 0
+        for name, entries in held.items():
+            data = self._row(name)
+            data.resize(entries[-1][0] + 1, axis=0)
+            rows = [row for row, _ in entries]
+            where: Any = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] + 1 == len(rows) else rows
+            data[where] = np.array([value for _, value in entries], dtype=object if name in TEXTS else None)
+
+    def _row(self, name: str) -> h5py.Dataset:
+        """Return the dataset of a name, made when it is first needed."""
+        import h5py
+
+        if name not in self._data:
+            text, shape = name in TEXTS, self._shapes.get(name, ())
+            some = 64 if text else max(1, CHUNK // max(8 * int(np.prod(shape)), 1))
+            kind: Any = h5py.string_dtype() if text else "f8"
+            most = (None, *shape)
+            self._data[name] = self._file.create_dataset(
+                name, (0, *shape), kind, maxshape=most, chunks=(some, *shape)
+            )
+        return self._data[name]
+
+    def _facts(self, facts: Mapping[str, Any]) -> None:
+        """Repeat the first sample's provenance as attributes of the file."""
+        for key, value in facts.items():
+            name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
+            self._file.attrs[name] = (
+                value if isinstance(value, str | int | float) else json.dumps(value, default=plain)
+            )
+
+
+def write_boundaries(path: Path, boundaries: Iterable[Boundary]) -> None:
+    """Write boundaries of one size and topology, each as it comes."""
+    _write(path, "meshonet-boundary", boundaries)
+
+
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write grids of one size and topology, each as it comes."""
+    _write(path, "meshonet-grid", grids)
+
+
+def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
+    with Writer(path, kind) as writer:
+        empty = True
+        for sample in samples:
+            writer.append(sample)
+            empty = False
+    if empty:
+        raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
+
+
+def connections_text(connections: Iterable[Connection]) -> str:
+    """Return connections as JSON: their fields in order, the transform as an object or null."""
+    return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])
+
+
+def _is_of_blocks(sample: Boundary | Grid) -> bool:
+    return isinstance(sample, Grid) and sample.topology == "blocks"
+
+
+def _size_of(sample: Boundary | Grid) -> str:
+    if isinstance(sample, Grid) and sample.topology == "blocks":
+        return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
+    return f"{sample.ni}x{sample.nj} {sample.topology}"
+
+
+def _arrays_of(sample: Boundary | Grid) -> dict[str, Floats]:
+    if isinstance(sample, Boundary):
+        edges = {side: getattr(sample, side) for side in SIDES}
+        return edges if sample.sensors is None else edges | {"sensors": sample.sensors}
+    if sample.topology == "blocks":
+        return {f"blocks/{k}": block.nodes for k, block in enumerate(sample.blocks)}
+    # the edges are those of the nodes: a grid of any quality is written, also one that is no valid boundary
+    return {side: sample.face(0, side) for side in SIDES} | {"nodes": sample.nodes}
+
+
+def _row_of(patch: Patch, several: bool) -> list[object]:
+    row: list[object] = [patch.name, patch.side, patch.start, patch.stop]
+    return [*row, patch.block, patch.across, patch.kind] if several else row

@@ -1,0 +1,143 @@
+"""O grids without a network: lift, harmonic base, Picard's iteration in the strip, evaluation at the nodes.
+
+A boundary's two walls are lifted to a periodic strip, where the harmonic extension of the walls nearly solves
+Winslow's equations. A correction (a network's) may be added to it. Picard's iteration does the rest, and the
+separable sum is evaluated at the grid's nodes. Boundaries that this cannot take go to the elliptic solver,
+and the solution says so.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.conformal.bisector import halve_corners
+from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
+from meshonet.solvers.conformal.walls import Walls, is_rough, sharp_turns, walls
+from meshonet.solvers.solution import Solution
+
+Polish = Literal["auto", "off"] | int
+"""Steps of improvement: a number, ``off`` for none, ``auto`` until they change nothing worth having."""
+
+Correction: TypeAlias = Callable[[Complexes, Complexes, NDArray[np.intp]], Complexes]
+"""Modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes, LEVELS)."""
+
+AUTO_STEPS = 8
+"""The most steps that "auto" takes."""
+
+SETTLED = 2e-4
+"""Change (radians) below which "auto" stops: what is left is a tenth of that, or less."""
+
+DIVERGED = 0.5
+"""Change of phi (radians) in a step above which Picard's iteration diverges."""
+
+
+def solve(
+    boundaries: Sequence[Boundary],
+    polish: Polish = "auto",
+    correction: Correction | None = None,
+    model: str = "base",
+    substitute: Callable[[Boundary, str], Solution | None] | None = None,
+) -> list[Solution]:
+    """Return a grid inside each O boundary, whose nodes it has bitwise.
+
+    Parameters
+    ----------
+    polish : Picard steps.
+    correction : what is added to the harmonic base before them, for all boundaries at once.
+    model : name that solutions give the correction.
+    substitute : is offered a boundary that cannot be lifted, and why, before the elliptic solver.
+    """
+    across()  # made once a process: no part of a grid's time
+    begun = time.perf_counter()
+    lifted = [_lifted(boundary) for boundary in boundaries]
+    starts = iter(_starts([body for body, _ in lifted if isinstance(body, Walls)], correction))
+    shared = (time.perf_counter() - begun) / max(len(boundaries), 1)
+    solutions = []
+    for boundary, (body, rough) in zip(boundaries, lifted, strict=True):
+        begun = time.perf_counter() - shared
+        if isinstance(body, Walls):
+            solution = _solved(boundary, body, next(starts), polish, model, rough=rough)
+        else:
+            why = f"the operator cannot take this body ({body.problem})"
+            solution = (substitute and substitute(boundary, why)) or _elliptic(boundary, why)
+        solutions.append(replace(solution, seconds={"grid": time.perf_counter() - begun}))
+    return solutions
+
+
+def _solved(
+    boundary: Boundary, body: Walls, start: Complexes, polish: Polish, model: str, *, rough: bool
+) -> Solution:
+    c, changes = _polished(start, polish)
+    if changes and not changes[-1] < DIVERGED:
+        return _elliptic(boundary, "the operator's polish diverged")
+    nodes, finite = _evaluated(boundary, body, c)
+    if rough and count_folded(nodes):
+        nodes, finite = _evaluated(boundary, body._replace(corners=sharp_turns(body)), c)
+    if rough and count_folded(nodes):
+        with suppress(SolverError):
+            solution = _elliptic(boundary, "the operator folds cells of uneven spacing")
+            if not count_folded(solution.grid.nodes):
+                return solution
+    facts = {"method": "operator", "model": model, "polish": len(changes)}
+    grid = boundary.grid(nodes, facts, finite=finite)
+    residual = changes[-1] if changes else None
+    return Solution(grid, "operator", model=model, residual=residual, cycles=len(changes))
+
+
+def _lifted(boundary: Boundary) -> tuple[Walls | InputError, bool]:
+    """Return the walls in the strip, or why there are none, and whether the body's is rough."""
+    try:
+        body = walls(boundary)
+        return body, is_rough(body)
+    except InputError as error:
+        return error, False
+
+
+def _starts(bodies: Sequence[Walls], correction: Correction | None) -> list[Complexes]:
+    """Return where Picard's iteration starts for each body: the harmonic base, and the correction."""
+    ends = [(modes(body.wall), modes(body.far)) for body in bodies]
+    added: Iterable[Complexes | float] = (0.0 for _ in bodies)
+    if correction is not None and bodies:
+        wall, far = (np.array(side) for side in zip(*ends, strict=True))
+        added = correction(wall, far, np.array([body.hand for body in bodies]))
+    return [harmonic(a, b, across().eta) + more for (a, b), more in zip(ends, added, strict=True)]
+
+
+def _polished(c: Complexes, polish: Polish) -> tuple[Complexes, list[float]]:
+    """Return the modes after polish, and the largest change in each Picard step."""
+    changes: list[float] = []
+    for _ in range(AUTO_STEPS if polish == "auto" else 0 if polish == "off" else polish):
+        c, change = picard(c, 1)
+        changes += change
+        if not change[0] < DIVERGED or (polish == "auto" and change[0] < SETTLED):
+            break
+    return c, changes
+
+
+def _evaluated(boundary: Boundary, body: Walls, c: Complexes) -> tuple[Floats, bool]:
+    """Return the nodes of a strip solution, and whether they are finite."""
+    nodes = planar_nodes(boundary.ni, boundary.nj)
+    grid = StripGrid(c, body.wall, body.far, np.linspace(0.0, 1.0, boundary.nj))
+    halve_corners(grid, body.lift, body.z, body.corners)
+    finite = grid.fill(body.lift, nodes, body.axis)
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    return nodes, finite
+
+
+def _elliptic(boundary: Boundary, why: str) -> Solution:
+    from meshonet.solvers.elliptic.solve import solve
+
+    solution = solve(boundary)
+    return replace(solution, notes=(f"{why}: elliptic solver used", *solution.notes))

@@ -1,0 +1,94 @@
+"""The two walls of an O grid in the periodic strip, and whether the strip resolves them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.conformal.lift import Lift, lift_body, mirrored
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.polygon.mirror import Axis, handedness
+from meshonet.solvers.conformal.strip import MODES
+
+SHARPEST = {"wall": 0.017, "far field": 1e-3}
+"""Amplitude (radians) of the modes beyond half of `MODES` up to which a wall counts as resolved."""
+
+ROUGHEST = 0.1
+"""The same up to which an airfoil's wall may be tried: it is its spacing that is uneven, not its shape."""
+
+SHARP_TURN = np.radians(25.0)
+"""Turn at a node of a wall with uneven spacing from which the grid line there halves the angle."""
+
+CORNER = np.radians(85.0)
+"""Turn at a node, trailing edge aside, that makes a body no airfoil."""
+
+
+class Walls(NamedTuple):
+    """A body's two walls in the strip.
+
+    `lift` to the plane; F on the `wall` and on the `far` field (n,), where F = w - i theta is periodic and
+    n = ni - 1; the wall's nodes `z`; its trailing `corners`; the `axis` of a boundary that is its own mirror
+    image, and which of the two mirror images it is otherwise (`hand`).
+    """
+
+    lift: Lift
+    wall: Complexes
+    far: Complexes
+    z: Complexes
+    corners: tuple[int, ...]
+    axis: Axis | None
+    hand: int
+
+
+def walls(boundary: Boundary) -> Walls:
+    """Return the walls of an O boundary in the strip. Raises InputError when the body cannot be lifted."""
+    z, far = mirrored(boundary.south[:-1]), mirrored(boundary.north[:-1])
+    hand, (point, direction) = handedness(z, far)
+    # near the origin: far from it the map's branch points are subject to cancellation
+    lift, w, corners = lift_body(z - z[0], swap=hand < 0)
+    theta = 2.0 * np.pi * np.arange(len(z)) / len(z)
+    away = lift.to_strip(far - z[0])
+    lift = replace(lift, centre=lift.centre + z[0])
+    away -= 2j * np.pi * np.round((away.imag - w.imag).mean() / (2.0 * np.pi))
+    axis = None if hand else (point.conjugate(), direction.conjugate())
+    return Walls(lift, w - 1j * theta, away - 1j * theta, z, corners, axis, hand)
+
+
+def is_rough(body: Walls) -> bool:
+    """Return whether uneven spacing exceeds the strip's resolution a little, so that a grid may fold.
+
+    Airfoils have at most 0.013 in the wall, 0.06 where nodes are evenly spaced around the leading edge;
+    polygons at least 0.02; a square far field has 0.01. Raises InputError when the strip does not resolve it.
+    """
+    n = len(body.wall)
+    k = np.minimum(np.arange(n), n - np.arange(n))
+    rough = False
+    for name, F in (("wall", body.wall), ("far field", body.far)):
+        sharp = float(np.abs(np.fft.fft(F))[(k > MODES // 2) & (k <= MODES)].sum() / n)
+        if sharp > SHARPEST[name]:
+            rough = name == "wall" and sharp < ROUGHEST and bool(body.corners) and not _has_other_corner(body)
+            if not rough:
+                raise InputError(f"its {name} has corners or spacing that the strip does not resolve")
+    return rough
+
+
+def sharp_turns(body: Walls) -> tuple[int, ...]:
+    """Return the trailing corners, then the nodes at which the wall turns so much that lines may cross it."""
+    others = set(np.flatnonzero(_turn(body) > SHARP_TURN).tolist()) - set(body.corners)
+    return (*body.corners, *sorted(others))
+
+
+def _has_other_corner(body: Walls) -> bool:
+    turn = np.abs(_turn(body))
+    turn[list(body.corners)] = 0.0
+    return bool(turn.max() > CORNER)
+
+
+def _turn(body: Walls) -> Floats:
+    """Return the angle (n,) by which the wall turns at every node."""
+    return turning(np.stack([body.z.real, body.z.imag], axis=1), closed=True)

@@ -1,0 +1,205 @@
+"""Airfoil O grids in torch: lift, harmonic base, network, Picard steps, all modes at the nodes.
+
+The arithmetic of `meshonet.solvers.conformal.solve` on tensors, without guard.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
+from meshonet.solvers.conformal.evaluate import StripGrid
+from meshonet.solvers.conformal.strip import (
+    MODES,
+    across,
+    from_columns,
+    harmonic,
+    interpolation,
+    modes,
+    smoothing,
+    to_columns,
+    wavenumbers,
+)
+from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
+from meshonet.solvers.neural.differentiable.sides import as_numpy, check_levels, check_sides
+from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
+from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.registry import load
+from meshonet.solvers.neural.strip.encoding import decode, encode
+from meshonet.solvers.neural.strip.operator import StripOperator
+
+CLOSED = 1e-2
+"""What is left of an angle's difference (radians) where a corner counts as halved."""
+
+
+class AirfoilGrids:
+    """The airfoil operator as a differentiable function.
+
+    Parameters
+    ----------
+    model : a strip operator, its name or path, or ``base`` for the harmonic base with no network.
+    polish : Picard steps after it.
+    device : torch's name of where to compute; the lifts of the bodies are computed there too.
+
+    Raises
+    ------
+    InputError
+        no such model, or one that cannot be read or is of another kind.
+    """
+
+    def __init__(self, model: str | Operator = "airfoil-o", polish: int = 2, device: str = "cpu") -> None:
+        operator = load(model) if isinstance(model, str) else model
+        if not isinstance(operator, StripOperator):
+            raise InputError(f"model {operator.name} is no strip operator", "use airfoil-o or base")
+        self._correction = _Correction(operator, device) if operator.network else None
+        self._polish = polish
+        self._device = device
+
+    def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
+        """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
+
+        Parameters
+        ----------
+        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from the
+            trailing edge, the last one the first.
+        nj : nodes from wall to far field.
+
+        Raises
+        ------
+        InputError
+            a body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
+        """
+        check_sides(torch.float64, 4, south=south, north=north)
+        check_levels(nj)
+        edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
+        bodies = [torch_walls(z, far) for z, far in zip(*edges, strict=True)]
+        wall, far = (torch.stack([getattr(body, name) for body in bodies]) for name in ("wall", "far"))
+        a, b = modes(wall, torch), modes(far, torch)
+        c = harmonic(a, b, across().eta, torch)
+        if self._correction is not None:
+            c = c + self._correction(a, b, torch.tensor([body.hand for body in bodies], device=self._device))
+        for _ in range(self._polish):
+            c = _picard(c)
+        F = _evaluated(c, wall, far, nj)
+        theta = _theta(F.shape[1], F)[:, None]
+        planes = []
+        for k, body in enumerate(bodies):
+            w = F[k] + 1j * theta
+            z = body.lift.to_plane(w + 1j * _nudge(body, c[k], w[:, 1], nj), torch)
+            planes.append(torch.stack([z.real, -z.imag], -1))
+        inner = torch.stack(planes).to(south)
+        inner = torch.cat([inner, inner[:, :1]], 1)[:, :, 1:-1]
+        return torch.cat([south[:, :, None], inner, north[:, :, None]], 2)
+
+
+class _Correction:
+    """`StripOperator.residual`: modes of the walls (batch, modes) to those of Winslow - harmonic."""
+
+    def __init__(self, operator: StripOperator, device: str) -> None:
+        weights = operator.weights
+        width, count = weights["project.weight"].shape[1], len(weights["spectral.0.weight"])
+        layers = sum(name.startswith("conv.") for name in weights) // 2
+        outputs, inputs = weights["project.weight"].shape[0], weights["lift.weight"].shape[1]
+        self._network = StripFNO(inputs - 3, 3, outputs, width, count, layers)
+        self._network.load_state_dict({name: torch.tensor(array) for name, array in weights.items()})
+        self._network.to(device=device, dtype=torch.float64).requires_grad_(False)
+        self._basis = torch.tensor(operator.basis, device=device)
+        self._scale = operator.scale
+
+    def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
+        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative.
+
+        A body that is its own mirror image (0) has the mean of both, whose slopes are symmetric too.
+        """
+        flip, even = (hand < 0)[:, None], hand == 0
+        answer = self._answer(*(torch.where(flip, side.conj(), side) for side in (wall, far)))
+        answer = torch.where(flip[..., None], answer.conj(), answer)
+        if even.any():
+            image = torch.zeros_like(answer)
+            image[even] = self._answer(wall[even].conj(), far[even].conj()).conj()
+            answer = torch.where(even[:, None, None], 0.5 * (answer + image), answer)
+        return answer * torch.as_tensor(smoothing(), device=answer.device)[:, None]
+
+    def _answer(self, wall: Tensor, far: Tensor) -> Tensor:
+        channels, scalars, size = encode(wall, far, torch)
+        modes: Tensor = decode(self._network(channels, scalars), self._basis, self._scale, size, torch)
+        return modes
+
+
+def _picard(c: Tensor) -> Tensor:
+    """Return the modes (batch, modes, LEVELS) after a step; see `strip.picard`."""
+    grid = across()
+    d1, d2, vectors, inverse = (
+        torch.tensor(m, device=c.device).to(c.dtype) for m in (grid.d1, grid.d2, grid.vectors, grid.inverse)
+    )
+    levels, k = c.mT, wavenumbers(c, torch)
+    T = (levels[:, -1, 0] - levels[:, 0, 0]).real[:, None, None]
+    stiffness = torch.tensor(grid.eigenvalues, device=c.device)[:, None] - (k * T) ** 2
+    smooth = torch.tensor(smoothing(), device=c.device) / stiffness
+    ce = d1 @ levels
+    parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
+    Wt, Wtt, We, Wte, Wee = (to_columns(part, torch)[:, 1:-1] for part in parts)
+    Wt = Wt + 1j
+    alpha, gamma = torch.abs(We) ** 2, torch.abs(Wt) ** 2
+    beta = (torch.conj(Wt) * We).real
+    residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
+    update = vectors @ ((inverse @ from_columns(residual, torch)) * smooth)
+    return (levels - torch.nn.functional.pad(update, (0, 0, 1, 1))).mT
+
+
+def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
+    """Return F (batch, n, nj) at the nodes by all modes of the walls; those above `MODES` stay at theirs."""
+    n, eta = wall.shape[1], np.linspace(0.0, 1.0, nj)
+    theta = _theta(n, wall)[:, None]
+    low = c @ torch.as_tensor(interpolation(eta), device=c.device).to(c.dtype)
+    F = torch.exp(1j * theta * wavenumbers(wall, torch)) @ low
+    beyond = np.arange(MODES + 1, n // 2 + 1)
+    if not len(beyond):
+        return F
+    height = (far.real.mean(1) - wall.real.mean(1))[:, None, None]
+    k = torch.as_tensor(np.concatenate([beyond, -beyond[: len(beyond) - (n % 2 == 0)]]), device=c.device)
+    for edge, depth in ((wall, eta), (far, 1.0 - eta)):
+        high = (torch.fft.fft(edge) / n)[:, k % n, None]
+        fade = torch.exp(-height * torch.abs(k)[:, None] * torch.as_tensor(depth, device=c.device))
+        F = F + torch.exp(1j * theta * k) @ (high * fade)
+    return F
+
+
+def _nudge(body: TorchWalls, c: Tensor, first: Tensor, nj: int) -> Tensor:
+    """Return what is added to phi (n, nj), so that the first lines off the corners halve their angles.
+
+    The shifts are those that `bisector` finds; their slopes are those of the equations they solve.
+    """
+    n, corners = len(first), list(body.corners)
+    eta = np.linspace(0.0, 1.0, nj)
+    if not corners or nj < 4:
+        return torch.zeros((), dtype=torch.float64, device=c.device)
+    grid = StripGrid(as_numpy(c), as_numpy(body.wall), as_numpy(body.far), eta)
+    reach, shift = shifts(grid, body.numpy, as_numpy(body.z), body.corners)
+    pull = torch.as_tensor(reach[corners], device=c.device)
+    start = torch.as_tensor(shift, device=c.device)
+    corner = body.z[corners]
+    ahead, behind = body.z[[(k + 1) % n for k in corners]], body.z[[k - 1 for k in corners]]
+
+    def unequal(w: Tensor) -> Tensor:
+        line = body.lift.to_plane(w, torch) - corner
+        return torch.angle((behind - corner) / line) - torch.angle(line / (ahead - corner))
+
+    w = first[corners] + 1j * (pull @ start)
+    off = unequal(w)
+    with torch.enable_grad():
+        moved = (pull @ start).detach().requires_grad_()
+        slope = torch.autograd.grad(unequal(first[corners].detach() + 1j * moved).sum(), moved)[0]
+    turned = torch.remainder(off.detach() + np.pi, 2.0 * np.pi) - np.pi
+    free = (torch.abs(turned) < CLOSED) & (torch.abs(start) < LARGEST * 2.0 * np.pi / n)
+    jacobian = torch.where(free[:, None], slope.detach()[:, None] * pull, torch.eye(len(corners)).to(pull))
+    change = torch.linalg.solve(jacobian, torch.where(free, off - off.detach(), torch.zeros_like(off)))
+    along = torch.as_tensor(reach, device=c.device) @ (start - change)
+    return along[:, None] * torch.as_tensor(fading(eta, float(eta[1])), device=c.device)
+
+
+def _theta(n: int, like: Tensor) -> Tensor:
+    return torch.as_tensor(2.0 * np.pi * np.arange(n) / n, device=like.device)

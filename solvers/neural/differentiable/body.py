@@ -1,0 +1,108 @@
+"""O grids around bodies in torch: `neural.quad.o_grids` on tensors, without polish and guard."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from meshonet.geometry.arrays import array_like
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.resample import corner_damping
+from meshonet.solvers.algebraic.resample.o_grid import SQUARINGS, along_lines
+from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.neural.differentiable.resample import between
+from meshonet.solvers.neural.differentiable.sides import (
+    as_complex,
+    as_numpy,
+    check_levels,
+    check_sides,
+    quad_network,
+)
+from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.quad.encoding import LATENT
+from meshonet.solvers.neural.quad.inside import inside, slope
+from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, answered
+from meshonet.solvers.neural.quad.picard import approach
+from meshonet.solvers.neural.quad.unrolled import AROUND, around_middles, even, factors, rolled
+
+
+class BodyGrids:
+    """An operator for bodies as a differentiable function.
+
+    Parameters
+    ----------
+    model : ``hole-o``, ``hole-winslow``, the path of a file, or such an operator itself.
+    device : torch's name of where to compute.
+    dtype : torch's type of the arithmetic.
+
+    Raises
+    ------
+    InputError
+        no such model, or one that cannot be read.
+    """
+
+    def __init__(
+        self, model: str | Operator = "hole-o", device: str = "cpu", dtype: torch.dtype = torch.float64
+    ) -> None:
+        self._dtype = dtype
+        self._network, self._head = quad_network(model, "o", device, dtype, "use one for bodies")
+
+    def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
+        """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
+
+        Parameters
+        ----------
+        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one the
+            first.
+        nj : nodes from wall to far field.
+
+        Raises
+        ------
+        InputError
+            tensors of other shapes, or of another dtype than the network's; fewer than 2 nodes away; walls
+            that do not go once round a middle of the body.
+        """
+        check_sides(self._dtype, 4, south=south, north=north)
+        check_levels(nj)
+        sides = [edge.movedim(-1, 1) for edge in (south, north)]
+        body, far = (as_complex(side) for side in sides)
+        walls = torch.stack([as_complex(between(side, AROUND)) for side in sides], 2)
+        strips, centres, once = around_middles(body, walls, _inside, torch)
+        if not once.all():
+            raise InputError(*NOT_ROUND)
+        base, factor = even(strips, LATENT, torch), factors(strips, torch)[:, None, None]
+        strip = answered(base, factor, self._head, self._answer, approach, torch)
+        grid = rolled(strip, centres[:, None, None], torch)
+        coarse = torch.cat([walls[..., :1], grid[..., 1:-1], walls[..., 1:]], 2)
+        inner = torch.view_as_real(_evaluated(coarse, body, far, nj))
+        inner = torch.cat([inner[:, :-1], inner[:, :1]], 1)[:, :, 1:-1]
+        return torch.cat([south[:, :, None], inner, north[:, :, None]], 2)
+
+    def _answer(self, seen: Tensor) -> Tensor:
+        answer: Tensor = self._network(seen)[:, self._head]
+        return answer
+
+
+def _inside(wall: Tensor) -> Tensor:
+    """Return the point that `inside.inside` finds, which follows `wall` (n,) as a step of Newton's does."""
+    point = complex(inside(as_numpy(wall).astype(np.complex128)))
+    size = (wall.detach() - wall[0].detach()).abs().max()
+    curve = (wall - wall[0]) / size
+    p = (torch.tensor(point, dtype=wall.dtype, device=wall.device) - wall[0].detach()) / size
+    g, m, c = slope(p, curve, torch)
+    m, c = m.detach(), c.detach()
+    return wall[0] + size * (p + (c * g.conj() - m * g) / (m * m - c.abs() ** 2))
+
+
+def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
+    """Return the nodes (batch, ni, nj), as `o_grid.evaluate_around` does; the rim is not theirs."""
+    m, ni = coarse.shape[1], south.shape[1]
+    lines, share = along_lines(coarse, nj, torch)
+    shares = array_like(corner_damping.linear(m, ni), share, torch) @ share
+    near_south, near_north = 1.0 - shares, shares
+    for _ in range(SQUARINGS):
+        near_south, near_north = near_south**2, near_north**2
+    nodes: Tensor = array_like(spline_matrix(m, ni, True) + 0j, lines, torch) @ lines
+    walls = south[..., None] - nodes[..., :1], north[..., None] - nodes[..., -1:]
+    return nodes + walls[0] * near_south + walls[1] * near_north

@@ -1,0 +1,86 @@
+"""`algebraic.resample.quad` on tensors: grids on few nodes evaluated at many, with gradients."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from meshonet.geometry.arrays import Floats, array_like
+from meshonet.solvers.algebraic.resample import corner_damping as acute
+from meshonet.solvers.algebraic.resample.edge_blending import inwards
+from meshonet.solvers.algebraic.resample.quad import mended
+from meshonet.solvers.algebraic.resample.spline import bending
+
+
+def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
+    """Return the planes (batch, 2, ni, nj) inside `sides` of grids `coarse` (batch, 2, m, n).
+
+    Parameters
+    ----------
+    sides : south, north (batch, 2, ni), west, east (batch, 2, nj).
+    """
+    nodes = _evaluated(coarse, sides)
+    where = folded(nodes.detach()).nonzero()[:, 0]
+    if len(where) == 0:
+        return nodes
+    few, some = coarse[where], tuple(side[where] for side in sides)
+    straight = [
+        mended(planes[0], planes[1:-1], planes[-1])
+        for planes in zip(*(arrays(planes) for planes in (few, *some, nodes[where])), strict=True)
+    ]
+    curved = np.stack([np.ones(few.shape[2:]) if lines is None else 1.0 - lines for lines in straight])
+    kept = array_like(curved, coarse, torch)
+    return nodes.index_copy(0, where, _evaluated(few, some, kept[:, None]))
+
+
+def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None = None) -> Tensor:
+    """Return what `evaluated` does, of second derivatives the share that `curved` (batch, 1, m, n) leaves."""
+    (m, n), ni, nj = coarse.shape[2:], sides[0].shape[-1], sides[2].shape[-1]
+
+    def matrix(values: Floats) -> Tensor:
+        table: Tensor = array_like(values, coarse, torch)
+        return table
+
+    opened = acute.openings(torch.complex(coarse[:, 0], coarse[:, 1]), torch).reshape(-1, 4, 1, 1)
+    kept = 1.0 - (opened * matrix(acute.fading(m, n))).amax(1, keepdim=True)
+    kept = kept if curved is None else kept * curved
+    along, across = (matrix(bending(k, False)) for k in (m, n))
+    low, line = matrix(acute.linear(m, ni)), matrix(acute.linear(n, nj))
+    high, curve = matrix(acute.cubic(m, ni)), matrix(acute.cubic(n, nj))
+    second = along @ coarse
+    values = coarse @ line.mT + (kept * (coarse @ across.mT)) @ curve.mT
+    bends = (kept * second) @ line.mT + (kept * (second @ across.mT)) @ curve.mT
+    nodes = low @ values + high @ bends
+
+    south, north, west, east = sides
+    felt = [(low @ share @ line.mT)[:, None] for share in inwards(coarse, torch)]
+    missed = (west - nodes[:, :, 0])[:, :, None], (east - nodes[:, :, -1])[:, :, None]
+    nodes = nodes + felt[2] * missed[0] + felt[3] * missed[1]
+    missed = (south - nodes[..., 0])[..., None], (north - nodes[..., -1])[..., None]
+    nodes = nodes + felt[0] * missed[0] + felt[1] * missed[1]
+    inner = torch.cat([south[:, :, 1:-1, None], nodes[:, :, 1:-1, 1:-1], north[:, :, 1:-1, None]], 3)
+    return torch.cat([west[:, :, None], inner, east[:, :, None]], 2)
+
+
+def folded(nodes: Tensor) -> Tensor:
+    """Return which of the planes (batch, 2, ni, nj) have folded cells, (batch,)."""
+    along, across = nodes[:, :, 1:] - nodes[:, :, :-1], nodes[..., 1:] - nodes[..., :-1]
+    valid = torch.ones(len(nodes), dtype=torch.bool, device=nodes.device)
+    for u in (along[..., :-1], along[..., 1:]):
+        for v in (across[:, :, :-1], across[:, :, 1:]):
+            valid &= (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 0).flatten(1).all(1)
+    return ~valid
+
+
+def arrays(planes: Tensor) -> Any:
+    """Return `planes` as arrays of numpy, in float64."""
+    return planes.detach().cpu().double().contiguous().numpy()
+
+
+def between(values: Tensor, n: int) -> Tensor:
+    """Return (..., n), linear between the last axis' `values` (..., m), as `spline.between`."""
+    m = values.shape[-1]
+    return values if m == n else values @ array_like(acute.linear(m, n), values, torch).mT

@@ -1,0 +1,244 @@
+"""Training of the quad operator on Winslow's and variational grids of the same domains (`quad_grids`)."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from meshonet.geometry.arrays import Complexes, Floats, Topology
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
+from meshonet.solvers.neural.fit.angles import excess
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.quad_figures import held_out_figures
+from meshonet.solvers.neural.fit.quad_grids import Quads
+from meshonet.solvers.neural.fit.task import Run, Task
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.model_file import QUAD, write_model
+from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.quad.encoding import HEADS, SCALE, features
+from meshonet.solvers.neural.quad.operator import QuadOperator
+from meshonet.solvers.neural.quad.unrolled import TURN, rolled
+
+PLAN = Plan(
+    epochs=24, batch=64, rate=3e-3, schedule="cosine", warm_up=200, weight_decay=1e-3, clip=1.0, device="cpu"
+)
+"""The shipped model's."""
+
+HELD_OUT = 600
+
+AVERAGED = 0.999
+"""Of the running mean of the weights, whose answers count, each step keeps so much."""
+
+PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
+"""Weights of the loss's parts: the distances from Winslow's and from variational grids, then the mean angle,
+the largest and the folds of the variational answer. Picard steps are all but Winslow's grids."""
+
+FADE_IN = (0.1, 0.3)
+"""Between these shares of the steps angles and folds come into the loss."""
+
+NEAR, CLOSE = 0.1, 3e-4
+"""Weight of the logarithm of the distance from Winslow's grids, and where it sets in."""
+
+STARTS = 8
+"""Columns that strips begin at in turn: those that the coarsest of four levels tells apart."""
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """The network's, as `meshonet.solvers.neural.differentiable.quad_unet.QuadUNet` takes them."""
+
+    widths: tuple[int, ...] = (2, 3, 6, 8)
+    blocks: tuple[int, ...] = (0, 1, 1, 2)
+
+
+class QuadTask(Task):
+    """The quad network: distances of steps to both targets' steps, then the angles of its answer as well.
+
+    Parameters
+    ----------
+    training, held_out : domains.
+    sizes : of the network.
+    steps : in the whole run.
+    device : to compute on.
+    weights : of the parts of the loss, by name.
+    """
+
+    parts: ClassVar[tuple[str, ...]] = tuple(PARTS)
+
+    def __init__(
+        self,
+        training: Quads,
+        held_out: Quads,
+        sizes: Sizes,
+        steps: int,
+        device: torch.device,
+        weights: Mapping[str, float] = PARTS,
+    ) -> None:
+        super().__init__()
+        self.weights = [weights[part] for part in PARTS]
+        self.training_set, self.held_out, self.steps = training, held_out, steps
+        self.around = training.around
+        self.net = QuadUNet(sizes.widths, sizes.blocks, self.around)
+        self.mean = copy.deepcopy(self.net).requires_grad_(requires_grad=False)
+        self.count = len(training)
+        self.to(device)
+        self.device = device
+
+    def begin(self, weights: Mapping[str, Floats]) -> None:
+        """Start from `weights`."""
+        for net in (self.net, self.mean):
+            net.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
+
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the parts of the loss over the domains `rows`."""
+        self._average(step)
+        grids = [z.to(self.device) for z in self.training_set[rows.cpu()].grids()]
+        if self.around:
+            grids = [_further(z, step % STARTS) for z in grids]
+        base, last, winslow, variational = grids
+        answers = self._answers(self.net, base, last)
+        fade_in = float(np.interp(step / self.steps, FADE_IN, (0.0, 1.0)))
+        angles = excess(answers[:, 1], variational)
+        values = (
+            _error(answers[:, 0], winslow) + _distance(answers[:, 0], winslow),
+            _error(answers[:, 1], variational),
+            *(fade_in * angle.mean() for angle in angles),
+        )
+        return torch.stack([weight * value for weight, value in zip(self.weights, values, strict=True)])
+
+    def _answers(self, net: QuadUNet, base: Tensor, step: Tensor) -> Tensor:
+        """Return the grids (m, heads, ...) of a network, with the column that closes O grids."""
+        answer = SCALE * net(features(base, step, torch, self.around))
+        if self.around:
+            answer = torch.cat([answer, answer[:, :, :1]], 2)
+        return base[:, None] + answer
+
+    def _average(self, step: int) -> None:
+        """Take the weights that the last step left into their running mean."""
+        keep = min(AVERAGED, step / (step + 20.0))
+        with torch.no_grad():
+            for own, mean in zip(self.net.parameters(), self.mean.parameters(), strict=True):
+                mean.lerp_(own, 1.0 - keep)
+
+    def validate(self) -> dict[str, float]:
+        """Return medians of the relative distance to both targets over the held-out domains."""
+        answers, loss = self.answers(), {}
+        for k, name in enumerate(HEADS):
+            goal = self.held_out.grids()[2 + k]
+            error = (answers[:, k] - goal).abs().square().sum((1, 2)) / goal.abs().square().sum((1, 2))
+            loss[name] = float(error.sqrt().median())
+        return {"loss": loss["variational"], **loss}
+
+    def answers(self) -> Tensor:
+        """Return the held-out grids (m, heads, n, n) of the mean weights."""
+        with torch.no_grad():
+            pairs = zip(*(torch.split(z, 100) for z in (self.held_out.base, self.held_out.step)), strict=True)
+            parts = [self._answers(self.mean, *(z.to(self.device) for z in pair)).cpu() for pair in pairs]
+        return torch.cat(parts)
+
+    def figures(self, epoch: int) -> dict[str, Any]:  # noqa: ARG002
+        """Return what the network's held-out grids are like beside their targets."""
+        base, _, *goals = self.held_out.grids()
+        grids = (self.answers(), base, *goals)
+        return held_out_figures(*(_in_plane(z) if self.around else z.numpy() for z in grids))
+
+    def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
+        """Write the model file: the mean weights in float32 by torch's names."""
+        state = self.mean.state_dict()
+        arrays = {key: value.cpu().numpy().astype(np.float32) for key, value in state.items()}
+        topology: Topology = "o" if self.around else "quad"
+        write_model(path, QUAD, arrays, path.stem, topology, recipe=recipe, figures=figures)
+
+
+def _further(z: Tensor, by: int) -> Tensor:
+    """Return strips (m, n + 1, k) that begin `by` columns further round."""
+    turn = z[:, -1:, :1] - z[:, :1, :1]
+    return torch.cat([z[:, by:-1], z[:, : by + 1] + turn], 1)
+
+
+def _error(answer: Tensor, goal: Tensor) -> Tensor:
+    """Return the mean over grids of how far steps are from the goal's, in its steps, and a little of places.
+
+    The logarithm keeps the few domains that are hard from ruling the rest.
+    """
+    error = answer - goal
+    total = 3.0 * error.abs().mean()
+    rough = torch.zeros(len(goal), device=goal.device)
+    for axis in (1, 2):
+        off, step = error.diff(dim=axis).abs().square(), goal.diff(dim=axis).abs().square()
+        rough = rough + torch.log1p(4.0 * off / (step + 1e-8)).mean((1, 2))
+    return total + (rough + 1e-7).sqrt().mean()
+
+
+def _distance(answer: Tensor, goal: Tensor) -> Tensor:
+    """Return the logarithm of the distance between grids, which counts in near ones too, in the mean."""
+    distance = (answer - goal).abs().square().mean((1, 2)).sqrt()
+    return NEAR * torch.log1p(distance / CLOSE).mean()
+
+
+def run(
+    model: str,  # noqa: ARG001 - there is one
+    data: Quads,
+    plan: Plan,
+    team: Team,
+    held_out: int,
+    sizes: Sizes | None = None,
+    initial: Operator | None = None,
+    weights: Mapping[str, float] | None = None,
+) -> Run:
+    """Return what `train` needs; the last `held_out` domains are never trained on.
+
+    Parameters
+    ----------
+    initial : quad operator whose weights are the first, and whose sizes count.
+    weights : of parts of the loss, by name, other than those of `PARTS`.
+
+    Raises
+    ------
+    InputError
+        fewer domains than one batch beside those held out; a weight of no part, or one that is no number
+        from 0 on; an initial operator of another kind.
+    """
+    sizes, kept = sizes or Sizes(), plan.kept(len(data), held_out, "domains")
+    if initial is not None:
+        if not isinstance(initial, QuadOperator):
+            raise InputError(f"{initial.name} is no quad operator", "name one", parameter="initial")
+        sizes = Sizes(initial.widths, initial.blocks)
+    torch.manual_seed(plan.seed)
+    steps = plan.epochs * -(-kept // plan.batch)
+    parts = _weights(weights or {})
+    task = QuadTask(data[:kept], data[kept:], sizes, steps, team.device, parts)
+    if initial is not None:
+        task.begin(initial.weights)
+    names = ("epochs", "batch", "rate", "warm_up", "weight_decay", "clip", "seed")
+    facts = {key: getattr(plan, key) for key in names}
+    facts |= {key: list(value) for key, value in asdict(sizes).items()}
+    facts |= {"weights": parts, "held_out": held_out, "domains": len(data)}
+    facts |= {"initial": initial.name} if initial is not None else {}
+    return Run(task, facts)
+
+
+def _weights(changed: Mapping[str, float]) -> dict[str, float]:
+    """Return the weights of all parts of the loss, some of them changed."""
+    for part, weight in changed.items():
+        if part not in PARTS:
+            problem = f"the quad operator's loss has no part {part!r}"
+            raise InputError(problem, "use one of " + ", ".join(PARTS), parameter="set")
+        if not (isinstance(weight, int | float) and 0 <= weight < np.inf):
+            raise InputError(f"{part}={weight} is no weight", "use a number from 0 on", parameter="set")
+    return {**PARTS, **changed}
+
+
+def _in_plane(z: Tensor) -> Complexes:
+    """Return unrolled grids (..., m + 1, n) as they are around bodies."""
+    strips = z.numpy().astype(np.complex128)
+    turn = (strips[..., -1:, :1] - strips[..., :1, :1]).real
+    return np.asarray(rolled(strips * (TURN / turn)))

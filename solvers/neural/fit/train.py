@@ -1,0 +1,76 @@
+"""The trainer of every model: a task made of its data, the loop, held-out figures, and the model file."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.neural.fit.checkpoint import beside
+from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.plan import Plan
+from meshonet.solvers.neural.fit.task import Run
+from meshonet.solvers.neural.fit.team import Team
+from meshonet.solvers.neural.registry import ARCHITECTURES, MODELS
+
+
+def train(
+    model: str,
+    data: Any,
+    output: Path,
+    plan: Plan,
+    team: Team,
+    *,
+    recipe: Mapping[str, Any],
+    held_out: int | None = None,
+    resume: bool = False,
+    report: Callable[[Progress], None] | None = None,
+    **choices: Any,
+) -> dict[str, Any]:
+    """Fit a model, write it to `output` with its recipe and held-out figures, and return the figures.
+
+    Parameters
+    ----------
+    model : one of `registry.MODELS`.
+    data : for ``strip`` the `strip.dataset.Strips`, for ``quad`` the `fit.quad_grids.Quads`, for the others
+        `samples.Samples`.
+    plan : settings of the run; `standard` is the model's own.
+    held_out : shapes that are never trained on; None for the model's own number.
+    resume : go on from the checkpoint beside `output`, if there is one.
+    report : called every `plan.log_every` epochs and at the end.
+    choices : of the model: what the function ``run`` of its module in `fit` takes.
+
+    Raises
+    ------
+    InputError
+        no such model; too few shapes; a checkpoint of another model, data or settings; choices that do not
+        suit the model.
+    SolverError
+        as `meshonet.solvers.neural.fit.loop.fit`.
+    """
+    module = _module(model)
+    held_out = module.HELD_OUT if held_out is None else held_out
+    run: Run = module.run(model, data, plan, team, held_out, **choices)
+    checkpoint = beside(output)
+    facts = {"model": model, **run.recipe, **run.identity}
+    epoch = fit(run.task, plan, team, checkpoint=checkpoint, facts=facts, resume=resume, report=report)
+    figures = run.task.figures(epoch)
+    if team.leads:
+        run.task.write(output, recipe={**recipe, **run.recipe}, figures=figures)
+        checkpoint.unlink(missing_ok=True)
+    return figures
+
+
+def standard(model: str) -> Plan:
+    """Return the plan of a model's own: that of the shipped one, or the paper's."""
+    plan: Plan = _module(model).PLAN
+    return plan
+
+
+def _module(model: str) -> Any:
+    if model not in MODELS:
+        raise InputError(f"model {model!r} is not known", "use one of " + ", ".join(MODELS))
+    name = "operators" if model in ARCHITECTURES else model
+    return importlib.import_module(f"{__package__}.{name}")

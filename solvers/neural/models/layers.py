@@ -1,0 +1,76 @@
+"""Layers that are written once for numpy and torch: `xp` is either module.
+
+A network is a mapping from names to arrays; ``name/0/weight`` (in, out) and ``name/0/bias`` (out,) are its
+first layer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Arrays: TypeAlias = dict[str, NDArray[Any]]
+Weights: TypeAlias = Mapping[str, Any]
+Shapes: TypeAlias = dict[str, tuple[int, ...]]
+
+
+def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) -> Shapes:
+    """Return the shapes of a stack of dense layers; of `stacked` independent ones when given."""
+    shapes: Shapes = {}
+    lead = () if stacked is None else (stacked,)
+    for k, (a, b) in enumerate(pairwise(sizes)):
+        shapes[f"{name}/{k}/weight"] = (*lead, a, b)
+        shapes[f"{name}/{k}/bias"] = (*lead, *(() if stacked is None else (1,)), b)
+    return shapes
+
+
+def dense(xp: Any, w: Weights, name: str, h: Any, *, last: bool = False) -> Any:
+    """Return h (.., in) through the layers called `name`, tanh between them and, if `last`, after them."""
+    k = 0
+    while f"{name}/{k}/weight" in w:
+        h = _affine(xp, h, w[f"{name}/{k}/weight"], w[f"{name}/{k}/bias"])
+        k += 1
+        if last or f"{name}/{k}/weight" in w:
+            h = xp.tanh(h)
+    return h
+
+
+def _affine(xp: Any, h: Any, weight: Any, bias: Any) -> Any:
+    """Return h W + b; where torch can, as one operation, which saves a pass over memory."""
+    if xp is np or weight.ndim > 2:
+        return h @ weight + bias
+    return xp.nn.functional.linear(h, weight.T, bias)
+
+
+def products(trunk: Any, branches: Any) -> Any:
+    """Return the answers (batch, p, 2) of a trunk (p, k) to branches (batch, 2, k), places first."""
+    batch, two, k = branches.shape
+    return (trunk @ branches.reshape(batch * two, k).T).reshape(-1, batch, two).swapaxes(0, 1)
+
+
+def initial(shapes: Shapes, rng: np.random.Generator) -> Arrays:
+    """Return first values: weights uniform as Glorot's, spectral weights 1/inputs, biases zero.
+
+    Glorot & Bengio, Understanding the difficulty of training deep feedforward neural networks (2010).
+    """
+    arrays: Arrays = {}
+    for name, shape in shapes.items():
+        if name.endswith("bias"):
+            arrays[name] = np.zeros(shape)
+        elif name.endswith("spectral"):
+            arrays[name] = rng.standard_normal(shape) / shape[-3]
+        else:
+            limit = float(np.sqrt(6.0 / (shape[-2] + shape[-1])))
+            arrays[name] = rng.uniform(-limit, limit, shape)
+    return arrays
+
+
+def gelu(xp: Any, x: Any) -> Any:
+    """Return the Gaussian error linear unit in its tanh form. Hendrycks & Gimpel, arXiv 1606.08415."""
+    if xp is not np:  # one pass over memory, and one for the gradient
+        return xp.nn.functional.gelu(x, approximate="tanh")
+    return 0.5 * x * (1.0 + xp.tanh(0.7978845608028654 * (x + 0.044715 * x * x * x)))

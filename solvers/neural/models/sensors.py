@@ -1,0 +1,63 @@
+"""Places of the computational square: of sensors and of nodes, and how their coordinates are lifted."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.blocks.boundary import Boundary
+
+
+def sensors(boundary: Boundary, count: int) -> Floats:
+    """Return (count, 2) points of the boundary at fixed places of the computational domain.
+
+    Around a quad they start at the south-west corner and run counter-clockwise at equal steps of xi and eta;
+    of an O, the first half (the odd one included) is on the body and the rest on the far field. They are
+    nodes where a node is there, as on 101 x 101 with 50; between nodes they lie on the straight line.
+    """
+    if boundary.periodic:
+        inner = count - count // 2
+        return np.concatenate([_along(boundary.south, inner), _along(boundary.north, count - inner)])
+    place = 4.0 * np.arange(count) / count
+    sides = (boundary.south, boundary.east, boundary.north[::-1], boundary.west[::-1])
+    points = np.empty((count, 2))
+    for k, side in enumerate(sides):
+        own = (place >= k) & (place < k + 1)
+        points[own] = _at(side, place[own] - k)
+    return points
+
+
+def square(ni: int, nj: int) -> Floats:
+    """Return (ni * nj, 2) places (xi, eta) of a grid's nodes, eta running fastest."""
+    xi, eta = np.linspace(0.0, 1.0, ni), np.linspace(0.0, 1.0, nj)
+    return np.stack(np.meshgrid(xi, eta, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def rim(ni: int, nj: int, topology: Topology) -> np.ndarray[Any, np.dtype[np.bool_]]:
+    """Return (ni * nj,) whether a node lies on the boundary; the cut of an O grid does not."""
+    on = np.zeros((ni, nj), dtype=bool)
+    on[:, [0, -1]] = True
+    if topology != "o":
+        on[[0, -1]] = True
+    return on.reshape(-1)
+
+
+def lift(xp: Any, points: Any, powers: int) -> Any:
+    """Return [sin, cos, power 1 .. `powers`] of xi and eta (p, 4 + 2 powers): the paper's Lift-Layer.
+
+    `xp` is numpy or torch. Xiao et al., arXiv 2501.11937, section III.
+    """
+    return xp.concatenate([xp.sin(points), xp.cos(points), *(points**q for q in range(1, powers + 1))], -1)
+
+
+def _along(ring: Floats, count: int) -> Floats:
+    return _at(ring, np.arange(count) / count)
+
+
+def _at(side: Floats, place: Floats) -> Floats:
+    """Return points of a polyline of nodes at fractions of their number."""
+    index = place * (len(side) - 1)
+    nodes = np.arange(len(side))
+    return np.stack([np.interp(index, nodes, side[:, 0]), np.interp(index, nodes, side[:, 1])], axis=1)

@@ -1,0 +1,144 @@
+"""Boundaries in a canonical frame, where the steps after the network are taken.
+
+Descents amplify rounding: thirty steps in a window around a corner turn 1e-16 into 1e-3, and those of
+Newton's method are led by single precision. So that a domain moved, turned, scaled, mirrored or with its
+sides named otherwise takes the same steps to the bit, its edges are taken to a frame of their own, rounded
+there to 1e-9 of their size, and relabelled as the first of their images is:
+
+========  ==================================================  ============================================
+o         the cut runs from 0 to 1                            mirrored if the mirror image comes first
+quad      origin and unit from the corners                    the least of the relabellings by their bytes
+========  ==================================================  ============================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.geometry.shapes.far_field import straight
+
+STEP = 2.0**-30
+"""Of the rounding, over the size of the edges up to the next power of two."""
+
+LEAST = 0.1
+"""Mean side along xi, over the size, that is long enough to tell a direction; else a diagonal does."""
+
+Element = tuple[bool, bool, bool]
+"""A relabelling: xi runs the other way, then eta does, then both change places."""
+
+IDENTITY: Element = (False, False, False)
+
+
+@dataclass(frozen=True)
+class Canonical:
+    """A boundary and what it is in its canonical frame.
+
+    Parameters
+    ----------
+    original : the boundary.
+    boundary : the same in the frame, its edges rounded and relabelled.
+    element : the relabelling.
+    origin, unit : a point u there is ``origin + unit u`` here, its conjugate if the element mirrors.
+    symmetric : an O boundary that is its own mirror image.
+    """
+
+    original: Boundary
+    boundary: Boundary
+    element: Element
+    origin: complex
+    unit: complex
+    symmetric: bool = False
+
+    def back(self, planes: Floats) -> Floats:
+        """Return the planes (2, ni, nj) of a grid in the frame, inside the original boundary."""
+        z = planes[0] + 1j * planes[1]
+        along, across, transposed = self.element
+        if self.symmetric:
+            both = 0.5 * (z + z[::-1].conj())
+            folded = count_folded(np.stack([both.real, both.imag], axis=-1))
+            z = both if folded <= count_folded(np.moveaxis(planes, 0, -1)) else z
+        z = z.T if transposed else z
+        z = z[:: -1 if along else 1, :: -1 if across else 1]
+        z = self.origin + self.unit * (z.conj() if _mirrors(self.element) else z)
+        own = self.original
+        z[:, 0], z[:, -1] = _complex(own.south), _complex(own.north)
+        z[0], z[-1] = (z[0], z[0]) if own.topology == "o" else (_complex(own.west), _complex(own.east))
+        return np.stack([z.real, z.imag])
+
+
+def canonical(boundary: Boundary) -> Canonical:
+    """Return a quad or O boundary in its canonical frame; in its own if it cannot be rounded."""
+    return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
+
+
+def _of_body(boundary: Boundary) -> Canonical:
+    south, north = _complex(boundary.south), _complex(boundary.north)
+    origin, unit = south[0], north[0] - south[0]
+    walls = (np.stack([south, north]) - origin) / unit
+    step = _step(walls)
+    rounded = step * np.round(np.stack([walls.imag, walls.real], axis=-1) / step) + 0.0  # no -0
+    image = rounded[:, ::-1] * [-1.0, 1.0] + 0.0
+    apart = np.flatnonzero(rounded.ravel() != image.ravel())
+    mirrored = bool(len(apart) and rounded.ravel()[apart[0]] < image.ravel()[apart[0]])
+    body, far = (image if mirrored else rounded)[..., ::-1].copy()
+    cut = straight(body[0], far[0], boundary.nj)
+    inner = replace(boundary, south=body, north=far, west=cut, east=cut, chord=0.0)
+    return Canonical(boundary, inner, (mirrored, False, False), origin, unit, symmetric=len(apart) == 0)
+
+
+def _of_quad(boundary: Boundary) -> Canonical:
+    sides = tuple(_complex(side) for side in (boundary.south, boundary.north, boundary.west, boundary.east))
+    transposed = (False, True) if boundary.ni == boundary.nj else (False,)
+    images = [(*_framed(sides, e), e) for e in product((False, True), (False, True), transposed)]
+    rounded, origin, unit, element = min(images, key=lambda image: b"".join(s.tobytes() for s in image[0]))
+    south, north, west, east = (np.stack([side.real, side.imag], axis=-1) for side in rounded)
+    try:
+        inner = Boundary(south, north, west, east, "quad", name=boundary.name)
+    except InputError:  # nodes nearer to each other than the rounding
+        return Canonical(boundary, boundary, IDENTITY, 0.0, 1.0)
+    return Canonical(boundary, inner, element, origin, unit)
+
+
+def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Complexes, ...], complex, complex]:
+    """Return the sides of a quad in their frame, relabelled by `element`, and its origin and unit."""
+    south, north, west, east = sides
+    along, across, transposed = element
+    if along:
+        south, north, west, east = south[::-1], north[::-1], east, west
+    if across:
+        south, north, west, east = north, south, west[::-1], east[::-1]
+    if transposed:
+        south, north, west, east = west, east, south, north
+    a, b, c, d = south[0], south[-1], north[-1], north[0]
+    origin, side, diagonal = 0.25 * (a + b + c + d), 0.5 * (b + c - a - d), c - a
+    size = max(abs(corner - origin) for corner in (a, b, c, d))
+    unit = complex(side if abs(side) > LEAST * size else diagonal)
+    framed = tuple((edge - origin) / unit for edge in (south, north, west, east))
+    framed = tuple(edge.conj() for edge in framed) if _mirrors(element) else framed
+    step = _step(np.concatenate(framed))
+    return tuple(_rounded(edge, step) for edge in framed), complex(origin), unit
+
+
+def _step(edges: Complexes) -> float:
+    """Return what coordinates of `edges` are rounded to multiples of."""
+    return float(STEP * 2.0 ** np.ceil(np.log2(np.abs(edges).max())))
+
+
+def _rounded(edge: Complexes, step: float) -> Complexes:
+    return np.asarray(step * (np.round(edge.real / step) + 1j * np.round(edge.imag / step)) + 0.0)  # no -0
+
+
+def _mirrors(element: Element) -> bool:
+    return sum(element) % 2 == 1
+
+
+def _complex(edge: Floats) -> Complexes:
+    """Return nodes (n, 2) as x + iy."""
+    return np.asarray(edge[:, 0] + 1j * edge[:, 1])

@@ -1,0 +1,92 @@
+"""Four-sided domains to grids by the quad network: once for a whole batch, at any resolution.
+
+::
+
+    edges -> 33 x 33 of them -> transfinite grid -> middle, turn, size out -> towards Winslow's grid
+          -> features -> network -> 33 x 33 grid, its rim that of the edges; part of the way to it if it folds
+          -> splines -> grid at the edges' own counts
+
+Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its equations. The last step is
+`meshonet.solvers.algebraic.resample.quad`, as in `meshonet.solvers.pipeline.coarse`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
+from meshonet.solvers.algebraic.resample import quad as evaluation
+from meshonet.solvers.algebraic.resample.spline import places
+from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
+from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
+from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
+
+SHARES = (0.95, 0.9, 0.8)
+"""Of the way from the grid that the network sees to its answer, the first of them without folds; else all."""
+
+
+def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
+    """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
+
+    Winslow's have up to 65 along a direction, where the edges have as many.
+
+    Parameters
+    ----------
+    head : index into `encoding.HEADS`.
+    """
+    base = _begun(edges)
+    room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
+    for k in range(0, len(base), CHUNK):
+        planes = base[k : k + CHUNK]
+        unit, factors = _unit(planes)
+        near = unit.copy()
+        step, seen = step_all(near), room[: len(near)]
+        grid_features(near, step, seen)
+        start = near.copy()
+        add_answers(near, network.answers(seen), head, SCALE * rim_factor(LATENT, LATENT, around=False))
+        for grid, before in () if head == WINSLOW else zip(near, start, strict=True):
+            if (part := share(before, grid)) < 1.0:
+                grid[:] = before + part * (grid - before)
+        frame_put_back(planes, near, unit, factors)
+    return _nearer(base, edges) if head == WINSLOW else base
+
+
+def _nearer(coarse: Floats, edges: Edges) -> Floats:
+    """Return grids `coarse` on more nodes, nearer to Winslow's."""
+    planes = evaluate(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
+    unit, factors = _unit(planes)
+    near = unit.copy()
+    step_all(near, steps=AFTER, harmonic=False)
+    frame_put_back(planes, near, unit, factors)
+    return planes
+
+
+def _begun(edges: Edges) -> Floats:
+    """Return transfinite grids as planes (batch, 2, n, n) at n = 33 nodes each."""
+    base = np.empty((len(edges), 2, LATENT, LATENT))
+    ni, nj = edges.counts
+    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
+    return base
+
+
+def _unit(planes: Floats) -> tuple[Floats, Floats]:
+    """Return planes at unit size (`meshonet.solvers.neural.quad.frame`), and the factors (batch, 2) to it."""
+    unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
+    frame_take_out(planes, unit, factors)
+    return unit, factors
+
+
+def evaluate(coarse: Floats, edges: Edges) -> Floats:
+    """Return the planes (batch, 2, ni, nj) inside the `edges` of grids `coarse` (batch, 2, m, n)."""
+    return evaluation.evaluate(coarse, edges.sides)
+
+
+def share(start: Floats, answer: Floats) -> float:
+    """Return how much of the way from `start` to `answer`, planes (2, m, n) both, to go: 1 but for folds."""
+    if count_folded(answer.transpose(1, 2, 0)) == 0:
+        return 1.0
+    tried = ((part, start + part * (answer - start)) for part in SHARES)
+    return next((part for part, grid in tried if count_folded(grid.transpose(1, 2, 0)) == 0), 1.0)

@@ -1,0 +1,126 @@
+"""What the quad network sees and what its answer means: the one copy that training and inference share.
+
+At every node of a grid in its own frame: the grid, its steps and their changes, and what last moved it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+LATENT = 33
+"""Nodes along xi and eta of the grid the network sees."""
+
+SCALE = 0.1
+"""What an answer of 1 means, in the normalised domain's unit."""
+
+HEADS = ("winslow", "variational")
+"""The grids a network answers with, in order."""
+
+WINSLOW = 0
+"""The number of the first of these, which takes a few steps of `picard.approach` after the network."""
+
+FEATURES = 20
+"""Channels a node: first differences (4), second differences (4), log lengths of both steps (2), place (2),
+cosine and sine between the steps (2), the Jacobian's inverse hyperbolic sine (1), xi and eta (2), the last
+step of `approach` over its size (2), and the logarithm of that size (1)."""
+
+FLOOR = 1e-2
+"""Added to lengths before their logarithm."""
+
+TINY = 1e-6
+
+STILL = 1e-3
+"""Added to the size of the last step."""
+
+STRETCH = 30.0
+"""How far small steps are drawn out, by the inverse hyperbolic sine."""
+
+
+def frame(z: Any, xp: Any) -> tuple[Any, Any]:
+    """Return the middle (batch,) of grids `z` (batch, n, n), complex, and the factor (batch,) to unit size.
+
+    ``(z - middle) * factor`` has its outline's area 1, and its mean step from west to east and, turned by a
+    quarter, from south to north points along x. The eight relabellings of a domain have the same frame,
+    relabelled. Compiled for planes it is `kernels/neural/frame.c`.
+
+    Parameters
+    ----------
+    z : array of numpy or of torch; only its rim is looked at.
+    xp : the module, numpy or torch, that `z` is of.
+    """
+    south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
+    outline = xp.concatenate(
+        [south[:, :-1], east[:, :-1], xp.flip(north[:, 1:], (1,)), xp.flip(west[:, 1:], (1,))], 1
+    )
+    middle = outline.mean(1)
+    outline = outline - middle[:, None]
+    after = xp.concatenate([outline[:, 1:], outline[:, :1]], 1)
+    area = 0.5 * (outline.conj() * after).imag.sum(1)
+    towards = east.mean(1) - west.mean(1) - 1j * (north.mean(1) - south.mean(1))
+    return middle, towards.conj() / abs(towards) / xp.sqrt(area)
+
+
+def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
+    """Return (batch, n, n, FEATURES) of normalised grids `z` (batch, n, n), complex.
+
+    Parameters
+    ----------
+    z : array of numpy or of torch.
+    step : of its shape, what last moved it (`approach`).
+    xp : the module, numpy or torch, that `z` is of.
+    around : `z` are O grids (batch, m + 1, n) unrolled (`unrolled`), whose last column is the first a turn
+        on: differences along xi go round, and places are those less even steps. Returns (batch, m, n, ...).
+
+    The order is that of `symmetry.SEEN`.
+    """
+    n = z.shape[-1]
+    if around:
+        u, a, z, where = _round(z, xp)
+        step = step[:, :-1]
+    else:
+        u, a, where = _slope(z, xp), _bend(z, xp), z
+    v, b = _slope(z.swapaxes(1, 2), xp).swapaxes(1, 2), _bend(z.swapaxes(1, 2), xp).swapaxes(1, 2)
+    product, lengths = u.conj() * v, (abs(u), abs(v))
+    angle = product / (lengths[0] * lengths[1] + TINY)
+    place = xp.linspace(-1.0, 1.0, n, dtype=z.real.dtype, device=z.device) + 0.0 * z.real
+    along = 0.0 * place if around else place.swapaxes(1, 2)
+    squares = step.real**2 + step.imag**2
+    size = xp.sqrt(squares.mean((1, 2)) + TINY**2)[:, None, None] + STILL
+    length = xp.sqrt(squares + TINY**2) / size
+    step = step * (xp.arcsinh(STRETCH * length) / (2.0 * size * length))
+    channels = (
+        u.real, v.real, u.imag, v.imag, a.real, b.real, a.imag, b.imag,
+        xp.log(lengths[0] + FLOOR), xp.log(lengths[1] + FLOOR), where.real, where.imag,
+        angle.real, angle.imag, xp.arcsinh(product.imag), along, place,
+        step.real, step.imag, xp.log10(size) + 2.0 + 0.0 * place,
+    )  # fmt: skip
+    return xp.stack(channels, -1)
+
+
+def _round(z: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
+    """Return slopes, bends, places, places less even steps (batch, m, n) of strips (batch, m + 1, n).
+
+    Differences are per as many cells as there are across, as a quad's are.
+    """
+    cells, m = z.shape[2] - 1, z.shape[1] - 1
+    turn = z[:, -1:, :1] - z[:, :1, :1]
+    ring = xp.concatenate([z[:, -2:-1] - turn, z], 1)
+    inner = z[:, :-1]
+    slope = 0.5 * cells * (ring[:, 2:] - ring[:, :-2])
+    bend = 2 * cells * (ring[:, 2:] + ring[:, :-2] - 2.0 * inner)
+    steps = xp.arange(m, dtype=z.real.dtype, device=z.device)[:, None] / m
+    where = inner - turn * steps
+    return slope, bend, inner, where - where.mean((1, 2))[:, None, None]
+
+
+def _slope(z: Any, xp: Any) -> Any:
+    """Return central differences along axis 1, one-sided at the ends, per unit of xi."""
+    ends = z[:, 1:2] - z[:, :1], z[:, -1:] - z[:, -2:-1]
+    return (z.shape[1] - 1) * xp.concatenate([ends[0], 0.5 * (z[:, 2:] - z[:, :-2]), ends[1]], 1)
+
+
+def _bend(z: Any, xp: Any) -> Any:
+    """Return second differences along axis 1, zero at the ends, times twice the cells."""
+    inner = z[:, 2:] + z[:, :-2] - 2.0 * z[:, 1:-1]
+    nothing = 0.0 * z[:, :1]
+    return 2 * (z.shape[1] - 1) * xp.concatenate([nothing, inner, nothing], 1)

@@ -1,0 +1,253 @@
+"""The quad network's forward pass: a U-Net whose layers commute with the relabellings of a quad.
+
+On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`symmetry`)::
+
+    h = lift(features)
+    h = blocks(h);  h = down(silu(h))          on each level but the coarsest, whose blocks come once
+    h = blocks(skip + finer(up(h)))            back up, finer: linear between nodes
+    d = m · project(silu(h))                   two components for each head, m = 0 on the rim
+
+with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
+once, the kernels are those of an ordinary convolutional network, which is compiled, most of it by fewer
+products (`kernels/neural/winograd.h`).
+`meshonet.solvers.neural.differentiable.quad_unet` is the same in torch.
+Ronneberger et al., U-Net, MICCAI 2015.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from itertools import pairwise, product
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats, read_only
+from meshonet.kernels._native import LayerProgram, activate, convolve, upsample, winograd, winograd_scratch
+from meshonet.solvers.neural.quad import symmetry
+from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS
+from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
+
+Reals: TypeAlias = NDArray[Any]
+Shapes: TypeAlias = dict[str, tuple[int, ...]]
+
+CHUNK = 16
+"""Domains that go through a layer together: their fields stay in the cache, and so do its weights."""
+
+FEWEST = 16
+"""Channels from which a convolution by 3 x 3 taps goes by fewer products."""
+
+MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8
+"""Of networks that are read; five levels are 33, 17, 9, 5 and 3 nodes."""
+
+LINE = 64
+"""Bytes that a row of weights is rounded up to."""
+
+
+def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
+    """Return the names and shapes of the weights of a network.
+
+    Parameters
+    ----------
+    widths : sets of eight channels on each level, the finest first.
+    blocks : residual blocks on each.
+    heads : displacement fields that it answers with.
+    """
+    arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
+
+    def layer(name: str, into: int, out: int, size: int = 3) -> None:
+        arrays[f"{name}.weight"], arrays[f"{name}.bias"] = (out, into, ORDER, size, size), (out,)
+
+    for level, (fine, coarse) in enumerate(pairwise(widths)):
+        layer(f"down.{level}", fine, coarse)
+        layer(f"up.{level}", coarse, fine, 1)
+    for level, width in enumerate(widths):
+        for part in ("before", "after")[: 1 if level == len(widths) - 1 else 2]:
+            for k, half in product(range(blocks[level]), "ab"):
+                layer(f"{part}.{level}.{k}.{half}", width, width)
+    arrays["project"] = (heads, 2, widths[0])
+    return arrays
+
+
+def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return widths and blocks of the network that `tensors` are of, as their names and shapes tell them.
+
+    Raises
+    ------
+    ValueError
+        of no network.
+    """
+    if not {"lift", "project"} <= set(tensors):
+        raise ValueError("no lift, or no project")
+    widths = [tensors["lift"].shape[0] if tensors["lift"].ndim else 0]
+    while f"down.{len(widths) - 1}.weight" in tensors and len(widths) <= MOST_LEVELS:
+        layer = tensors[f"down.{len(widths) - 1}.weight"]
+        widths.append(layer.shape[0] if layer.ndim else 0)
+    levels = range(len(widths))
+    blocks = [sum(f"before.{level}.{k}.a.weight" in tensors for k in range(MOST_BLOCKS)) for level in levels]
+    if not 2 <= len(widths) <= MOST_LEVELS or not 1 <= min(widths) <= max(widths) <= MOST_SETS:
+        raise ValueError(f"widths {widths}")
+    if {key: array.shape for key, array in tensors.items()} != shapes(widths, blocks, len(HEADS)):
+        raise ValueError("names or shapes of arrays")
+    return tuple(widths), tuple(blocks)
+
+
+@lru_cache(maxsize=4)
+def rim_factor(m: int, n: int, around: bool) -> Floats:
+    """Return (m, n): 0 on the rim, d/(d+2) along each axis, d nodes from it; `around`, across only."""
+    along, across = (np.minimum(np.arange(k), np.arange(k)[::-1]).astype(np.float64) for k in (m, n))
+    rise = np.multiply.outer(np.ones(m) if around else along / (along + 2.0), across / (across + 2.0))
+    return read_only(rise)
+
+
+class Network:
+    """The network of one set of weights, its kernels expanded and laid out once.
+
+    Parameters
+    ----------
+    weights : of the names and shapes of `shapes`, in any precision.
+    blocks : as there.
+    dtype : float32 or float64, of the arithmetic.
+    around : of O grids, unrolled: they go round along xi.
+    """
+
+    def __init__(
+        self,
+        weights: Mapping[str, Reals],
+        blocks: Sequence[int],
+        dtype: Any = np.float64,
+        around: bool = False,
+    ) -> None:
+        self.dtype, self.blocks, self.around = np.dtype(dtype), tuple(blocks), around
+        exact = {name: np.asarray(value, np.float64) for name, value in weights.items()}
+        self._layers = {
+            "lift": _packed(symmetry.lift(exact["lift"], SEEN, np), exact["lift_bias"], self.dtype),
+            "project": _packed(symmetry.projection(exact["project"], ELEMENTS, np), None, self.dtype),
+        }
+        for name in exact:
+            layer, _, rest = name.rpartition(".")
+            if rest == "weight":
+                kernel = symmetry.convolution(exact[name], symmetry.table(exact[name].shape[-1]), np)
+                if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
+                    kernel = symmetry.at_points(kernel)
+                self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
+        self._idle: dict[tuple[int, int], list[LayerProgram]] = {}  # of no thread at the time
+        self.heads = len(exact["project"])
+
+    def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
+        """Return the fields (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
+
+        Of one `head` alone (batch, m, n).
+        """
+        pairs = self.answers(seen)
+        m, n = pairs.shape[1:3]
+        pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
+        moved = np.multiply(pairs, rim_factor(m, n, self.around)[..., None], order="C")
+        return np.asarray(moved.view(np.complex128)[..., 0])
+
+    def answers(self, seen: Reals) -> Reals:
+        """Return the fields (batch, m, n, heads, 2) before `rim_factor`, in the network's arithmetic."""
+        batch, m, n = seen.shape[:3]
+        seen = np.ascontiguousarray(seen, self.dtype)
+        answer = np.empty((batch, m, n, 2 * self.heads), self.dtype)
+        idle = self._idle.setdefault((m, n), [])
+        try:
+            program = idle.pop()
+        except IndexError:
+            program = self._program(m, n)
+        for k in range(0, batch, CHUNK):
+            program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
+        idle.append(program)
+        return answer.reshape(batch, m, n, self.heads, 2)
+
+    def _program(self, m: int, n: int) -> LayerProgram:
+        """Return the layers for `CHUNK` domains or fewer, on arrays that no other program has."""
+        work = _Work(self._layers, self.around)
+        self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
+        return work.program
+
+    def _record(self, work: _Work, h: Reals) -> None:
+        h = work.layer("lift", h)
+        skips: list[Reals] = []
+        coarsest = len(self.blocks) - 1
+        for level in range(coarsest):
+            h = work.blocks(f"before.{level}", self.blocks[level], h)
+            skips.append(h)
+            h = work.layer(f"down.{level}", work.silu(h), stride=2)
+        h = work.blocks(f"before.{coarsest}", self.blocks[-1], h)
+        for level in range(coarsest - 1, -1, -1):
+            h = work.finer(work.layer(f"up.{level}", h), skips[level])
+            h = work.blocks(f"after.{level}", self.blocks[level], h)
+        work.layer("project", work.silu(h, pad=0))
+
+
+class _Work:
+    """Records layers by name in a program, on arrays of `CHUNK` domains."""
+
+    def __init__(self, layers: Mapping[str, tuple[Reals, Reals, int]], around: bool) -> None:
+        self.program = LayerProgram()
+        self._layers, self._around = layers, around
+        self._rooms: dict[Any, Reals] = {}
+
+    def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None, room: str = "") -> Reals:
+        weight, bias, outputs = self._layers[name]
+        taps = len(weight) // x.shape[3]
+        size = 1 if taps == 1 else 3
+        m, n = ((count - size) // stride + 1 for count in x.shape[1:3])
+        out = self._room(room or name, (len(x), m, n, outputs), x.dtype)
+        if taps > size * size:
+            count = winograd_scratch(x.shape[3], weight.shape[1], LINE // x.itemsize)
+            scratch = self._room("scratch", (count,), x.dtype)
+            winograd(x, weight, bias, add, scratch, out, self.program)
+        else:
+            convolve(x, weight, bias, size, stride, add, out, self.program)
+        return out
+
+    def finer(self, low: Reals, skip: Reals) -> Reals:
+        out = self._room("finer", skip.shape, skip.dtype)
+        upsample(low, skip, out, self._around, self.program)
+        return out
+
+    def silu(self, x: Reals, pad: int = 1) -> Reals:
+        batch, m, n, channels = x.shape
+        out = self._room("active", (batch, m + 2 * pad, n + 2 * pad, channels), x.dtype)
+        activate(x, out, self._around, self.program)
+        return out
+
+    def blocks(self, part: str, count: int, x: Reals) -> Reals:
+        for k in range(count):
+            inner = self.layer(f"{part}.{k}.a", self.silu(x), room="inner")
+            x = self.layer(f"{part}.{k}.b", self.silu(inner), add=x, room=f"sum {k % 2}")
+        return x
+
+    def _room(self, name: str, shape: tuple[int, ...], dtype: Any) -> Reals:
+        """Return an array that later layers use again."""
+        if (name, shape) not in self._rooms:
+            self._rooms[name, shape] = _aligned(shape, dtype)
+        return self._rooms[name, shape]
+
+
+def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[Reals, Reals, int]:
+    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are.
+
+    `kernel` is (out, in) or (out, in, size, size), `bias` (out / 8,).
+    """
+    outputs = len(kernel)
+    rows = np.moveaxis(kernel, (0, 1), (-1, -2)).reshape(-1, outputs)
+    per = LINE // dtype.itemsize
+    wide = -(-outputs // per) * per
+    weight, biases = _aligned((len(rows), wide), dtype), _aligned((wide,), dtype)
+    weight[:, :outputs] = rows
+    if bias is not None:
+        biases[:outputs] = np.repeat(bias, ORDER)
+    return weight, biases, outputs
+
+
+def _aligned(shape: tuple[int, ...], dtype: np.dtype[Any]) -> Reals:
+    """Return zeros that begin at a multiple of LINE bytes."""
+    count = int(np.prod(shape)) * dtype.itemsize
+    raw = np.zeros(count + LINE, np.uint8)
+    begin = -raw.ctypes.data % LINE
+    return raw[begin : begin + count].view(dtype).reshape(shape)

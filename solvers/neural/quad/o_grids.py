@@ -1,0 +1,118 @@
+"""Bodies in far fields to O grids by the quad network, which goes round the unrolled strip.
+
+::
+
+    walls -> 65 nodes of them -> strip -> even steps from wall to wall -> size out -> towards Winslow's grid
+          -> features -> network -> 65 x 33 grid, its walls those nodes
+          -> splines -> grid at the walls' own counts
+
+Turning, moving and scaling only move the strip, a mirrored body has the mirrored one, and beginning an eighth
+of the way further round shifts it: the network's answer does the same, to rounding.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.resample import grids as resample
+from meshonet.solvers.algebraic.resample.spline import between
+from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features
+from meshonet.solvers.neural.quad.inside import inside
+from meshonet.solvers.neural.quad.network import CHUNK, Network
+from meshonet.solvers.neural.quad.picard import AFTER, approached
+from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, even, factors, rolled
+
+NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
+
+COMPACT = 0.15
+"""Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""
+
+
+def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
+    """Return the planes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
+
+    Parameters
+    ----------
+    head : index into `encoding.HEADS`.
+
+    Raises
+    ------
+    InputError
+        walls that, at 65 nodes, do not go once round the body's centroid, nor round a point inside it.
+    """
+    walls, strips, centres, once = _strips(boundaries)
+    if not once.all():
+        name = boundaries[int(np.argmin(once))].name
+        raise InputError(*NOT_ROUND, source=name)
+    base, factor = even(strips, LATENT), factors(strips)[:, None, None]
+    for k in range(0, len(base), CHUNK):
+        chunk = slice(k, k + CHUNK)
+        base[chunk] = answered(base[chunk], factor[chunk], head, partial(network, head=head), _approached)
+    grids = rolled(base, centres[:, None, None])
+    grids[:, :, [0, -1]] = walls
+    return np.ascontiguousarray(np.stack([grids.real, grids.imag], axis=1))
+
+
+def answered(
+    base: Any,
+    factor: Any,
+    head: int,
+    network: Callable[[Any], Any],
+    approach: Callable[..., Any],
+    xp: Any = np,
+) -> Any:
+    """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
+
+    Parameters
+    ----------
+    factor : (batch, 1, 1) to unit size.
+    network : answers (batch, m, n) by what it sees; `approach` is that of `picard`; both of `xp`.
+    """
+    z = base * factor
+    near, step = approach(z, xp, around=True)
+    moved = near[:, :-1] + SCALE * network(features(near, step, xp, around=True))
+    if head == WINSLOW:
+        closed = xp.concatenate([moved, moved[:, :1] + factor * TURN], 1)
+        moved = approach(closed, xp, around=True, steps=AFTER, harmonic=False)[0][:, :-1]
+    strip = base[:, :-1] + (moved - z[:, :-1]) / factor
+    return xp.concatenate([strip, strip[:, :1]], 1)  # exp(-i strip) closes: a whole turn on is the same
+
+
+def _approached(z: Complexes, _: Any, **settings: Any) -> tuple[Complexes, Complexes]:
+    planes, steps = approached(z, **settings)
+    return _complex(planes), _complex(steps)
+
+
+def _strips(
+    boundaries: Sequence[Boundary],
+) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
+    """Return the walls at 65 nodes, their strips, the middles, and which walls go round these once."""
+    sides = [np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")]
+    walls = _complex(np.stack([between(side, AROUND) for side in sides], axis=3))
+    return walls, *around_middles(_complex(sides[0]), walls, inside)
+
+
+def compact(boundary: Boundary) -> bool:
+    """Return whether an O boundary's body is about as thick as those that models are trained on."""
+    _, _, centres, once = _strips([boundary])
+    reach = np.abs(_complex(boundary.south.T[None]) - centres)
+    return bool(once[0] and reach.min() > COMPACT * reach.max())
+
+
+def evaluate(grids: Floats, boundaries: Sequence[Boundary]) -> Floats:
+    """Return the planes (batch, 2, ni, nj) within `boundaries` of `grids` (batch, 2, m, n) on fewer nodes."""
+    pairs = zip(grids, boundaries, strict=True)
+    nodes = [resample.evaluate(np.moveaxis(planes, 0, -1), boundary) for planes, boundary in pairs]
+    return np.stack([np.moveaxis(grid, -1, 0) for grid in nodes])
+
+
+def _complex(planes: Floats) -> Complexes:
+    return np.asarray(planes[:, 0] + 1j * planes[:, 1])

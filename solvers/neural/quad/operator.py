@@ -1,0 +1,104 @@
+"""The operator for four-sided domains and for bodies: one network with two answers, then polish."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from itertools import chain
+from typing import Any, Self
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.conformal.solve import Polish
+from meshonet.solvers.neural.operator import Operator, in_batches
+from meshonet.solvers.neural.quad.canonical import canonical
+from meshonet.solvers.neural.quad.encoding import HEADS, WINSLOW
+from meshonet.solvers.neural.quad.network import Network, Reals, sizes
+from meshonet.solvers.neural.quad.polish import polished
+from meshonet.solvers.solution import Solution
+
+AUTO = {WINSLOW: 2, 1: 5}
+"""Steps of "auto": cycles of multigrid for Winslow's answer, of descent for the variational one."""
+
+
+@dataclass(frozen=True)
+class QuadOperator(Operator):
+    """A network for four-sided domains, or for what is between a body and its far field.
+
+    Parameters
+    ----------
+    widths, blocks : of the network.
+    weights : its arrays, as `network.shapes` has them.
+    head : which of the network's answers is taken, an index into `encoding.HEADS`.
+    """
+
+    widths: tuple[int, ...] = ()
+    blocks: tuple[int, ...] = ()
+    weights: Mapping[str, Reals] = field(default_factory=dict)
+    head: int = len(HEADS) - 1
+    _networks: dict[str, Network] = field(default_factory=dict, repr=False, compare=False)
+
+    @classmethod
+    def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
+        """Return the operator of a file's header and arrays."""
+        widths, blocks = sizes(arrays)
+        return cls(name, "o" if header.get("topology") == "o" else "quad", header, widths, blocks, arrays)
+
+    def network(self, dtype: str = "float64") -> Network:
+        """Return the network in ``float64`` or ``float32`` arithmetic, made once."""
+        if dtype not in self._networks:
+            self._networks[dtype] = Network(self.weights, self.blocks, dtype, around=self.topology == "o")
+        return self._networks[dtype]
+
+    def solve(
+        self,
+        boundaries: Sequence[Boundary],
+        polish: Polish = "auto",
+        *,
+        dtype: str = "float64",
+        threads: int = 1,
+        **_: Any,
+    ) -> list[Solution]:
+        """Return a grid inside each boundary, whose edges it has bitwise.
+
+        Boundaries with equal node counts go through the network together; their seconds are a batch's,
+        divided by its members.
+        """
+        self.check(boundaries)
+        network = self.network(dtype)
+        steps = AUTO[self.head] if polish == "auto" else 0 if polish == "off" else polish
+        groups = list(in_batches(boundaries, threads))
+        batches = [[boundaries[k] for k in group] for group in groups]
+        if threads == 1:
+            answers = [self._solved(batch, network, steps) for batch in batches]
+        else:
+            with ThreadPoolExecutor(threads) as pool:
+                answers = list(pool.map(lambda batch: self._solved(batch, network, steps), batches))
+        solutions = dict(zip(chain(*groups), chain(*answers), strict=True))
+        return [solutions[k] for k in range(len(boundaries))]
+
+    def _solved(self, boundaries: Sequence[Boundary], network: Network, steps: int) -> list[Solution]:
+        """Return the solutions of boundaries with equal counts, made together."""
+        begun = time.perf_counter()
+        # descents amplify rounding: taken in canonical frames they are the same wherever a domain lies
+        framed = steps and (self.topology == "o" or self.head != WINSLOW)
+        frames = [canonical(boundary) for boundary in boundaries] if framed else []
+        inner = [frame.boundary for frame in frames] or boundaries
+        planes, taken = polished(inner, network, self.topology, self.head, steps)
+        if frames:
+            planes = np.stack([frame.back(grid) for frame, grid in zip(frames, planes, strict=True)])
+        spent = (time.perf_counter() - begun) / len(boundaries)
+        with np.errstate(invalid="ignore"):  # infinity less infinity
+            finite = bool(np.isfinite(planes.sum()))
+        solutions = []
+        for boundary, nodes, cycles in zip(boundaries, planes.transpose(0, 2, 3, 1), taken, strict=True):
+            facts = {"method": "operator", "model": self.name, "polish": cycles}
+            grid = boundary.grid(nodes, facts, finite=finite)
+            solutions.append(
+                Solution(grid, "operator", model=self.name, cycles=cycles, seconds={"grid": spent})
+            )
+        return solutions

@@ -1,0 +1,215 @@
+"""From an interpolated grid towards Winslow's: the harmonic grid, then a few Picard steps, for a whole batch.
+
+Winslow's equations with the coefficients of the last grid::
+
+    alpha z_xixi - 2 beta z_xieta + gamma z_etaeta = 0,
+    alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
+
+Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
+at their means over the domain. Differences are of nearly fourth order: three quarters of the leading error
+are taken out, which leaves that of a grid with half the steps.
+
+What is left when the steps end is the network's: corners and tails, where this many nodes are too few.
+After it a few more take what it has left of its own. Where coefficients vary much they alone converge
+slowly or not at all, so these are extrapolated: each goes to where the step would vanish if it were linear
+along the last move.
+Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
+(1965) 547-560.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
+from meshonet.kernels._native import LINE, winslow_steps
+from meshonet.solvers.neural.quad.encoding import LATENT
+
+STEPS = 4
+"""After the harmonic grid. A fifth takes a tenth of what is left on average."""
+
+AFTER = 3
+"""Once more, after the network's answer for Winslow's grid."""
+
+FINER = 65
+"""Nodes along a direction at the most that these are taken on: evaluating the solution from 33 costs 3e-4."""
+
+SHARE = 0.75
+"""Of the leading error of differences that is taken out."""
+
+GROWTH = 4.0
+"""A step whose square is so many times the last one's, in the mean, is not taken."""
+
+TINY = 1e-30
+
+Tables = tuple[Floats, Floats, Floats]
+"""A transform, its transpose, and minus the eigenvalues of second differences, as compiled code has them."""
+
+
+def approach(
+    z: Any, xp: Any, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
+) -> tuple[Any, Any]:
+    """Return grids nearer to Winslow's in the rims of `z`, and the last step, both of the shape of `z`.
+
+    Parameters
+    ----------
+    z : (batch, n, n) grids of unit size, complex, of numpy or of torch.
+    xp : the module, numpy or torch, that `z` is of.
+    around : `z` are strips (batch, m + 1, n), whose last column is the first a turn on.
+    steps : of Picard's iteration.
+    harmonic : they go out from the harmonic grid, else from `z`, and are extrapolated.
+    """
+    p = xp.stack([z.real, z.imag], 1)
+    turn = p[:, :, -1:] - p[:, :, :1]
+    if around:
+        p = p[:, :, :-1]
+    (left, slow), (right, fast) = (_waves(p, axis, xp, around and axis == 2) for axis in (2, 3))
+    move, step, size = 0.0 * p, 0.0 * p, xp.inf + 0.0 * p[:, :1, :1, :1]
+    for k in range(0 if harmonic else 1, steps + 1):
+        ring = xp.concatenate([p[:, :, -2:] - turn, p, p[:, :, :2] + turn], 2) if around else p
+        missed, alpha, gamma = _missed(ring, xp, around, SHARE if k else 0.0, linear=k == 0)
+        inner = left @ ((left @ missed @ right) / (alpha * slow[:, None] + gamma * fast)) @ right
+        square = (inner**2).mean((1, 2, 3))[:, None, None, None]
+        taken = square < GROWTH * size  # and a number
+        correction = _inside(inner, xp, around)
+        move = correction if harmonic or k == 1 else _extrapolated(correction, step, move, xp)
+        move, step = (xp.where(taken, value, 0.0 * step) for value in (move, correction))
+        size, p = xp.where(taken, square, size), p + move
+    if around:
+        p, step = xp.concatenate([p, p[:, :, :1] + turn], 2), xp.concatenate([step, step[:, :, :1]], 2)
+    return p[:, 0] + 1j * p[:, 1], step[:, 0] + 1j * step[:, 1]
+
+
+def approached(
+    z: Complexes, around: bool = False, steps: int = STEPS, *, harmonic: bool = True
+) -> tuple[Floats, Floats]:
+    """Return what `approach` does, as planes (batch, 2, ...): the same compiled, to rounding."""
+    near = np.stack([z.real, z.imag], axis=1)
+    return near, step_all(near, around, steps, harmonic=harmonic)
+
+
+def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic: bool = True) -> Floats:
+    """Move planes `near` (batch, 2, m, n) in place as `approach` does; return the last steps, likewise."""
+    last, (m, n) = np.empty_like(near), near.shape[2:]
+    turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
+    xi = _plain(m - 1) if around else _folded(m)
+    winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
+    return last
+
+
+def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
+    """Return the move to where steps vanish that were `step` before the last `move`, and `found` after."""
+    change = correction - step
+    share = (change * correction).sum((1, 2, 3)) / ((change**2).sum((1, 2, 3)) + TINY)
+    return correction - xp.clip(share, -1.0, 1.0)[:, None, None, None] * (change + move)
+
+
+def nodes_after(n: int) -> int:
+    """Return on how many nodes along a direction the steps after the network are taken, of `n` asked for."""
+    return min(max(n, LATENT), FINER)
+
+
+@lru_cache(maxsize=8)
+def _plain(n: int) -> Tables:
+    """Return the tables of n nodes that go round."""
+    table, values = _transform(n, around=True)
+    return table, table, values[None]
+
+
+@lru_cache(maxsize=8)
+def _folded(n: int) -> Tables:
+    """Return the tables of n nodes for sums of values and their mirror images, and for differences.
+
+    A wave of an odd number is its own mirror image, one of an even number is so with the other sign.
+    """
+    table, values = _transform(n, around=False)
+    less = len(values) // 2
+    half = len(values) - less
+    line = -(-half // LINE) * LINE
+    to, back = np.zeros((2, half + less, line))
+    eigenvalues = np.ones((2, line))
+    for parity, count in enumerate((half, less)):
+        rows, part = slice(parity * half, parity * half + count), table[:count, parity::2]
+        to[rows, :count], back[rows, :count] = part, part.T
+        eigenvalues[parity, :count] = values[parity::2]
+    if half > less:  # the value in the middle is its own image
+        to[half - 1] *= 0.5
+        back[:half, half - 1] *= 0.5
+    return read_only(to), read_only(back), read_only(eigenvalues)
+
+
+def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
+    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients.
+
+    `linear`: Laplace's along xi and eta instead of Winslow's.
+    """
+    body = p[:, :, 2:-2] if around else p[:, :, 1:-1]
+    bends = _second(p, share, xp, around)[..., 1:-1], _across(_second, body, share, xp)
+    if linear:
+        unit = 1.0 + 0.0 * p[:, :1, :1, :1]
+        return bends[0] + bends[1], unit, unit
+    slopes = _first(p, share, xp, around)
+    u, v = slopes[..., 1:-1], _across(_first, body, share, xp)
+    twist = _across(_first, slopes, share, xp)
+    alpha, gamma, beta = ((a * b).sum(1)[:, None] for a, b in ((v, v), (u, u), (u, v)))
+    total = alpha + gamma + TINY
+    missed = (alpha * bends[0] - 2.0 * beta * twist + gamma * bends[1]) / total
+    return missed, *((value / total).mean((2, 3))[:, :, None, None] for value in (alpha, gamma))
+
+
+def _first(p: Any, share: float, xp: Any, around: bool = False) -> Any:
+    """Return central differences a step along axis 2, at nodes off the ends; `around`, two nodes off."""
+    central = 0.5 * (p[:, :, 2:] - p[:, :, :-2])
+    third = 0.5 * (p[:, :, 4:] - p[:, :, :-4]) + p[:, :, 1:-3] - p[:, :, 3:-1]
+    return _corrected(central, third, share / 6.0, xp, around)
+
+
+def _second(p: Any, share: float, xp: Any, around: bool = False) -> Any:
+    """Return second differences along axis 2, where `_first` has differences."""
+    central = p[:, :, 2:] + p[:, :, :-2] - 2.0 * p[:, :, 1:-1]
+    fourth = central[:, :, 2:] + central[:, :, :-2] - 2.0 * central[:, :, 1:-1]
+    return _corrected(central, fourth, share / 12.0, xp, around)
+
+
+def _corrected(central: Any, error: Any, share: float, xp: Any, around: bool) -> Any:
+    """Return differences less a `share` of what is `error` two nodes from the ends and beyond."""
+    if around:
+        return central[:, :, 1:-1] - share * error
+    return central - share * xp.concatenate([error[:, :, :1], error, error[:, :, -1:]], 2)
+
+
+def _across(difference: Any, p: Any, share: float, xp: Any) -> Any:
+    return difference(p.swapaxes(2, 3), share, xp).swapaxes(2, 3)
+
+
+def _inside(inner: Any, xp: Any, around: bool) -> Any:
+    """Return planes with zeros for the rim around `inner`; `around`, for the walls."""
+    side = 0.0 * inner[..., :1]
+    rows = xp.concatenate([side, inner, side], 3)
+    end = 0.0 * rows[:, :, :1]
+    return rows if around else xp.concatenate([end, rows, end], 2)
+
+
+def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:
+    """Return an axis' transform and minus the eigenvalues of second differences, as arrays like `p`."""
+    return tuple(array_like(table, p, xp) for table in _transform(p.shape[axis], around))
+
+
+@lru_cache(maxsize=8)
+def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
+    """Return a symmetric matrix that is its own inverse and makes second differences of n nodes diagonal.
+
+    `around`, Hartley's; else of sines, for the nodes between the ends.
+    """
+    if around:
+        k = np.arange(n)
+        angle = 2.0 * np.pi * (np.outer(k, k) % n) / n
+        table = (np.cos(angle) + np.sin(angle)) / np.sqrt(n)
+        return read_only(table), read_only(4.0 * np.sin(np.pi * k / n) ** 2)
+    k = np.arange(1, n - 1)
+    angle = np.pi * (np.outer(k, k) % (2 * (n - 1))) / (n - 1)
+    table = np.sqrt(2.0 / (n - 1)) * np.sin(angle)
+    return read_only(table), read_only(4.0 * np.sin(0.5 * np.pi * k / (n - 1)) ** 2)

@@ -1,0 +1,125 @@
+"""The network's coarse grids, improved there and on all nodes: by descent, or towards Winslow's solution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError, SolverError
+from meshonet.solvers.algebraic.resample.grids import thinned
+from meshonet.solvers.neural.quad import coarse_grids, o_grids
+from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.encoding import WINSLOW
+from meshonet.solvers.neural.quad.network import Network
+
+Counts: TypeAlias = tuple[int, int]
+"""Nodes along xi and eta."""
+
+MOST_SOLVED = 129
+"""Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
+
+MOST_DESCENDED, LARGER_DESCENDED = 513, 257
+"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
+
+LAST = 2
+"""Most steps that are taken at full resolution; those before are taken on the network's coarse grid.
+
+There they gain most of the angles in the mean, above all as steps of Newton's method, which four-sided
+domains have: where the network is far off, dozens of others would not do. The last, a descent that follows
+the coarse grid's Hessian in smooth moves, remove folds and kinks between its nodes.
+"""
+
+STILL = 1e-4
+"""Moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
+
+
+def polished(
+    boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int, steps: int
+) -> tuple[Floats, list[int]]:
+    """Return the planes (batch, 2, ni, nj) of boundaries with equal counts, and the steps taken for each."""
+    coarse, evaluated = _coarse(boundaries, network, topology, head)
+    counts = boundaries[0].ni, boundaries[0].nj
+    if not steps:
+        return evaluated(coarse, counts), [0] * len(boundaries)
+    newton = head != WINSLOW and topology == "quad"
+    last = steps if head == WINSLOW else min((steps + 1) // 2 if newton else steps, LAST)
+    begin = _newton if newton else _descent
+    taken = [begin(grid, steps - last, topology) for grid in coarse]
+    ni, nj = (_most_nodes(n, head) for n in counts)
+    planes = evaluated(coarse, (ni, nj))
+    for k, grid in enumerate(planes):
+        if head == WINSLOW:
+            taken[k] += _cycles(grid, last, topology)
+        else:
+            taken[k] += _descent(grid, last, topology, coarse[k] if newton else None)
+    return (planes if (ni, nj) == counts else evaluated(planes, counts)), taken
+
+
+def _coarse(
+    boundaries: Sequence[Boundary], network: Network, topology: Topology, head: int
+) -> tuple[Floats, Callable[[Floats, Counts], Floats]]:
+    """Return the network's coarse grids, and what evaluates them at other counts."""
+    if topology == "quad":
+        edges = Edges.of(boundaries)
+        return (
+            coarse_grids.coarse_grids(edges, network, head),
+            lambda planes, counts: coarse_grids.evaluate(planes, edges.thinned(*counts)),
+        )
+    return (
+        o_grids.coarse_grids(boundaries, network, head),
+        lambda planes, counts: o_grids.evaluate(planes, [_with(b, counts) for b in boundaries]),
+    )
+
+
+def _with(boundary: Boundary, counts: Counts) -> Boundary:
+    """Return a boundary with the node counts."""
+    return boundary if counts == (boundary.ni, boundary.nj) else thinned(boundary, *counts)
+
+
+def _most_nodes(n: int, head: int) -> int:
+    if head == WINSLOW:
+        return min(n, MOST_SOLVED)
+    return n if n <= MOST_DESCENDED else LARGER_DESCENDED
+
+
+def _newton(planes: Floats, steps: int, topology: Topology) -> int:
+    """Take steps of Newton's method from the planes (2, m, n) in place; return how many."""
+    if not steps:
+        return 0
+    from meshonet.solvers.energy.descent import newton
+    from meshonet.solvers.energy.variational import WEIGHTS
+
+    return newton(np.moveaxis(planes, 0, -1), WEIGHTS[topology], steps)
+
+
+def _descent(planes: Floats, steps: int, topology: Topology, coarse: Floats | None = None) -> int:
+    """Descend from the planes (2, m, n) in place, steered by the `coarse` grid; return the steps taken."""
+    if not steps:
+        return 0
+    from meshonet.solvers.energy.descent import descend, stiffness_of
+    from meshonet.solvers.energy.variational import WEIGHTS
+
+    weights = WEIGHTS[topology]
+    every_second = None if coarse is None else np.moveaxis(coarse[:, ::2, ::2].copy(), 0, -1)
+    stiffness = None if every_second is None else stiffness_of(every_second, weights)
+    nodes = np.moveaxis(planes, 0, -1)
+    return descend(nodes, weights, STILL, steps, periodic=topology == "o", stiffness=stiffness)[0]
+
+
+def _cycles(planes: Floats, steps: int, topology: Topology) -> int:
+    """Solve Winslow's equations from the planes (2, m, n) by so many cycles, in place; return how many."""
+    from meshonet.solvers.elliptic.solve import solve
+
+    nodes = np.moveaxis(planes, 0, -1)
+    try:
+        boundary = Boundary(nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1], topology)
+        initial = boundary.grid(nodes.copy(order="K"))
+        solution = solve(boundary, tol=1e-12, max_cycles=steps, initial=initial)
+    except (SolverError, InputError):
+        return 0  # diverged, or nodes that no boundary can have
+    nodes[:] = solution.grid.nodes
+    return solution.cycles or 0

@@ -1,0 +1,133 @@
+"""The eight relabellings of a quad, and convolutions that commute with them.
+
+A quad stays the same domain when its index axes are turned by quarters or mirrored, and the plane with
+them. These eight signed permutations form the dihedral group D4. A layer's channels come in sets of eight,
+one for each element; a kernel of the layer is one small set of weights, seen from every element::
+
+    K[h, g](p) = w[h^-1 g](h^-1 p)
+
+so the network's answer to a relabelled domain is the relabelled answer, to rounding, and an ordinary
+convolution with the expanded kernels computes it. Channels lie as (set, element), the element fastest; arrays
+are of numpy or of torch where `xp` is the module they are of.
+Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
+"""
+
+from __future__ import annotations
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+
+Integers: TypeAlias = NDArray[np.int64]
+Reals: TypeAlias = NDArray[np.floating[Any]]
+
+ORDER = 8
+"""Elements of the group."""
+
+
+def _elements() -> Integers:
+    """Return the group (8, 2, 2): turns by quarters, then the same after a mirror."""
+    quarter, mirror = np.array([[0, -1], [1, 0]]), np.array([[1, 0], [0, -1]])
+    turns = [np.linalg.matrix_power(quarter, k) for k in range(4)]
+    return np.stack([*turns, *(turn @ mirror for turn in turns)])
+
+
+ELEMENTS: Integers = _elements()
+"""(8, 2, 2) what an element does to index steps (along xi, along eta) and to vectors (x, y) of the plane."""
+
+
+def _number(element: Integers) -> int:
+    return int(np.flatnonzero((element == ELEMENTS).all(axis=(1, 2)))[0])
+
+
+INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])
+"""(8,) number of the inverse of each element."""
+
+PRODUCT: Integers = np.array([[_number(a @ b) for b in ELEMENTS] for a in ELEMENTS])
+"""(8, 8) number of the product of two."""
+
+
+def _taps(size: int) -> Integers:
+    """Return (8, size, size): for each element g, the flat index of g^-1 p for every place p of a kernel."""
+    half = size // 2
+    places = np.stack(np.meshgrid(*2 * [np.arange(size) - half], indexing="ij")).reshape(2, -1)
+    moved = np.einsum("gba,bp->gap", ELEMENTS, places) + half
+    return (moved[:, 0] * size + moved[:, 1]).reshape(ORDER, size, size)
+
+
+TAPS: dict[int, Integers] = {size: _taps(size) for size in (1, 3)}
+"""Of kernels with this many places along each axis."""
+
+RELATIVE: Integers = PRODUCT[INVERSE]
+"""(8, 8) number of h^-1 g."""
+
+
+def _sum(*blocks: Reals) -> Floats:
+    """Return a block diagonal matrix."""
+    sizes = [len(block) for block in blocks]
+    result, at = np.zeros((sum(sizes), sum(sizes))), 0
+    for block, size in zip(blocks, sizes, strict=True):
+        result[at : at + size, at : at + size] = block
+        at += size
+    return result
+
+
+def _seen(element: Integers) -> Floats:
+    """Return the matrix that takes the features of `features` to those an observer at `element` sees."""
+    turn = element.astype(np.float64)
+    axes = np.abs(turn)
+    sign = axes[0, 0] * turn[0, 0] * turn[1, 1] + axes[0, 1] * turn[0, 1] * turn[1, 0]
+    unit = np.ones((1, 1))
+    return _sum(
+        np.kron(turn.T, turn.T), np.kron(turn.T, axes.T), axes.T, turn.T, sign * unit, unit, unit, turn.T,
+        turn.T, unit,
+    )  # fmt: skip
+
+
+SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])
+"""(8, FEATURES, FEATURES)"""
+
+
+def table(size: int) -> Integers:
+    """Return (8, 8, size²): where in a set of weights (8 size²,) each tap of the kernel K[h, g] stands."""
+    count = size * size
+    return np.asarray(RELATIVE[:, :, None] * count + TAPS[size].reshape(ORDER, 1, count))
+
+
+def convolution(weight: Any, places: Any, xp: Any) -> Any:
+    """Return (8 out, 8 in, size, size) from `weight` (out, in, 8, size, size) and `places`, its `table`."""
+    out, into, _, size, _ = weight.shape
+    spread = weight.reshape(out, into, -1)[:, :, places]
+    return xp.moveaxis(spread, 2, 1).reshape(ORDER * out, ORDER * into, size, size)
+
+
+POINTS: Floats = np.array(
+    [
+        [1 / 2, 0, 0],
+        [-1 / 2, -1 / 2, -1 / 2],
+        [-1 / 6, 1 / 6, -1 / 6],
+        [1 / 6, 1 / 3, 2 / 3],
+        [0, 0, 1],
+    ]
+)
+"""(5, 3) takes the taps of a kernel along an axis to what `winograd.h` multiplies: values at 0, 1, -1, 2 and
+infinity, divided by what interpolation through these divides by."""
+
+
+def at_points(kernel: Floats) -> Floats:
+    """Return (out, in, 5, 5) of a kernel (out, in, 3, 3), `POINTS` along both axes."""
+    return np.asarray(POINTS @ kernel @ POINTS.T)
+
+
+def lift(weight: Any, seen: Any, xp: Any) -> Any:
+    """Return (8 out, FEATURES) from `weight` (out, FEATURES): the features as seen from each element."""
+    return xp.einsum("cf,gfk->cgk", weight, seen).reshape(ORDER * len(weight), -1)
+
+
+def projection(weight: Any, elements: Any, xp: Any) -> Any:
+    """Return (2 heads, 8 in) from `weight` (heads, 2, in): vectors brought back from each element."""
+    back = xp.einsum("gda,hac->hdcg", elements, weight) / ORDER
+    return back.reshape(2 * len(weight), -1)

@@ -1,0 +1,82 @@
+"""O grids as strips: the logarithm around the middle of the body, where a turn is a step to the right.
+
+::
+
+    Z = i log(z - centre)        xi runs along the real axis, 2 pi once around; eta along the imaginary one
+
+The map is conformal, so that Winslow's equations and the angles of cells are the same in both, and turning,
+moving and scaling a body only moves its strip. What is even in the strip grows evenly outwards in the plane.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+AROUND = 65
+"""Nodes along xi, the last a turn after the first, of the grid that the network sees around a body."""
+
+TURN = 2.0 * np.pi
+
+
+def middles(walls: Any, xp: Any = np) -> Any:
+    """Return the centroids (batch,) of the areas inside closed curves (batch, n), first node not repeated.
+
+    Parameters
+    ----------
+    xp : the module, numpy or torch, that arrays are of; the same in the functions below.
+    """
+    off = walls - walls[:, :1]  # near the origin, against cancellation
+    ahead = xp.roll(off, -1, 1)
+    cross = (off.conj() * ahead).imag
+    return walls[:, 0] + (cross * (off + ahead)).sum(1) / (3.0 * cross.sum(1))
+
+
+def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
+    """Return the strips of closed O grids `z` (batch, m + 1, n), and which of them go round once."""
+    off = z - centres[:, None, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cut = xp.angle(off[:, :1, 1:] / off[:, :1, :-1])
+        first = xp.cumsum(xp.concatenate([xp.angle(off[:, :1, :1]), cut], 2), 2)
+        steps = xp.angle(off[:, 1:] / off[:, :-1])
+        angle = xp.cumsum(xp.concatenate([first, steps], 1), 1)
+        strip = -angle + 1j * xp.log(abs(off))
+    closed = abs(angle[:, -1] - angle[:, 0] + TURN) < 1e-6
+    once = closed.all(1) & xp.isfinite(strip).all(2).all(1)
+    return xp.concatenate([strip[:, :-1], strip[:, :1] + TURN], 1), once
+
+
+def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
+    """Return the strips of `walls` (batch, m + 1, n), the middles of bodies, and which are gone round once.
+
+    Parameters
+    ----------
+    wall : (batch, ni) closed walls of the bodies: middles are their centroids where `walls` go round them.
+    inside : a point inside a curve (m,), which is the middle elsewhere.
+    """
+    centres = middles(wall[:, :-1], xp)
+    strips, once = unrolled(walls, centres, xp)
+    if not once.all():
+        bodies = zip(centres, once, walls[:, :-1, 0], strict=True)
+        centres = xp.stack([centre if fits else inside(body) for centre, fits, body in bodies])
+        strips, once = unrolled(walls, centres, xp)
+    return strips, centres, once
+
+
+def even(strips: Any, n: int, xp: Any = np) -> Any:
+    """Return strips (batch, m + 1, n) with even steps between the first and the last row of `strips`."""
+    eta = xp.linspace(0.0, 1.0, n, dtype=strips.real.dtype, device=strips.device)
+    return strips[:, :, :1] * (1.0 - eta) + strips[:, :, -1:] * eta
+
+
+def factors(strips: Any, xp: Any = np) -> Any:
+    """Return what each strip (batch, m + 1, n) is multiplied by so that half a turn of it has area 1."""
+    heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
+    return 1.0 / xp.sqrt(0.5 * TURN * heights)
+
+
+def rolled(strips: Any, centres: Any = 0.0, xp: Any = np) -> Any:
+    """Return the O grids of `strips` (batch, m + 1, n) around `centres` (batch, 1, 1)."""
+    return xp.exp(-1j * strips) + centres

@@ -1,0 +1,130 @@
+"""Training strips: boundaries lifted, their Winslow solutions by Picard's iteration to convergence.
+
+The network's targets are coefficients of R / size^2 in a basis across the strip, the best one for the
+training set in the H1 sense (proper orthogonal decomposition), so that angles count and not only positions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.conformal.strip import across, harmonic, modes, picard, to_columns
+from meshonet.solvers.conformal.walls import walls
+from meshonet.solvers.neural.strip.encoding import encode
+
+HEIGHT = 4.0  # of a typical strip: brings derivatives across it to the scale of those along it
+MOST_STEPS = 30
+CONVERGED = 2e-6  # change of w in a step (radians)
+ACCEPTED = 1e-4  # a slower one is still kept below this: the rest is in the highest modes
+
+
+@dataclass(frozen=True)
+class Strips:
+    """n strips: `wall`, `far` (n, 2 MODES + 1), `residual` (n, 2 MODES + 1, LEVELS) = Winslow - harmonic."""
+
+    wall: Complexes
+    far: Complexes
+    residual: Complexes
+
+    def __len__(self) -> int:
+        return len(self.wall)
+
+    def __getitem__(self, rows: slice) -> Strips:
+        return Strips(self.wall[rows], self.far[rows], self.residual[rows])
+
+
+def solve_strips(
+    boundaries: Iterable[Boundary], progress: Callable[[int, int], None] | None = None
+) -> Strips:
+    """Return the strips of O boundaries; those without a lift or a converged solution are left out.
+
+    `progress` is called with how many are done and how many were left out.
+
+    Raises
+    ------
+    InputError
+        no boundary could be used, or one is not an O boundary.
+    """
+    rows: list[tuple[Complexes, Complexes, Complexes]] = []
+    left_out = 0
+    for boundary in boundaries:
+        if not boundary.periodic:
+            raise InputError(f"a {boundary.topology} boundary among the training shapes", "give O boundaries")
+        row = _solved(boundary)
+        if row is None:
+            left_out += 1
+        else:
+            rows.append(row)
+        if progress is not None:
+            progress(len(rows), left_out)
+    if not rows:
+        raise InputError("no boundary could be lifted and solved", "give airfoil O boundaries")
+    wall, far, residual = (np.array(column) for column in zip(*rows, strict=True))
+    return Strips(wall, far, residual)
+
+
+def _solved(boundary: Boundary) -> tuple[Complexes, Complexes, Complexes] | None:
+    try:
+        body = walls(boundary)
+    except InputError:
+        return None
+    a, b = modes(body.wall), modes(body.far)
+    base = harmonic(a, b, across().eta)
+    c, last = base, np.inf
+    for _ in range(MOST_STEPS):
+        with np.errstate(all="ignore"):
+            c, (change,) = picard(c, 1)
+        if not change < 1.0:
+            return None
+        last = change
+        if change < CONVERGED:
+            break
+    return (a, b, c - base) if last < ACCEPTED else None
+
+
+@dataclass(frozen=True)
+class Targets:
+    """Inputs (n, CHANNELS, COLUMNS) and (n, SCALARS); wanted answers (n, 2 Q, COLUMNS) of unit mean square.
+
+    An answer times `scale`, in the `basis` (Q, LEVELS - 2), is R / size^2.
+    """
+
+    channels: Floats
+    scalars: Floats
+    wanted: Floats
+    basis: Floats
+    scale: float
+
+
+def make_targets(strips: Strips, count: int) -> Targets:
+    """Return the inputs and answers of `strips` and their mirror images, with `count` basis functions."""
+    # the mirror image F(theta) -> conj F(-theta) turns mode c_k into conj c_k
+    wall, far, residual = (np.concatenate([c, c.conj()]) for c in (strips.wall, strips.far, strips.residual))
+    channels, scalars, size = encode(wall, far)
+    inner = np.array([to_columns(r.T).T[:, 1:-1] for r in residual])
+    inner /= (size**2)[:, None, None]
+    product = _h1_product()
+    rows = inner[:, ::4].reshape(-1, inner.shape[2])  # every fourth column tells as much
+    gram = rows.real.T @ rows.real + rows.imag.T @ rows.imag
+    root = np.linalg.cholesky(product)
+    _, vectors = np.linalg.eigh(root.T @ gram @ root)
+    basis = np.linalg.solve(root.T, vectors[:, ::-1][:, :count]).T
+    c = np.einsum("nxe,eq->nqx", inner, product @ basis.T)
+    wanted = np.concatenate([c.real, c.imag], axis=1)
+    scale = float(np.sqrt((wanted**2).sum(axis=1).mean()))
+    return Targets(channels, scalars, wanted / scale, basis, scale)
+
+
+def _h1_product() -> Floats:
+    """Return the (LEVELS - 2)^2 matrix of f g + f' g' across the strip, for f = g = 0 on its walls."""
+    grid = across()
+    quadrature = np.gradient(grid.eta)
+    derivative = grid.d1[:, 1:-1] / HEIGHT
+    product: Floats = np.diag(quadrature[1:-1]) + derivative.T @ (quadrature[:, None] * derivative)
+    return product

@@ -1,0 +1,66 @@
+"""What the strip network sees and what its answer means: the one copy that training and inference share.
+
+The answer is R = Winslow - harmonic, zero on both walls by construction. To leading order R is quadratic in
+how far the walls are from straight, so the network sees walls of unit size and its answer is scaled by
+size^2. Functions take and return arrays of numpy or torch: `xp` is the module.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from meshonet.geometry.arrays import array_like
+from meshonet.solvers.conformal.strip import decay, from_columns, to_columns, wavenumbers
+
+DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])
+"""eta at which the network sees the harmonic base."""
+
+CHANNELS = 4 * len(DEPTHS)
+SCALARS = 3
+
+SLOPE = 0.3
+"""Factor of slopes, which are larger than values by about their wave number."""
+
+
+def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
+    """Return the network's input for a batch of strips.
+
+    Parameters
+    ----------
+    wall, far : (batch, 2 MODES + 1) modes of F on the two walls.
+
+    Returns
+    -------
+    channels : (batch, CHANNELS, COLUMNS) the harmonic base and its slope along theta at `DEPTHS`, unit size.
+    scalars : (batch, SCALARS) log size, strip height, shear, each shifted and scaled to about one.
+    size : (batch,) root mean square of the walls' deviation from straight.
+    """
+    mean = (far - wall)[:, 0]
+    a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
+    size = xp.sqrt(xp.clip((abs(a) ** 2 + abs(b) ** 2).sum(1), 1e-24, None))
+    k = wavenumbers(wall, xp)
+    near, away = decay(k, mean.real[:, None, None], array_like(DEPTHS, wall, xp), xp)
+    h = (a[:, :, None] * near + b[:, :, None] * away).swapaxes(1, 2) / size[:, None, None]
+    value, slope = to_columns(h, xp), SLOPE * to_columns(1j * k * h, xp)
+    channels = xp.stack([value.real, value.imag, slope.real, slope.imag], 2)
+    scalars = xp.stack([xp.log(size) + 2.5, mean.real - 4.0, mean.imag], 1)
+    return channels.reshape(len(wall), CHANNELS, -1), scalars, size
+
+
+def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
+    """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's answers.
+
+    Parameters
+    ----------
+    coefficients : (batch, 2 Q, COLUMNS) real parts, then imaginary parts.
+    basis : (Q, LEVELS - 2) functions of the inner Chebyshev points.
+    scale : of the training targets.
+    size : (batch,) from `encode`.
+    """
+    q = len(basis)
+    c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)
+    inner = (c.swapaxes(1, 2) @ (basis + 0j)) * (scale * size**2)[:, None, None]
+    edge = xp.zeros_like(inner[..., :1])
+    return xp.concatenate([edge, inner, edge], -1)

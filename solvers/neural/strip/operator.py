@@ -1,0 +1,72 @@
+"""The airfoil operator: the conformal solver, started from what a network adds to the harmonic base."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.solvers.conformal import solve as conformal
+from meshonet.solvers.conformal.solve import Polish
+from meshonet.solvers.conformal.strip import LEVELS, smoothing
+from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
+from meshonet.solvers.neural.strip.network import Reals, StripNetwork, check_shapes
+from meshonet.solvers.solution import Solution
+
+
+@dataclass(frozen=True)
+class StripOperator(Operator):
+    """A strip network with its encoding; without weights the harmonic base alone.
+
+    Parameters
+    ----------
+    weights : of the network, float64.
+    basis, scale : (Q, LEVELS - 2) functions of the network's targets, and their size.
+    """
+
+    weights: Mapping[str, Reals] = field(default_factory=dict)
+    basis: Floats = field(default_factory=lambda: np.zeros((0, LEVELS - 2)))
+    scale: float = 1.0
+    network: StripNetwork | None = None
+
+    @classmethod
+    def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
+        """Return the operator of a file's header and arrays."""
+        weights = {key: array.astype(np.float64) for key, array in arrays.items()}
+        basis, scale = weights.pop("basis"), float(header["scale"])
+        check_shapes(weights)
+        outputs, inputs = weights["project.weight"].shape[0], weights["lift.weight"].shape[1]
+        fits = basis.shape == (outputs // 2, LEVELS - 2) and inputs == CHANNELS + SCALARS
+        if not fits or not np.isfinite(scale):
+            raise ValueError("basis, scale or inputs")
+        return cls(name, "o", header, weights, basis, scale, StripNetwork(weights))
+
+    def residual(self, wall: Complexes, far: Complexes, hand: NDArray[np.intp] | None = None) -> Complexes:
+        """Return modes (batch, 2 MODES + 1, LEVELS) of Winslow - harmonic for modes (batch, 2 MODES + 1).
+
+        `hand` (batch,) is that of `meshonet.geometry.polygon.mirror.handedness`: of a strip and its mirror
+        image, whose modes are conjugate, the network sees the same one, and the answer for a symmetric strip
+        is made symmetric. Modes that Picard's steps would not correct are left out.
+        """
+        if self.network is None:
+            return np.zeros((*wall.shape, LEVELS), complex)
+        flip = np.zeros((len(wall), 1), bool) if hand is None else hand[:, None] < 0
+        channels, scalars, size = encode(np.where(flip, wall.conj(), wall), np.where(flip, far.conj(), far))
+        coefficients = self.network(channels, scalars).astype(np.float64)
+        answer: Complexes = decode(coefficients, self.basis, self.scale, size)
+        answer.imag[flip[:, 0]] *= -1.0
+        if hand is not None:
+            answer.imag[hand == 0] = 0.0
+        return answer * smoothing()[:, None]
+
+    def solve(self, boundaries: Sequence[Boundary], polish: Polish = "auto", **_: Any) -> list[Solution]:
+        """Return a grid inside each O boundary, whose nodes it has bitwise."""
+        self.check(boundaries)
+        correction = self.residual if self.network else None
+        return conformal.solve(boundaries, polish, correction, self.name)
