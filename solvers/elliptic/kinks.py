@@ -37,7 +37,7 @@ def sweep_kinks(
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]
     for axis, sides in ((0, ("south", "north")), (1, ("west", "east"))):
-        if boundary.topology == "o" and axis == 1:
+        if boundary.periodic and axis == 1:
             continue
         n, lines = nodes.shape[axis], nodes.shape[1 - axis]
         wide = REACH * steps[axis], REACH * steps[1 - axis]

@@ -138,7 +138,7 @@ def _attempt(
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
-    levels = Multigrid(nodes, edges, boundary.topology == "o", settings, controls)
+    levels = Multigrid(nodes, edges, boundary.periodic, settings, controls)
     if initial is None:
         start = levels.nested_iteration()
     else:

@@ -125,9 +125,9 @@ def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: flo
         raise InputError(problem, remedy, parameter="method")
     if not 30.0 <= angle <= 150.0:
         raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150", parameter="wall_angle")
-    walls = ("south", "north") if boundary.topology == "quad" else ("south",)
+    walls = ("south", "north") if not boundary.around_body else ("south",)
     for side in heights or ():
-        if boundary.topology != "quad" and side != "south":
+        if boundary.around_body and side != "south":
             problem = f"{side} in topology {boundary.topology} cannot be controlled"
             raise InputError(problem, "control its wall, south")
     return heights or dict.fromkeys(walls, 0.0)
@@ -138,7 +138,7 @@ def _edges(
 ) -> list[ControlledEdge]:
     """Return the edges under control, with heights that sources can hold beside those of `nodes`."""
     edges = []
-    closed = boundary.topology == "o"
+    closed = boundary.periodic
     for side, height in heights.items():
         count = boundary.nj if side in ("south", "north") else boundary.ni
         free = float(np.median(first_heights(lines_off(nodes, side))))
@@ -160,7 +160,7 @@ def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], ro
     """
     four = boundary.south, boundary.north, boundary.west, boundary.east
     work = planar_nodes(boundary.ni, boundary.nj)
-    levels = Multigrid(work, four, boundary.topology == "o", controls=_sum(edges, boundary))
+    levels = Multigrid(work, four, boundary.periodic, controls=_sum(edges, boundary))
     work[...] = nodes
     for _ in range(FIRST):
         levels.cycle()

@@ -22,7 +22,7 @@ def winslow_start(boundary: Boundary) -> Floats:
 
     Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
     """
-    if boundary.topology == "quad" and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
+    if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes
         relax(nodes, SWEEPS)
         if np.isfinite(nodes).all():

@@ -106,16 +106,16 @@ def solve(
     weights = weights or WEIGHTS[boundary.topology]
     still = tol if tol is not None else STILL
     if initial is None:
-        full = tol is not None or boundary.topology != "quad"
+        full = tol is not None or boundary.around_body
         limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
-        few = FEW_AROUND if tol is None and boundary.topology == "o" else None
+        few = FEW_AROUND if tol is None and boundary.periodic else None
         found = _nested(boundary, weights, still, limits, few=few)
-        if not found[-1] and boundary.topology == "quad":  # the other minimum of the coarsest level
+        if not found[-1] and not boundary.around_body:  # the other minimum of the coarsest level
             found = _nested(boundary, weights, still, limits, np.inf)
         nodes, weights, iterations, valid = found
     else:
         nodes = initial_nodes(boundary, initial)
-        iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
+        iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.periodic)
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
     grid = boundary.grid(nodes, {**facts, "cycles": iterations})
@@ -137,8 +137,8 @@ def _nested(
     the same of values that are not `HARD`. A folded start that unfolds as a whole is not repaired up to the
     value `easy`.
     """
-    periodic = boundary.topology == "o"
-    coarsest = (COARSEST if boundary.topology == "quad" else COARSEST_AROUND), COARSEST
+    periodic = boundary.periodic
+    coarsest = (COARSEST if not boundary.around_body else COARSEST_AROUND), COARSEST
     levels = [thinned(boundary, boundary.ni, boundary.nj) if boundary.topology == "c" else boundary]
     while any(n > least for n, least in zip((levels[-1].ni, levels[-1].nj), coarsest, strict=True)):
         now = levels[-1].ni, levels[-1].nj
@@ -179,7 +179,7 @@ def _coarsest(
     """
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in angles(start)]
-    periodic = boundary.topology == "o"
+    periodic = boundary.periodic
     nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy, first)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):

@@ -72,7 +72,7 @@ class Heights:
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
     """Raise InputError when `boundary` cannot have the heights: wrong edges, cells too few or too high."""
-    if boundary.topology != "quad" and (heights.north or heights.west or heights.east):
+    if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",
             "give that of its wall, south",

@@ -75,7 +75,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     growth = 1.0
     if heights.south or heights.north:
         nodes, growth = _along_eta(nodes, boundary, heights)
-    _make_exact(nodes, grid.topology == "o", heights)
+    _make_exact(nodes, grid.periodic, heights)
     edges = replace(
         boundary,
         south=nodes[:, 0],
@@ -119,7 +119,7 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     planes = planar[..., 0], planar[..., 1], out[..., 0], out[..., 1]
     ratio = layer_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
-    if boundary.topology == "o":
+    if boundary.periodic:
         out[-1] = out[0]
     else:
         for i, edge in ((0, boundary.west), (-1, boundary.east)):

@@ -58,7 +58,7 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     InputError
         a topology other than ``quad``.
     """
-    if boundary.topology != "quad":
+    if boundary.around_body:
         raise InputError(f"walls of topology {boundary.topology} cannot slide", "slide those of channels")
     curves = Curve(boundary.south), Curve(boundary.north)
     knots = curves[0].knots, curves[1].knots
