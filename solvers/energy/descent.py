@@ -18,7 +18,7 @@ from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
 from meshonet.solvers.energy.local_descent import REACH, descend_windows, unfold
 from meshonet.solvers.energy.preconditioner import minimiser
 from meshonet.solvers.energy.repair import repair
-from meshonet.solvers.progress import heard, tell
+from meshonet.solvers.progress import cycle_ended, listened_to
 
 HARD = 1.1
 """Value of the functional around a body above which descents go on."""
@@ -100,14 +100,14 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 def teller(nodes: Floats) -> Callable[[int, float, float], None] | None:
     """Return what tells listeners of iterations that move `nodes` (ni, nj, 2), None without listeners."""
-    if not heard():
+    if not listened_to():
         return None
     first = 0.0
 
     def told(number: int, value: float, slope: float) -> None:
         nonlocal first
         first = slope if number == 0 else first
-        tell("variational", nodes, number, slope / first if first else 0.0, functional=value)
+        cycle_ended("variational", nodes, number, slope / first if first else 0.0, functional=value)
 
     return told
 
