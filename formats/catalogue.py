@@ -20,12 +20,16 @@ def markdown() -> str:
 
 
 def plain() -> str:
-    """Return the table in columns, for a terminal."""
-    lines = [_HEAD, *(_row(record) for record in formats())]
+    """Return the table in columns, for a terminal; long lists of endings are cut short."""
+    lines = [_HEAD, *(tuple(map(_short, _row(record)[:2])) + _row(record)[2:] for record in formats())]
     widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
     return "\n".join(
         "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines
     )
+
+
+def _short(words: str, most: int = 40) -> str:
+    return words if len(words) <= most else words[: words.rindex(" ", 0, most - 4)] + " ..."
 
 
 def _row(record: Format) -> tuple[str, ...]:
