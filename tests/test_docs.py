@@ -45,6 +45,10 @@ def test_the_models_page_is_current() -> None:
     assert (ROOT / "docs" / "models.md").read_text() == pages().models_page(), "run make docs"  # type: ignore[attr-defined]
 
 
+def test_the_formats_page_is_current() -> None:
+    assert (ROOT / "docs" / "formats.md").read_text() == pages().formats_page(), "run make docs"  # type: ignore[attr-defined]
+
+
 def test_curves_have_a_row_for_every_epoch_of_their_model() -> None:
     found = sorted((ROOT / "docs" / "curves").glob("*.csv"))
     assert found
