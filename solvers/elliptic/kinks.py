@@ -10,7 +10,7 @@ from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import angles
-from meshonet.solvers.elliptic.relax import relax
+from meshonet.solvers.elliptic.multigrid import relax
 
 REACH = 3.0
 """Coarse cells to each side of a kink, and inwards, that are relaxed at full resolution.

@@ -8,7 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.elliptic.relax import relax
+from meshonet.solvers.elliptic.multigrid import relax
 
 RELAXED = 400
 """Cells up to which line relaxation alone is the quickest way to Winslow's solution."""

@@ -96,16 +96,9 @@ def _by_best(topology: Topology, boundaries: Sequence[Boundary]) -> list[Solutio
     """Return solutions by the method that measures best for a topology; it needs no network."""
     if topology == "o":
         return conformal.solve(boundaries, substitute=_by_bodies)
-    from meshonet.solvers.energy.variational import solve
-    from meshonet.solvers.pipeline.select import solve_automatic
+    from meshonet.solvers.pipeline.select import without_network
 
-    if topology == "quad":
-        return [solve_automatic(boundary, solve, "variational") for boundary in boundaries]
-    solutions = [solve_automatic(boundary, solve, "auto") for boundary in boundaries]
-    note = "no shipped model makes c grids: this one is {}"
-    return [
-        replace(solution, notes=(note.format(solution.method), *solution.notes)) for solution in solutions
-    ]
+    return without_network(topology).solve(boundaries)
 
 
 def _by_bodies(boundary: Boundary, why: str) -> Solution | None:
