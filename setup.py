@@ -32,8 +32,10 @@ NUMERICS = (
         "-ffp-contract=fast",
     ]
 )
-OTHERWISE: dict[str, list[str]] = {}  # what a kernel is compiled with after these
-GLUE = [] if WINDOWS else ["-O1", "-g0"]
+OWN_FLAGS = {
+    "conformal/strip_rows.c": ["-fno-associative-math"],  # order matters to argument reduction
+}
+GLUE = [] if WINDOWS else ["-O0", "-g0"]  # checks and calls: nothing to gain
 LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up
 
 
@@ -47,11 +49,12 @@ class BuildKernels(build_ext):
         super().build_extension(ext)
 
     def _compile(self, source: str) -> list[str]:
+        name = Path(source).relative_to(ROOM).as_posix()
         return self.compiler.compile(
             [source],
             output_dir=self.build_temp,
             include_dirs=FOLDERS,
-            extra_postargs=NUMERICS + OTHERWISE.get(source, []),
+            extra_postargs=NUMERICS + ([] if WINDOWS else OWN_FLAGS.get(name, [])),
             depends=HEADERS,
         )
 

@@ -51,13 +51,14 @@ has one plane block:
 | attributes | `format` (`meshonet-boundary` or `meshonet-grid`), `version` 1, `topology` (`quad`, `o`, `c`) |
 | `south`, `north`, `west`, `east` | (n, ni, 2) and (n, nj, 2), the corners shared |
 | `nodes` | (n, ni, nj, 2), of grids |
-| `names`, `split`, `parts`, `provenance` | (n,) texts, where there are any; `parts` JSON lists of `[name, side, start, stop]` |
+| `names`, `split`, `provenance` | (n,) texts, where there are any; `provenance` is JSON |
+| `parts` | (n,) texts, JSON lists of `[name, side, start, stop]` |
 | `parameters`, `sensors` | (n, p) with the attribute `names`; (n, m, 2) |
 
 Version 2, of grids of several blocks or of blocks in space, has `blocks/0`, `blocks/1` ... in place of edges,
-`nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of `parts` go on
-with `block, across, kind`: `across` is the range along the second direction of a side, null for all of it. The
-attribute `connections` is a JSON list of what all samples share: `[block, side, range, donor, donor_side,
+`nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of `parts` go
+on with `block, across, kind`: `across` is the range along the second direction of a side, null for all of it.
+The attribute `connections` is a JSON list of what all samples share: `[block, side, range, donor, donor_side,
 donor_range, orientation, transform]`. A range has the first and last node along each direction of the side;
 `orientation` the donor's direction that runs along each one, counted from 1, negative when reversed;
 `transform` is null, or `{"shift": [...], "turn": [[...]]}` between periodic sides.
@@ -80,18 +81,18 @@ _HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it
 
 def rows() -> list[dict[str, str]]:
     """Return a row for each format, by the table's headings."""
-    return [dict(zip(_HEAD, _row(found), strict=True)) for found in formats()]
+    return [dict(zip(_HEAD, _row(record), strict=True)) for record in formats()]
 
 
 def markdown() -> str:
     """Return the table in Markdown."""
-    lines = [_HEAD, ("---",) * len(_HEAD), *(_row(found) for found in formats())]
+    lines = [_HEAD, ("---",) * len(_HEAD), *(_row(record) for record in formats())]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def plain() -> str:
     """Return the table in columns, for a terminal."""
-    lines = [_HEAD, *(_row(found) for found in formats())]
+    lines = [_HEAD, *(_row(record) for record in formats())]
     widths = [max(len(line[k]) for line in lines) for k in range(len(_HEAD))]
     return "\n".join(
         "  ".join(f"{word:<{n}}" for word, n in zip(line, widths, strict=True)).rstrip() for line in lines
@@ -103,17 +104,17 @@ def page() -> str:
     return f"{_PAGE}{markdown()}\n{_REST}"
 
 
-def _row(found: Format) -> tuple[str, ...]:
+def _row(record: Format) -> tuple[str, ...]:
     return (
-        found.name,
-        " ".join(found.suffixes),
-        _what(found.read_grids is not None, found.read_shapes is not None),
-        _what(found.write_grids is not None, found.write_boundaries is not None),
-        "yes" if found.names_patches else "",
-        "yes" if found.write_extruded is not None else "",
-        "yes" if found.many else "",
-        found.description,
-        " ".join("/".join(row) for row in found.choices),
+        record.name,
+        " ".join(record.suffixes),
+        _what(record.read_grids is not None, record.read_shapes is not None),
+        _what(record.write_grids is not None, record.write_boundaries is not None),
+        "yes" if record.names_patches else "",
+        "yes" if record.write_extruded is not None else "",
+        "yes" if record.many else "",
+        record.description,
+        " ".join("/".join(row) for row in record.choices),
     )
 
 

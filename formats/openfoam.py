@@ -83,11 +83,11 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
         _write_list(folder / "points", "vectorField", "(%e %e %e)", points)
         _write_faces(folder, faces, len(points))
         _write_boundary(folder / "boundary", faces)
-    for name, told in _DICTIONARIES.items():
+    for name, entries in _DICTIONARIES.items():
         dictionary = path.parent / "system" / name
         if not dictionary.exists():
             with whole_file(str(dictionary)) as part:
-                part.write_text(_head("dictionary", name, place="system") + told, encoding="ascii")
+                part.write_text(_head("dictionary", name, place="system") + entries, encoding="ascii")
     path.write_bytes(b"")
 
 

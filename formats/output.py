@@ -56,15 +56,15 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
     ['a.txt']
     """
     name = printable(destination)
-    with _told(name):
+    with _naming(name):
         stream = destination == "-" or _is_stream(Path(destination))
         if stream and beside:
             raise InputError("is a stream, and a folder is to be written", "name a file", source=name)
         part = _part_in_tmp() if stream else _part_beside(Path(destination), name, make_folder)
     try:
-        with _told(name, _FULL):
+        with _naming(name, _FULL):
             yield part
-        with _told(name):
+        with _naming(name):
             if stream:
                 _copy_out(part, destination)
             else:
@@ -96,13 +96,13 @@ def whole_folder(target: Path) -> Iterator[Path]:
         _remove(part)
 
 
-def _swapped(one: Path, other: Path) -> bool:
+def _swapped(first: Path, second: Path) -> bool:
     """Exchange two paths in one step; say whether the system could."""
     import ctypes
 
     here, exchange = -100, 2  # AT_FDCWD, RENAME_EXCHANGE of linux/fs.h
     rename = getattr(ctypes.CDLL(None), "renameat2", None)
-    return rename is not None and rename(here, os.fsencode(one), here, os.fsencode(other), exchange) == 0
+    return rename is not None and rename(here, os.fsencode(first), here, os.fsencode(second), exchange) == 0
 
 
 def _remove(path: Path) -> None:
@@ -116,7 +116,7 @@ def _remove(path: Path) -> None:
 
 
 @contextlib.contextmanager
-def _told(name: str, only: set[int] | None = None) -> Iterator[None]:
+def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
     """Turn an operating-system error (one of `only`) into one that names the destination."""
     try:
         yield

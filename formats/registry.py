@@ -92,8 +92,8 @@ def format_named(name: str) -> Format:
     family, _, own = word.partition("-")
     if own and family in TABLE:  # as in plot3d-binary, which was a format of its own that read any other too
         record = _record(family)
-        found = record.with_options(f"{own}:{options}")
-        return found if options else replace(found, read_grids=record.read_grids)
+        variant = record.with_options(f"{own}:{options}")
+        return variant if options else replace(variant, read_grids=record.read_grids)
     raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
 
 
@@ -116,9 +116,9 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
     if len(claimed) == 1:
         return claimed[0]
     head = source.head()
-    for found in claimed or formats():
-        if found.sniff is not None and found.sniff(head):
-            return found
+    for record in claimed or formats():
+        if record.sniff is not None and record.sniff(head):
+            return record
     if claimed:
         return claimed[-1]
     what = f"ending {source.suffix!r} is" if source.suffix else "content is"
@@ -155,7 +155,7 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         if getattr(record, f"write_{kind}") is not None:
             plain = ":" not in record.name
             return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
-    able = ", ".join(found.name for found in formats() if getattr(found, f"write_{kind}") is not None)
+    able = ", ".join(record.name for record in formats() if getattr(record, f"write_{kind}") is not None)
     raise InputError(
         f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
     )
@@ -179,13 +179,13 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
 
         return iter([naca(text[len(_DESIGNATION) :])])
     source = open_source(text)
-    found = _selectable(source, format_of(source, fmt))
-    if found.read_shapes is not None:
-        return _Blamed(source, partial(found.read_shapes, source))
-    if found.read_grids is not None:
-        read = found.read_grids
-        return _Blamed(source, lambda: map(boundary_of, read(source)))
-    raise _unreadable(found, source)
+    record = _selectable(source, format_of(source, fmt))
+    if record.read_shapes is not None:
+        return _Records(source, partial(record.read_shapes, source))
+    if record.read_grids is not None:
+        read = record.read_grids
+        return _Records(source, lambda: map(boundary_of, read(source)))
+    raise _unreadable(record, source)
 
 
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
@@ -203,23 +203,23 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
             source=text,
         )
     source = open_source(text)
-    found = _selectable(source, format_of(source, fmt))
-    if found.read_grids is not None:
-        return _Blamed(source, partial(found.read_grids, source))
-    if found.read_shapes is not None:
+    record = _selectable(source, format_of(source, fmt))
+    if record.read_grids is not None:
+        return _Records(source, partial(record.read_grids, source))
+    if record.read_shapes is not None:
         raise InputError(
             "holds a boundary, not a grid",
             f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
             source=source.name,
         )
-    raise _unreadable(found, source)
+    raise _unreadable(record, source)
 
 
 def _is_designation(text: str) -> bool:
     return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
 
 
-class _Blamed(Iterator[T]):
+class _Records(Iterator[T]):
     """The records of a source: names it in errors that do not, and turns the system's errors into ours."""
 
     def __init__(self, source: Source, records: Callable[[], Iterator[T]]) -> None:
@@ -237,19 +237,19 @@ class _Blamed(Iterator[T]):
         except MeshonetError:
             raise
         except (OSError, MemoryError) as error:
-            told = getattr(error, "strerror", None) or str(error) or type(error).__name__
-            problem = f"cannot be read ({told})"
+            reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
+            problem = f"cannot be read ({reason})"
             raise InputError(problem, "check the file", source=self._source.name) from error
 
 
-def _selectable(source: Source, found: Format) -> Format:
-    if source.split and found.name != "hdf5":
+def _selectable(source: Source, record: Format) -> Format:
+    if source.split and record.name != "hdf5":
         raise InputError(
-            f"{found.name} files do not say which samples are to {source.split}",
+            f"{record.name} files do not say which samples are to {source.split}",
             f"leave #{source.split} out",
             source=source.name,
         )
-    return found
+    return record
 
 
 def _record(name: str) -> Format:
@@ -266,6 +266,6 @@ def _known() -> str:
     return "known endings: " + " ".join(sorted({suffix for row in TABLE.values() for suffix in row.suffixes}))
 
 
-def _unreadable(found: Format, source: Source) -> InputError:
-    problem = f"{found.name} files can only be written"
+def _unreadable(record: Format, source: Source) -> InputError:
+    problem = f"{record.name} files can only be written"
     return InputError(problem, "give a grid or a boundary in another format", source=source.name)

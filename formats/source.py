@@ -89,8 +89,8 @@ def open_source(text: str) -> Source:
     except PermissionError:
         raise InputError("may not be read", "check its permissions", source=printable(text)) from None
     except (OSError, ValueError) as error:
-        told = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise InputError(f"cannot be opened ({told})", "check the path", source=printable(text)) from None
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError(f"cannot be opened ({reason})", "check the path", source=printable(text)) from None
     if source.size == 0:
         raise InputError("is empty", "give a file with a boundary or a grid in it", source=source.name)
     return source
@@ -118,10 +118,10 @@ def _missing(text: str) -> InputError:
     name, mark, kept = text.rpartition("#")
     if not (mark and Path(name).is_file()):
         return InputError("no such file", "check the path", source=printable(text))
-    only = (
+    problem = (
         f"no such file, and of {printable(name)} there is only {' or '.join(f'#{part}' for part in SPLITS)}"
     )
-    return InputError(only, f"leave #{printable(kept)} out", source=printable(text))
+    return InputError(problem, f"leave #{printable(kept)} out", source=printable(text))
 
 
 def _opened(text: str) -> Source:

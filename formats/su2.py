@@ -102,7 +102,7 @@ class _Reader:
                 continue
             key, equals, value = word.partition(b"=")
             if not equals:
-                raise self._wrong(f"{_told(word)!r} is no KEYWORD= VALUE", "give an SU2 mesh")
+                raise self._wrong(f"{_shown(word)!r} is no KEYWORD= VALUE", "give an SU2 mesh")
             self._take(key.strip().upper(), value.strip())
         if self._points is None:
             raise InputError("has no points", _CUT)
@@ -111,9 +111,9 @@ class _Reader:
 
     def _take(self, key: bytes, value: bytes) -> None:
         if key == b"NDIME" and self._count(value) != 2:
-            raise self._wrong(f"is a mesh of {_told(value)} dimensions", "give one of 2")
+            raise self._wrong(f"is a mesh of {_shown(value)} dimensions", "give one of 2")
         if key == b"NZONE" and self._count(value) != 1:
-            raise self._wrong(f"has {_told(value)} zones", "give a mesh of one zone")
+            raise self._wrong(f"has {_shown(value)} zones", "give a mesh of one zone")
         if key == b"NELEM":
             self._cells = self._elements(self._count(value))
         elif key == b"NPOIN":
@@ -140,8 +140,10 @@ class _Reader:
         if not kinds <= set(_NODES):
             if b"" in kinds:
                 raise self._wrong(f"an empty line among the next {count}, which should be cells", _CUT)
-            told = ", ".join(_told(kind) for kind in sorted(kinds - set(_NODES)))
-            raise self._wrong(f"has cells of kind {told}"[:80], "a plane mesh has lines, triangles and quads")
+            names = ", ".join(_shown(kind) for kind in sorted(kinds - set(_NODES)))
+            raise self._wrong(
+                f"has cells of kind {names}"[:80], "a plane mesh has lines, triangles and quads"
+            )
         if len(kinds) == 1:
             nodes = _NODES[first[0]]
             return {nodes: self._indices(self._rows(count), nodes)}
@@ -180,14 +182,14 @@ class _Reader:
 
     def _count(self, word: bytes) -> int:
         if not word.isdigit() or len(word) > 12:
-            raise self._wrong(f"{_told(word)!r} is no count", "write a whole number")
+            raise self._wrong(f"{_shown(word)!r} is no count", "write a whole number")
         return int(word)
 
     def _wrong(self, problem: str, remedy: str) -> InputError:
         return InputError(problem, remedy, place=f"line {self._at}")
 
 
-def _told(word: bytes) -> str:
+def _shown(word: bytes) -> str:
     return printable(word[:40].decode("utf-8", "replace"))
 
 

@@ -144,11 +144,6 @@ def convolve(
     x: Reals, w: Reals, bias: Reals, size: int, stride: int, add: Reals | None, out: Reals,
     later: LayerProgram | None = None,
 ) -> None: ...  # fmt: skip
-def winograd_scratch(inputs: int, wide: int, line: int) -> int: ...
-def winograd(
-    x: Reals, w: Reals, bias: Reals, add: Reals | None, scratch: Reals, out: Reals,
-    later: LayerProgram | None = None,
-) -> None: ...  # fmt: skip
 def activate(x: Reals, out: Reals, around: bool = False, later: LayerProgram | None = None) -> None: ...
 def upsample(
     x: Reals, add: Reals, out: Reals, around: bool = False, later: LayerProgram | None = None

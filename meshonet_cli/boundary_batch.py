@@ -78,11 +78,11 @@ def write_boundaries(
         raise InputError("only HDF5 keeps sensors", "write an .h5 file", parameter="sensors")
     files = [source for source in sources if isinstance(source, str)]
     prepare(files, destination, session)
-    found: Iterator[Item[Any]] = items(files, lambda source: read_shapes(source, from_format), session)
+    members: Iterator[Item[Any]] = items(files, lambda source: read_shapes(source, from_format), session)
     if not files:
-        found = _drawn([source for source in sources if isinstance(source, Draw)], session)
+        members = _drawn([source for source in sources if isinstance(source, Draw)], session)
     deliver(
-        found, one_by_one(sampler), destination, session, session.written,
+        members, one_by_one(sampler), destination, session, session.written,
         skip_existing=skip_existing, jobs=jobs,
     )  # fmt: skip
     return session.finish()

@@ -122,21 +122,21 @@ def write_grids(
     prepare(sources, destination, session)
     check_file(history)
     gates = parse_gates(checks.fail_on)
-    found = items(sources, lambda source: read_shapes(source, files.from_format), session)
+    members = items(sources, lambda source: read_shapes(source, files.from_format), session)
     cycles: list[tuple[str, Iterable[Row]]] = []
 
-    def tell(report: Report, path: str) -> None:
+    def written(report: Report, path: str) -> None:
         report.finished(path)
         label, folded = report.item.label, report.quality.folded
         cycles.append((label, report.history))
         if folded:
             session.warn(f"{label}: {folded} folded cells are in {path}")
-        session.tell(report)
+        session.report(report)
         session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
 
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
         deliver(
-            found, GridMaker(request), destination, session, tell,
+            members, GridMaker(request), destination, session, written,
             skip_existing=files.skip_existing, together=_together(request), jobs=jobs,
         )  # fmt: skip
     if history and cycles:

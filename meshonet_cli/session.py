@@ -102,7 +102,7 @@ class Session:
         """Print what the user should know even when quiet."""
         self._write(f"warning: {text}")
 
-    def tell(self, report: Brief) -> None:
+    def report(self, report: Brief) -> None:
         """Report a member that is done: as JSON, in full when it is alone, on one line in a batch."""
         self.done += 1
         if self.as_json:
@@ -113,7 +113,7 @@ class Session:
     def written(self, report: Written, path: str) -> None:
         """Report a member whose result is in the file `path`."""
         report.finished(path)
-        self.tell(report)
+        self.report(report)
 
     def show(self, report: Printed) -> None:
         """Print a report that is itself the result: on standard output, in full, even when quiet."""

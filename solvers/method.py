@@ -165,7 +165,7 @@ METHODS: Mapping[str, Row] = MappingProxyType(
         ),
         "hyperbolic": Row("meshonet.solvers.hyperbolic.march:hyperbolic", "marches from the wall"),
         "conformal": Row(
-            "meshonet.solvers.conformal.method:Conformal",
+            "meshonet.solvers.conformal.solve:Conformal",
             "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
         ),
         "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),

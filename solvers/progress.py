@@ -56,12 +56,12 @@ def listening(listener: Listener) -> Iterator[None]:
         _listeners.reset(token)
 
 
-def heard() -> bool:
+def listened_to() -> bool:
     """Return whether anybody listens."""
     return bool(_listeners.get())
 
 
-def tell(
+def cycle_ended(
     method: str,
     nodes: Floats,
     number: int,

@@ -61,9 +61,9 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 
     for name in node:
         if isinstance(node.get(name, getlink=True), h5py.HardLink):
-            found = node.get(name)
-            if isinstance(found, h5py.Group) and _attribute(found, "label") == label:
-                yield str(name), found
+            below = node.get(name)
+            if isinstance(below, h5py.Group) and _attribute(below, "label") == label:
+                yield str(name), below
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
@@ -81,11 +81,11 @@ def array(node: Node, ndim: int) -> NDArray[Any]:
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:
         raise InputError("node has no data of its own", "write the file again", place=place)
     if data.dtype.kind not in "fiu" or data.ndim != ndim:
-        told = f"node holds {data.dtype} with {data.ndim} axes"
-        raise InputError(told, f"it must be numbers with {ndim}", place=place)
+        problem = f"node holds {data.dtype} with {data.ndim} axes"
+        raise InputError(problem, f"it must be numbers with {ndim}", place=place)
     if data.size * data.dtype.itemsize > _DENSEST * max(data.id.get_storage_size(), 1):
-        told = f"node claims shape {data.shape} but holds next to nothing"
-        raise InputError(told, "write the file again", place=place)
+        problem = f"node claims shape {data.shape} but holds next to nothing"
+        raise InputError(problem, "write the file again", place=place)
     return np.asarray(data[()])
 
 

@@ -38,8 +38,8 @@ def read_grids(source: Source) -> Iterator[Grid]:
         found = [item for _, base in children(file, "CGNSBase_t") for item in children(base, "Zone_t")]
         structured = [(name, zone) for name, zone in found if _kind(zone) == "Structured"]
         if not structured:
-            told = "its zones are unstructured" if found else "holds no CGNS zone"
-            raise InputError(told, "give a CGNS file with a structured zone")
+            problem = "its zones are unstructured" if found else "holds no CGNS zone"
+            raise InputError(problem, "give a CGNS file with a structured zone")
         for name, zone in structured:
             try:
                 yield _grid(zone, printable(name) if len(structured) > 1 else source.stem)
@@ -74,8 +74,8 @@ def _coordinates(zone: Node) -> list[Floats]:
             continue
         values = array(arrays[label], len(dims)).T
         if values.shape != dims:
-            told = f"{label} has {values.shape} values and the zone {dims} nodes"
-            raise InputError(told, "write the zone without rind planes")
+            problem = f"{label} has {values.shape} values and the zone {dims} nodes"
+            raise InputError(problem, "write the zone without rind planes")
         found.append(np.asarray(values, np.float64).reshape((*dims, 1)[:3]))
     if len(found) < 2:
         raise InputError("has no CoordinateX and CoordinateY", "write Cartesian coordinates")

@@ -54,12 +54,12 @@ def _format(data: bytes) -> tuple[str, bool, str]:
     words = section[:100].split(None, 3)
     version = words[0].decode("latin-1") if words else ""
     if version not in _VERSIONS or len(words) < 3:
-        told = printable(version)[:20]
-        raise InputError(f"is a Gmsh mesh of version {told!r}", "save it as version 4.1 or 2.2")
+        shown = printable(version)[:20]
+        raise InputError(f"is a Gmsh mesh of version {shown!r}", "save it as version 4.1 or 2.2")
     if words[1] == b"0":
         return version, False, "<"
-    one = section.find(b"\n") + 1
-    order = {b"\1\0\0\0": "<", b"\0\0\0\1": ">"}.get(section[one : one + 4])
+    mark = section.find(b"\n") + 1
+    order = {b"\1\0\0\0": "<", b"\0\0\0\1": ">"}.get(section[mark : mark + 4])
     if words[1] != b"1" or words[2] != b"8" or order is None:
         raise InputError("is neither text nor binary with words of 8 bytes", _AGAIN, place="$MeshFormat")
     return version, True, order

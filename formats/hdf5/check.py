@@ -1,9 +1,10 @@
 """An HDF5 dataset opened and checked: layout, shapes, types and sizes, before any memory is taken.
 
-Of texts of variable length, which h5py makes by default, the library (1.14 and before) trusts two numbers of a
-damaged file: the sizes in a heap of texts, where a free object of size 0 keeps it for ever, out of reach of any
-signal, and a text's length, of which it takes up to 4 GiB before it looks for the text. Both are looked at
-first. Layout: HDF5 File Format Specification, III.E, https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
+Of texts of variable length, which h5py makes by default, the library (1.14 and before) trusts two numbers of
+a damaged file: the sizes in a heap of texts, where a free object of size 0 keeps it for ever, out of reach of
+any signal, and a text's length, of which it takes up to 4 GiB before it looks for the text. Both are looked
+at first. HDF5 File Format Specification, III.E:
+https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 """
 
 from __future__ import annotations
@@ -180,6 +181,8 @@ class Checked:
             raise
         except (ValueError, RecursionError) as error:
             raise InputError(str(error), "write the dataset again", place=f"sample {k}") from error
+        except Exception as error:  # whatever h5py makes of damaged data
+            raise _damaged(error, f"sample {k}") from error
 
     def _dataset(self, name: str) -> h5py.Dataset:
         import h5py
@@ -246,8 +249,8 @@ def opened(source: Source) -> Iterator[h5py.File]:
     _check_heaps(source)
     with contextlib.ExitStack() as stack:
         try:
-            given = source.path or stack.enter_context(source.open())
-            file = stack.enter_context(h5py.File(given, "r", locking="best-effort"))
+            target = source.path or stack.enter_context(source.open())
+            file = stack.enter_context(h5py.File(target, "r", locking="best-effort"))
         except Exception as error:  # a damaged file makes h5py raise almost anything
             raise InputError(
                 f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"
@@ -257,7 +260,11 @@ def opened(source: Source) -> Iterator[h5py.File]:
         except InputError:
             raise
         except Exception as error:
-            raise InputError(f"HDF5 data is damaged ({_short(error)})", "write the file again") from error
+            raise _damaged(error) from error
+
+
+def _damaged(error: Exception, place: str = "") -> InputError:
+    return InputError(f"HDF5 data is damaged ({_short(error)})", "write the file again", place=place)
 
 
 def _attribute(file: h5py.File, name: str) -> str:

@@ -102,7 +102,7 @@ class Writer:
             self._flush()
 
     def _check_size(self, sample: Boundary | Grid) -> None:
-        """Raise InputError when a sample is not as the first one, of which the attributes of the file tell."""
+        """Raise InputError when a sample is not as the first one, which the file's attributes describe."""
         several = _is_of_blocks(sample)
         size = _size_of(sample)
         connections = connections_text(sample.connections) if several else ""
@@ -131,8 +131,8 @@ class Writer:
         for name, values in arrays.items():
             shape = self._shapes.setdefault(name, values.shape)
             if values.shape != shape:
-                told = f"{name} of sample {self._count} has shape {values.shape}"
-                raise InputError(told, f"the first has {shape}")
+                problem = f"{name} of sample {self._count} has shape {values.shape}"
+                raise InputError(problem, f"the first has {shape}")
 
     def _hold(self, name: str, value: Floats | str) -> None:
         """Keep the entry of this sample for the next block; a text of nothing has none."""

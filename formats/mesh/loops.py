@@ -13,7 +13,7 @@ from meshonet.geometry.errors import InputError
 
 
 @dataclass(frozen=True)
-class Chain:
+class Loop:
     """A closed curve.
 
     Parameters
@@ -25,13 +25,13 @@ class Chain:
     nodes: Indices
     names: tuple[str, ...]
 
-    def reversed(self) -> Chain:
+    def reversed(self) -> Loop:
         """Return it the other way round, from the same point."""
-        return Chain(np.roll(self.nodes[::-1], 1), self.names[::-1])
+        return Loop(np.roll(self.nodes[::-1], 1), self.names[::-1])
 
-    def begun_at(self, place: int) -> Chain:
+    def begun_at(self, place: int) -> Loop:
         """Return it from its node number `place` on."""
-        return Chain(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
+        return Loop(np.roll(self.nodes, -place), (*self.names[place:], *self.names[:place]))
 
     @property
     def changes(self) -> list[int]:
@@ -39,7 +39,7 @@ class Chain:
         return [k for k in range(len(self.names)) if self.names[k] != self.names[k - 1]]
 
 
-def chains(edges: Mapping[str, Indices], points: Floats) -> list[Chain]:
+def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[Loop]:
     """Return the closed curves of named edges, each from its first edge on and in its direction.
 
     Parameters
@@ -57,9 +57,11 @@ def chains(edges: Mapping[str, Indices], points: Floats) -> list[Chain]:
     met = np.bincount(ends.ravel(), minlength=len(points))
     for node in np.flatnonzero((met != 0) & (met != 2))[:1]:
         x, y = points[node]
-        told = "one edge ends" if met[node] == 1 else f"{met[node]} edges meet"
+        problem = "one edge ends" if met[node] == 1 else f"{met[node]} edges meet"
         raise InputError(
-            f"{told} at ({x:.6g}, {y:.6g})", "the boundary has to consist of closed curves", place="boundary"
+            f"{problem} at ({x:.6g}, {y:.6g})",
+            "the boundary has to consist of closed curves",
+            place="boundary",
         )
     order = np.argsort(ends.ravel(), kind="stable")
     twin = np.empty(len(order), np.int64)  # the other place where the same point stands
@@ -67,8 +69,8 @@ def chains(edges: Mapping[str, Indices], points: Floats) -> list[Chain]:
     return _followed(ends.ravel().tolist(), twin.tolist(), names)
 
 
-def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[Chain]:
-    found, used = [], [False] * len(names)
+def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[Loop]:
+    loops, used = [], [False] * len(names)
     for first in range(len(names)):
         if used[first]:
             continue
@@ -78,5 +80,5 @@ def _followed(flat: list[int], twin: list[int], names: list[str]) -> list[Chain]
             nodes.append(flat[at])
             own.append(names[at // 2])
             at = twin[at ^ 1]
-        found.append(Chain(np.array(nodes, np.int64), tuple(own)))
-    return found
+        loops.append(Loop(np.array(nodes, np.int64), tuple(own)))
+    return loops

@@ -33,15 +33,15 @@ def planar(coordinates: Sequence[Floats]) -> Floats:
 
 def _planar(coordinates: Sequence[Floats]) -> Floats:
     dims = coordinates[0].shape
-    told = "x".join(str(n) for n in dims)
+    counts = "x".join(str(n) for n in dims)
     for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
         first = [_plane(c, axis, 0) for c in coordinates]
         if min(first[0].shape) < 2:
             raise InputError(
-                f"a grid of {told} nodes has no cells", "give at least 2 nodes in two directions"
+                f"a grid of {counts} nodes has no cells", "give at least 2 nodes in two directions"
             )
         if dims[axis] == 1:
-            return _nodes(_without_constant(first, told))
+            return _nodes(_without_constant(first, counts))
         kept = list(range(len(coordinates)))
         for index in range(1, dims[axis]):
             if not kept:
@@ -50,7 +50,7 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
         if kept:
             return _nodes([first[k] for k in kept])
     raise InputError(
-        f"a grid of {told} nodes is three-dimensional",
+        f"a grid of {counts} nodes is three-dimensional",
         "give a plane one: one plane, or copies of one, in some direction",
     )
 
@@ -74,7 +74,7 @@ def _nodes(coordinates: list[Floats]) -> Floats:
     return nodes
 
 
-def _without_constant(plane: list[Floats], told: str) -> list[Floats]:
+def _without_constant(plane: list[Floats], counts: str) -> list[Floats]:
     """Return the two coordinates of a plane that vary."""
     if len(plane) == 2:
         return plane
@@ -82,12 +82,12 @@ def _without_constant(plane: list[Floats], told: str) -> list[Floats]:
     flat = [k for k in (2, 1, 0) if not spans[k] > _SAME * max(spans)]
     if not flat:
         raise InputError(
-            f"the {told} nodes lie on a curved or tilted surface", "give a grid in a coordinate plane"
+            f"the {counts} nodes lie on a curved or tilted surface", "give a grid in a coordinate plane"
         )
     return [c for k, c in enumerate(plane) if k != flat[0]]
 
 
-def _unshifted(first: list[Floats], other: list[Floats], among: list[int]) -> list[int]:
+def _unshifted(first: list[Floats], next_plane: list[Floats], among: list[int]) -> list[int]:
     """Return the two coordinates in which two planes agree when the third only steps; else nothing.
 
     Parameters
@@ -99,7 +99,7 @@ def _unshifted(first: list[Floats], other: list[Floats], among: list[int]) -> li
         kept = [m for m in range(len(first)) if m != k]
         if k >= len(first) or not set(kept) <= set(among):
             continue
-        flat = max(float(np.ptp(first[k])), float(np.ptp(other[k]))) <= _SAME * size
-        if flat and all(np.allclose(first[m], other[m], rtol=0, atol=_SAME * size) for m in kept):
+        flat = max(float(np.ptp(first[k])), float(np.ptp(next_plane[k]))) <= _SAME * size
+        if flat and all(np.allclose(first[m], next_plane[m], rtol=0, atol=_SAME * size) for m in kept):
             return kept
     return []

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from meshonet.formats.mesh.loops import Chain, chains
+from meshonet.formats.mesh.closed_curve import closed_curve
+from meshonet.formats.mesh.loops import Loop, closed_loops
 from meshonet.formats.mesh.quad_strips import line_across
 from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.mesh.unstructured import Indices
@@ -69,12 +70,12 @@ def shapes_of(surface: Surface, name: str) -> Iterator[Shape]:
     used = np.unique(np.concatenate(list(edges.values())))
     if not (np.abs(surface.points[used]) < LARGEST).all():
         raise InputError("a coordinate is not finite or far too large", "check its numbers")
-    found = chains(edges, surface.points)
-    if len(found) == 2 and (pair := _nested(found, surface.points)):
+    loops = closed_loops(edges, surface.points)
+    if len(loops) == 2 and (pair := _nested(loops, surface.points)):
         yield _annulus(*pair, surface, name)
         return
-    for number, chain in enumerate(found, start=1):
-        yield _domain(chain, surface, name if len(found) == 1 else f"{name}-{number}")
+    for number, loop in enumerate(loops, start=1):
+        yield _domain(loop, surface, name if len(loops) == 1 else f"{name}-{number}")
 
 
 def _free_edges(cells: list[Indices]) -> Indices:
@@ -87,34 +88,32 @@ def _free_edges(cells: list[Indices]) -> Indices:
     return edges[np.sort(first[count == 1])]
 
 
-def _nested(found: list[Chain], points: Floats) -> tuple[Chain, Chain] | None:
+def _nested(loops: list[Loop], points: Floats) -> tuple[Loop, Loop] | None:
     """Return (inner, outer), both clockwise, of two curves of which one lies in the box of the other."""
-    inner, outer = sorted(found, key=lambda chain: abs(polygon_area(points[chain.nodes])))
+    inner, outer = sorted(loops, key=lambda loop: abs(polygon_area(points[loop.nodes])))
     within, around = points[inner.nodes], points[outer.nodes]
     if not (
         (within.min(axis=0) > around.min(axis=0)).all() and (within.max(axis=0) < around.max(axis=0)).all()
     ):
         return None
-    turned = [
-        chain.reversed() if polygon_area(points[chain.nodes]) > 0 else chain for chain in (inner, outer)
-    ]
+    turned = [loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop for loop in (inner, outer)]
     return turned[0], turned[1]
 
 
-def _annulus(inner: Chain, outer: Chain, surface: Surface, name: str) -> Shape:
+def _annulus(inner: Loop, outer: Loop, surface: Surface, name: str) -> Shape:
     """Return the shape of two curves; the nodes of an O grid are kept, west and east with them."""
     points = surface.points
     cut = _cut(inner, outer, surface) if len(inner.nodes) == len(outer.nodes) else []
     if cut:
         outer = outer.begun_at(int(np.flatnonzero(outer.nodes == cut[-1])[0]))
-    south, north = (points[np.append(chain.nodes, chain.nodes[0])] for chain in (inner, outer))
+    south, north = (points[np.append(loop.nodes, loop.nodes[0])] for loop in (inner, outer))
     if cut:
         return Boundary(south, north, points[cut], points[cut], "o", _o_parts(inner, outer), name)
-    shape = Annulus(_plain(south[:-1], name), Outline(north[:-1], name).curve, name)
+    shape = Annulus(closed_curve(south[:-1], name), Outline(north[:-1], name).curve, name)
     return _labelled(shape, [inner, outer], points)
 
 
-def _cut(inner: Chain, outer: Chain, surface: Surface) -> list[int]:
+def _cut(inner: Loop, outer: Loop, surface: Surface) -> list[int]:
     """Return the nodes from the first of `inner` to the far field along the cells, where they lead there."""
     if len(surface.cells) != 1 or surface.cells[0].shape[1] != 4:
         return []
@@ -122,29 +121,29 @@ def _cut(inner: Chain, outer: Chain, surface: Surface) -> list[int]:
     return cut if cut and cut[-1] in outer.nodes else []
 
 
-def _o_parts(inner: Chain, outer: Chain) -> tuple[Patch, ...]:
+def _o_parts(inner: Loop, outer: Loop) -> tuple[Patch, ...]:
     """Return the parts of both curves, or none when nothing is named."""
-    sides: tuple[tuple[Side, Chain], ...] = (("south", inner), ("north", outer))
-    return tuple(part for side, chain in sides for part in runs(side, chain.names))
+    sides: tuple[tuple[Side, Loop], ...] = (("south", inner), ("north", outer))
+    return tuple(part for side, loop in sides for part in runs(side, loop.names))
 
 
-def _domain(chain: Chain, surface: Surface, name: str) -> Shape:
+def _domain(loop: Loop, surface: Surface, name: str) -> Shape:
     points = surface.points
-    corners = _corners(chain, surface)
+    corners = _corners(loop, surface)
     if corners is None:
-        return _labelled(_plain(points[chain.nodes], name), [chain], points)
-    count, first = len(chain.nodes), 0
-    if polygon_area(points[chain.nodes]) < 0:
-        chain, first = chain.reversed(), count - 1
+        return _labelled(closed_curve(points[loop.nodes], name), [loop], points)
+    count, first = len(loop.nodes), 0
+    if polygon_area(points[loop.nodes]) < 0:
+        loop, first = loop.reversed(), count - 1
         corners = sorted((count - place) % count for place in corners)
     begin = max((place for place in corners if place <= first), default=corners[-1])
-    chain, corners = chain.begun_at(begin), sorted((place - begin) % count for place in corners)
-    counts = np.diff([*corners, len(chain.nodes)])
+    loop, corners = loop.begun_at(begin), sorted((place - begin) % count for place in corners)
+    counts = np.diff([*corners, len(loop.nodes)])
     if counts[0] != counts[2] or counts[1] != counts[3]:
         a, b, c, d = corners
-        return _labelled(Outline(points[chain.nodes], name, corners=(a, b, c, d)), [chain], points)
-    ring, names = points[np.append(chain.nodes, chain.nodes[0])], chain.names
-    stops = [*corners[1:], len(chain.nodes)]
+        return _labelled(Outline(points[loop.nodes], name, corners=(a, b, c, d)), [loop], points)
+    ring, names = points[np.append(loop.nodes, loop.nodes[0])], loop.names
+    stops = [*corners[1:], len(loop.nodes)]
     edges = {side: ring[start : stop + 1] for side, start, stop in zip(SIDES, corners, stops, strict=True)}
     named = {side: names[start:stop] for side, start, stop in zip(SIDES, corners, stops, strict=True)}
     for side in ("north", "west"):
@@ -153,29 +152,23 @@ def _domain(chain: Chain, surface: Surface, name: str) -> Shape:
     return Boundary(edges["south"], edges["north"], edges["west"], edges["east"], "quad", parts, name)
 
 
-def _plain(points: Floats, name: str) -> Shape:
-    from meshonet.formats.text.points import one_curve
-
-    return one_curve(points, name)
-
-
-def _corners(chain: Chain, surface: Surface) -> list[int] | None:
+def _corners(loop: Loop, surface: Surface) -> list[int] | None:
     """Return the four corners of a domain as places of `chain`, when there are four."""
     quads = [rows for rows in surface.cells if rows.shape[1] == 4]
     if len(quads) == 1 and len(surface.cells) == 1:
-        met = np.bincount(quads[0].ravel(), minlength=len(surface.points))[chain.nodes]
+        met = np.bincount(quads[0].ravel(), minlength=len(surface.points))[loop.nodes]
         alone = np.flatnonzero(met == 1).tolist()
         if len(alone) == 4:
             return [int(place) for place in alone]
-    return chain.changes if len(chain.changes) == 4 else None
+    return loop.changes if len(loop.changes) == 4 else None
 
 
-def _labelled(shape: Shape, found: list[Chain], points: Floats) -> Shape:
+def _labelled(shape: Shape, loops: list[Loop], points: Floats) -> Shape:
     """Return `shape` with the names of the edges it was made of, if they have any."""
-    if not any(any(chain.names) for chain in found):
+    if not any(any(loop.names) for loop in loops):
         return shape
-    ends = [np.stack([chain.nodes, np.roll(chain.nodes, -1)], axis=1) for chain in found]
-    names = [printable(name) for chain in found for name in chain.names]
+    ends = [np.stack([loop.nodes, np.roll(loop.nodes, -1)], axis=1) for loop in loops]
+    names = [printable(name) for loop in loops for name in loop.names]
     return Labelled(shape, points[np.concatenate(ends)], tuple(names))
 
 

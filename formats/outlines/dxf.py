@@ -50,27 +50,27 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         raise InputError("is no DXF drawing that can be read (zero bytes)", "save it again as ASCII DXF")
     try:
         drawing = read(io.StringIO(data.decode("utf-8", "replace").replace("\r\n", "\n")))
-        found = [
+        curves = [
             (printable(str(entity.dxf.layer)), path.make_path(entity))
             for entity in drawing.modelspace()
             if entity.dxftype() in _KINDS
         ]
-        lines = _lines(found)
+        lines = _lines(curves)
     except InputError:
         raise
     except Exception as error:  # whatever a damaged drawing makes of it
-        told = printable(str(error).split("\n")[0])[:100] or type(error).__name__
+        reason = printable(str(error).split("\n")[0])[:100] or type(error).__name__
         raise InputError(
-            f"is no DXF drawing that can be read ({told})", "save it again as ASCII DXF"
+            f"is no DXF drawing that can be read ({reason})", "save it again as ASCII DXF"
         ) from None
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
     yield from shapes_of(_joined(lines), source.stem)
 
 
-def _lines(found: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
+def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     """Return layer and points (n, 2) of each curve, chords in place of what is curved."""
-    corners = [np.array([(v.x, v.y) for v in curve.control_vertices()]) for _, curve in found if len(curve)]
+    corners = [np.array([(v.x, v.y) for v in curve.control_vertices()]) for _, curve in curves if len(curve)]
     if not corners:
         return []
     every = np.concatenate(corners)
@@ -78,7 +78,7 @@ def _lines(found: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     if not (np.abs(every) < LARGEST).all() or extent == 0:
         raise InputError("its curves have no size, or one that is not finite", "check the drawing")
     lines, count = [], 0
-    for layer, curve in found:
+    for layer, curve in curves:
         if not len(curve):
             continue
         points = np.array([(v.x, v.y) for v in _chords(curve, extent)])
@@ -104,14 +104,14 @@ def _joined(lines: list[tuple[str, Floats]]) -> Surface:
     same = np.arange(len(points))
     ends = np.concatenate([starts, stops - 1])
     order = ends[np.argsort(points[ends, 0], kind="stable")].tolist()
-    for k, one in enumerate(order):
-        if same[one] != one:
+    for k, end in enumerate(order):
+        if same[end] != end:
             continue
-        for other in order[k + 1 :]:
-            if points[other, 0] - points[one, 0] > reach:
+        for later in order[k + 1 :]:
+            if points[later, 0] - points[end, 0] > reach:
                 break
-            if same[other] == other and abs(points[other, 1] - points[one, 1]) <= reach:
-                same[other] = one
+            if same[later] == later and abs(points[later, 1] - points[end, 1]) <= reach:
+                same[later] = end
     edges: dict[str, list[Indices]] = {}
     for (layer, _), start, stop in zip(lines, starts, stops, strict=True):
         nodes = same[start:stop]

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.source import Source, printable
-from meshonet.formats.text.points import one_curve
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
@@ -116,7 +116,7 @@ def _shape(outer: Floats, hole: Floats | None = None, *, name: str) -> Shape:
     if hole is None:
         return Outline(outer, name)
     clockwise = outer[::-1] if polygon_area(outer) > 0 else outer
-    return Annulus(one_curve(hole, name), Outline(clockwise, name).curve, name)
+    return Annulus(closed_curve(hole, name), Outline(clockwise, name).curve, name)
 
 
 def _points(ring: Any) -> Floats:

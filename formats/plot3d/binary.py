@@ -31,45 +31,45 @@ def candidates(data: bytes) -> list[Candidate]:
     InputError
         none is.
     """
-    found: list[Candidate] = []
+    fitting: list[Candidate] = []
     tried: list[str] = []
     for order in "<>":
         records = _unframed(data, order)
         if records is not None:
-            found += _fitting(b"".join(records), order, "Fortran records", len(records), tried)
-    if found:
-        return found
+            fitting += _fitting(b"".join(records), order, "Fortran records", len(records), tried)
+    if fitting:
+        return fitting
     for order in "<>":
-        found += _fitting(data, order, "C binary", 0, tried)
-    if not found:
+        fitting += _fitting(data, order, "C binary", 0, tried)
+    if not fitting:
         near = f" (a header could be dims {', '.join(tried[:3])})" if tried else ""
         raise InputError(
             f"has {len(data)} bytes and no binary Plot3D layout fits{near}",
             "the file is cut short, or is something else: name its format with {from_format}",
         )
-    return found
+    return fitting
 
 
-def _fitting(stream: bytes, order: str, told: str, records: int, tried: list[str]) -> list[Candidate]:
+def _fitting(stream: bytes, order: str, numbers: str, records: int, tried: list[str]) -> list[Candidate]:
     integers = np.frombuffer(stream, np.dtype(order + "i4"), len(stream) // 4)
 
     def integer(k: int) -> int | None:
         return int(integers[k]) if k < len(integers) else None
 
-    found = []
+    fitting = []
     for layout, size in itertools.product(layouts(integer), (8, 4)):
         length = 4 * layout.header + layout.nodes * (size * layout.axes + 4 * int(layout.iblank))
         if length == len(stream):
             dtype = np.dtype(f"{order}f{size}")
-            found.append(
-                _candidate(layout, stream, dtype, f"{told}, {_NAMES[order]}, float{8 * size}", records)
+            fitting.append(
+                _candidate(layout, stream, dtype, f"{numbers}, {_NAMES[order]}, float{8 * size}", records)
             )
         elif 2 <= max(map(max, layout.dims)) <= 100_000 and not layout.iblank and size == 8:
             tried.append("x".join(map(str, layout.dims[0])))
-    return found
+    return fitting
 
 
-def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], told: str, records: int) -> Candidate:
+def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], numbers: str, records: int) -> Candidate:
     sizes = [prod(dims) * (layout.axes * dtype.itemsize + 4 * int(layout.iblank)) for dims in layout.dims]
     starts = list(itertools.accumulate(sizes, initial=4 * layout.header))
     # one record a plane, x y z of each plane together: the "planes" form, which matters for two planes
@@ -93,11 +93,11 @@ def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], told: str, r
 
     kind = {
         "fortran" if records else "binary",
-        "big" if ", big" in told else "little",
+        "big" if ", big" in numbers else "little",
         f"float{8 * dtype.itemsize}",
         "planes" if by_planes else "whole",
     }
-    return Candidate(layout, block, told, frozenset(kind))
+    return Candidate(layout, block, numbers, frozenset(kind))
 
 
 def _unframed(data: bytes, order: str) -> list[memoryview] | None:

@@ -60,10 +60,10 @@ def layouts(integer: Header) -> Iterator[Layout]:
         blocks = integer(0) if counted else 1
         if blocks is None or not 1 <= blocks <= _MOST_BLOCKS:
             continue
-        found = _dims(integer, blocks, axes, int(counted))
-        if found:
+        dims = _dims(integer, blocks, axes, int(counted))
+        if dims:
             for iblank in (False, True):
-                yield Layout(counted, axes, iblank, found)
+                yield Layout(counted, axes, iblank, dims)
 
 
 def _dims(integer: Header, blocks: int, axes: int, start: int) -> tuple[Dims, ...]:
@@ -85,13 +85,13 @@ class Candidate:
     ----------
     layout : the layout.
     arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
-    told : the number type and byte order, for messages.
+    numbers : the number type and byte order, for messages.
     kind : options of the format for these.
     """
 
     layout: Layout
     arrays: Callable[[int], Sequence[Floats]]
-    told: str = ""
+    numbers: str = ""
     kind: frozenset[str] = frozenset()
 
     @property
@@ -166,5 +166,5 @@ def _is_iblank(values: Floats) -> bool:
 
 
 def _areas(nodes: Floats) -> Floats:
-    one, other = nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
-    return one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]
+    rising, falling = nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
+    return rising[..., 0] * falling[..., 1] - rising[..., 1] * falling[..., 0]

@@ -48,7 +48,7 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
             flags = found.iblank(block)
             yield replace(grid, provenance={"iblank": flags}) if flags else grid
         except InputError as error:
-            error.place = error.place or f"block {block + 1}, read as {found.told}"
+            error.place = error.place or f"block {block + 1}, read as {found.numbers}"
             raise
 
 

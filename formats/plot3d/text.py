@@ -114,9 +114,9 @@ def _spelled(word: bytes, data: bytes) -> bytes:
 
 def _not_a_number(word: bytes, data: bytes) -> InputError:
     line = data[: max(data.translate(_FREE_FORMAT).find(word), 0)].count(b"\n") + 1
-    told = word[:40].decode("latin-1")
+    shown = word[:40].decode("latin-1")
     return InputError(
-        f"{told!r} is not a number",
+        f"{shown!r} is not a number",
         "write numbers only, or name another format with {from_format}",
         place=f"line {line}",
     )

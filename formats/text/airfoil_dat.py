@@ -77,9 +77,9 @@ def sniff(head: bytes) -> bool:
 def _name(lines: list[Line], first: int) -> str:
     """Return the first text above line `first` of the data, or what stands there as a number."""
     for line in lines[: first - 1]:
-        told = " ".join(line.text.strip("#!%*/ \t").split())
-        if told:
-            return printable(told[:80])
+        title = " ".join(line.text.strip("#!%*/ \t").split())
+        if title:
+            return printable(title[:80])
     return ""
 
 

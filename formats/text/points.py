@@ -10,19 +10,19 @@ A single curve that ends in one trailing edge is taken for an airfoil.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.source import Source
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.polygon.corners import find_corners, turning
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.outline import Outline
@@ -76,7 +76,7 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
                 "give one closed curve, or four edges divided by blank lines",
                 place=f"line {blocks[1][0].number}" if len(blocks) > 1 else "",
             )
-        return _with_notes(_one_curve(blocks[0], name), left_out(lines))
+        return _with_notes(_closed_curve(blocks[0], name), left_out(lines))
     except InputError as error:
         error.source = error.source or source
         raise
@@ -100,46 +100,9 @@ def _with_notes(shape: Boundary | Outline | Airfoil, notes: tuple[str, ...]) -> 
     return shape
 
 
-def _one_curve(rows: list[Line], name: str) -> Outline | Airfoil:
+def _closed_curve(rows: list[Line], name: str) -> Outline | Airfoil:
     points = np.array([line.values[:2] for line in rows])
-    return one_curve(points, name, [f"line {line.number}" for line in rows])
-
-
-def one_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
-    """Return the airfoil or the outline through `points` (n, 2), repeated neighbours left out.
-
-    Parameters
-    ----------
-    places : (n,) where each point stands in its source, for messages.
-    """
-    keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
-    if len(points) > 1 and np.array_equal(points[0], points[-1]):
-        keep[-1] = len(points) < 3
-    points, places = points[keep], [place for place, kept in zip(places, keep, strict=False) if kept]
-    if len(points) < 3:
-        raise InputError(f"{len(points)} points", "a closed curve needs at least 3")
-    if _ends_in_one_edge(points):
-        return Airfoil(points, name, places)
-    return Outline(points, name, places=places)
-
-
-def _ends_in_one_edge(points: Floats) -> bool:
-    """Say whether a curve (n, 2) looks like an airfoil: slender, its corners all at one end of its length.
-
-    One corner that turns by more than 90 degrees, or the two of a base.
-    """
-    if len(points) < 10:
-        return False
-    turn = np.abs(turning(points, closed=True))
-    corners = find_corners(points, closed=True, few=0)
-    sharp = corners[turn[corners] > np.radians(60.0)]
-    if not 1 <= len(sharp) <= 2 or turn[sharp].sum() < np.radians(120.0):
-        return False
-    edge = points[sharp].mean(axis=0)
-    length = float(np.hypot(*(points - edge).T).max())
-    base = float(np.hypot(*np.ptp(points[sharp], axis=0)))
-    area = abs(polygon_area(points))
-    return base < 0.25 * length and area < 0.5 * length**2
+    return closed_curve(points, name, [f"line {line.number}" for line in rows])
 
 
 def _four_edges(blocks: list[list[Line]], name: str) -> Boundary | Outline:

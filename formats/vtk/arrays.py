@@ -115,22 +115,22 @@ def _words(raw: memoryview, first: int, count: int, encoding: Encoding) -> list[
 
 
 def _sized(raw: memoryview, size: int | None, encoding: Encoding) -> memoryview:
-    (told,) = _words(raw, 0, 1, encoding)
+    (claimed,) = _words(raw, 0, 1, encoding)
     start = int(encoding.header[1])
-    if size not in (None, told) or len(raw) < start + told:
+    if size not in (None, claimed) or len(raw) < start + claimed:
         raise InputError(
-            f"should be {size} bytes, is said to be {told}, and {len(raw) - start} are left", _CUT
+            f"should be {size} bytes, is said to be {claimed}, and {len(raw) - start} are left", _CUT
         )
-    return raw[start : start + told]
+    return raw[start : start + claimed]
 
 
 def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> bytearray:
     """Return `size` bytes; the words say: block count, block size, last block size, compressed sizes."""
     inflate = _inflater(encoding.compressor)
     count, block, last = _words(raw, 0, 3, encoding)
-    told = (count - 1 if last else count) * block + last
-    if count > len(raw) or size not in (None, told) or told > _MOST_SHRINKING * len(raw):
-        raise InputError(f"should be {size} bytes and its blocks say {told}", _CUT)
+    claimed = (count - 1 if last else count) * block + last
+    if count > len(raw) or size not in (None, claimed) or claimed > _MOST_SHRINKING * len(raw):
+        raise InputError(f"should be {size} bytes and its blocks say {claimed}", _CUT)
     sizes = _words(raw, 3, count, encoding)
     at = (3 + count) * int(encoding.header[1])
     data = bytearray()

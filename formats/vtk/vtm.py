@@ -38,8 +38,8 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
     """
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
-        told = printable(str(folder.name))
-        raise InputError(f"folder {told} holds other files, which would be lost", "choose another name")
+        shown = printable(str(folder.name))
+        raise InputError(f"folder {shown} holds other files, which would be lost", "choose another name")
     lines = []
     with whole_folder(folder) as part:
         for k, grid in enumerate(grids):
@@ -85,18 +85,18 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def _block(folder: Path, name: str, title: str) -> Iterator[Grid]:
-    told = printable(name)[:60]
+    shown = printable(name)[:60]
     parts = PurePosixPath(name)
     if parts.is_absolute() or ".." in parts.parts or "\0" in name:
-        raise InputError(f"names {told!r}, which is not below its folder", "keep the blocks beside it")
+        raise InputError(f"names {shown!r}, which is not below its folder", "keep the blocks beside it")
     if parts.suffix.lower() != ".vts":
-        raise InputError(f"names {told!r}, which is no .vts", "give blocks that are structured grids")
+        raise InputError(f"names {shown!r}, which is no .vts", "give blocks that are structured grids")
     path = folder / parts
     if not path.is_file():
-        raise InputError(f"names {told!r}, which is not there", "keep the blocks beside it")
+        raise InputError(f"names {shown!r}, which is not there", "keep the blocks beside it")
     try:
         for grid in read_block(Source(printable(str(path)), path=path)):
             yield replace(grid, name=printable(title)) if title and grid.name == path.stem else grid
     except InputError as error:
-        error.place = error.place or told
+        error.place = error.place or shown
         raise

@@ -1,39 +1,16 @@
-/* A fast Fourier transform of many sums at once: a row holds one mode, later one column, of all of them, so that
-   every operation is one on whole rows. Modes are put where their reversed bits say; Cooley & Tukey (1965). */
-
 #include "columns.h"
 
-#include "clones.h"
-#include "lanes.h"
+#include "fft.h"
 
 #define BLOCK 128 /* rows that stay in the first-level cache while they are combined with each other */
 
-#if defined(__GNUC__)
-#define WIDTH LANES
-typedef Lanes Some;
-#else
-#define WIDTH 1
-typedef double Some;
-#endif
-#define SOME(p) (*(Some *)(p))
-
-MESHONET_INLINE ptrdiff_t reversed(ptrdiff_t k, ptrdiff_t count)
-{
-    ptrdiff_t r = 0;
-    for (ptrdiff_t bit = 1; bit < count; bit *= 2) r = 2 * r + ((k & bit) != 0);
-    return r;
-}
-
-/* Transforms of `size` rows from those of their halves: a, b <- a + u b, a - u b. */
+/* Transforms of `size` rows from those of their halves. */
 MESHONET_INLINE void combine(double *rows, ptrdiff_t size, const double *unit, ptrdiff_t step, ptrdiff_t width)
 {
     const ptrdiff_t half = size / 2, apart = 2 * width;
     for (ptrdiff_t j = 0; j < half; j++) {
-        const double wr = unit[2 * j * step], wi = unit[2 * j * step + 1];
-        double *ar = rows + j * apart, *ai = ar + width, *br = ar + half * apart, *bi = br + width;
-        const Some b = SOME(br), c = SOME(bi), tr = wr * b - wi * c, ti = wr * c + wi * b, r = SOME(ar), i = SOME(ai);
-        SOME(br) = r - tr, SOME(bi) = i - ti;
-        SOME(ar) = r + tr, SOME(ai) = i + ti;
+        double *a = rows + j * apart, *b = a + half * apart;
+        pair_up(a, a + width, b, b + width, unit + 2 * j * step);
     }
 }
 

@@ -19,15 +19,6 @@ extern double atan2(double, double) __attribute__((simd("notinbranch")));
 #define FAR 0.0625 /* |e^2| up to which it holds to round-off: FAR^TERMS is 2e-16 */
 #define TOGETHER 8 /* points for which one tells whether it does */
 
-/* exp(x) for |x| < 700: x = n ln 2 + r, |r| < .347: 2 ulp */
-MESHONET_INLINE double fast_exp(double x) {
-    double n = rint(x * 1.4426950408889634);
-    double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
-    union { double d; long long i; } scale;
-    scale.i = (long long)((int)n + 1023) << 52;
-    return exp_reduced(r) * scale.d;
-}
-
 /* sin and cos for |x| < 1e5: quadrant by rounding, Cody & Waite reduction, Taylor on |r| < pi/4: 2 ulp */
 MESHONET_INLINE void fast_sincos(double x, double *s, double *c) {
     double n = rint(x * 0.63661977236758134308);

@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-#include "clones.h"
-#include "lanes.h"
+#include "fft.h"
 
 #define LEVELS PICARD_LEVELS
 #define COUNT PICARD_COUNT
@@ -15,44 +14,10 @@
 
 static const double TURN = 6.283185307179586476925;
 
-MESHONET_INLINE int reversed(int k)
-{
-    int r = 0;
-    for (int bit = 1; bit < COLUMNS; bit *= 2) r = 2 * r + ((k & bit) != 0);
-    return r;
-}
-
 MESHONET_INLINE int wavenumber(int mode) { return mode <= PICARD_MODES ? mode : mode - COUNT; }
 
 /* The row of a transform that holds a mode. */
-MESHONET_INLINE int place(int mode) { return reversed(wavenumber(mode) & (COLUMNS - 1)); }
-
-#if defined(__GNUC__)
-#define WIDTH LANES
-typedef Lanes Some;
-#else
-#define WIDTH 1
-typedef double Some;
-#endif
-#define SOME(p) (*(Some *)(p))
-
-/* a, b <- a + u b, a - u b, for WIDTH levels. */
-MESHONET_INLINE void pair_up(double *ar, double *ai, double *br, double *bi, const double *unit)
-{
-    const double wr = unit[0], wi = unit[1];
-    const Some tr = wr * SOME(br) - wi * SOME(bi), ti = wr * SOME(bi) + wi * SOME(br), r = SOME(ar), i = SOME(ai);
-    SOME(br) = r - tr, SOME(bi) = i - ti;
-    SOME(ar) = r + tr, SOME(ai) = i + ti;
-}
-
-/* a, b <- a + b, (a - b) / u */
-MESHONET_INLINE void pair_down(double *ar, double *ai, double *br, double *bi, const double *unit)
-{
-    const double wr = unit[0], wi = -unit[1];
-    const Some tr = SOME(ar) - SOME(br), ti = SOME(ai) - SOME(bi);
-    SOME(ar) += SOME(br), SOME(ai) += SOME(bi);
-    SOME(br) = wr * tr - wi * ti, SOME(bi) = wr * ti + wi * tr;
-}
+MESHONET_INLINE int place(int mode) { return (int)reversed(wavenumber(mode) & (COLUMNS - 1), COLUMNS); }
 
 /* Modes, bit-reversed, to columns: the sum of c_k exp(i k theta). WIDTH levels at a time stay in the cache. */
 MESHONET_INLINE void to_columns(PicardField *f, double (*unit)[2])
@@ -109,7 +74,7 @@ MESHONET_INLINE void place_modes(PicardField *f, const PicardRow *c, int power)
             to_im[l] = power == 1 ? factor * re[l] : factor * im[l];
         }
     }
-    for (int l = 0; l < LEVELS; l++) f->re[reversed(COLUMNS / 2)][l] = f->im[reversed(COLUMNS / 2)][l] = 0.0;
+    for (int l = 0; l < LEVELS; l++) f->re[reversed(COLUMNS / 2, COLUMNS)][l] = f->im[reversed(COLUMNS / 2, COLUMNS)][l] = 0.0;
 }
 
 /* Winslow's residual over half the mean of what multiplies the update; see strip.py. */

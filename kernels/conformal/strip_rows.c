@@ -4,11 +4,6 @@
    levels themselves or the points of a panel, whose levels are a product with a matrix (panels.py). BLAS is slow
    at both products: one side is 14 or 16 long, and a grid's rows lie far apart. */
 
-/* Argument reduction in the maps lives on the order of its operations. */
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC optimize("no-associative-math")
-#endif
-
 #include "strip_rows.h"
 
 #include "clones.h"
@@ -61,7 +56,8 @@ MESHONET_INLINE void add_sum(const WindowSum *s, double sharpness, ptrdiff_t i, 
     gather(row.y + s->from, im, weights, s->m);
 }
 
-MESHONET_INLINE void make_row(const StripRows *s, ptrdiff_t i, Row row)
+MESHONET_CLONES
+static void make_row(const StripRows *s, ptrdiff_t i, Row row)
 {
     const double theta = 6.283185307179586476925 / (double)s->n * (double)i;
     for (ptrdiff_t l = 0; l < s->m; l++) row.x[l] = 0.0, row.y[l] = theta;

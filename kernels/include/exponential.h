@@ -1,8 +1,9 @@
-/* The inner part of exp, shared by kernels that reduce the argument each in its own way. */
+/* exp in a form that loops are vectorised with. */
 #ifndef MESHONET_EXPONENTIAL_H
 #define MESHONET_EXPONENTIAL_H
 
 #include "clones.h"
+#include <math.h>
 
 /* exp(r) for |r| < .35: Taylor to r^13, 2 ulp */
 MESHONET_INLINE double exp_reduced(double r)
@@ -22,6 +23,15 @@ MESHONET_INLINE double exp_reduced(double r)
     p = p * r + 1.0;
     p = p * r + 1.0;
     return p;
+}
+
+/* exp(x) for |x| < 700: x = n ln 2 + r, |r| < .347: 2 ulp */
+MESHONET_INLINE double fast_exp(double x) {
+    double n = rint(x * 1.4426950408889634);
+    double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
+    union { double d; long long i; } scale;
+    scale.i = (long long)((int)n + 1023) << 52;
+    return exp_reduced(r) * scale.d;
 }
 
 #endif

@@ -1,6 +1,5 @@
 /* Convolutions over images whose channels lie together, and what stands between them: included once for each real
-   type T, with SUFFIX after every name, VECTOR bytes a vector, and KERNEL before functions (their processor).
-   winograd.h goes after it. */
+   type T, with SUFFIX after every name, VECTOR bytes a vector, and KERNEL before functions (their processor). */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define NAME(name) JOIN(name, SUFFIX)

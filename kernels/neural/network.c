@@ -19,22 +19,11 @@ extern double log(double) __attribute__((simd("notinbranch")));
 extern float logf(float) __attribute__((simd("notinbranch")));
 #endif
 
-/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^52 (2^23), whose low bits then are n. 2 ulp, for
-   |x| up to EXP_MOST, beyond which 1/(1 + exp) is told from its limits no more. */
+/* Beyond these 1/(1 + exp) is told from its limits no more. */
 #define EXP_MOST_double 700.0
 #define EXP_MOST_float 80.0f
 
-MESHONET_INLINE double exp_double(double x)
-{
-    union { double real; unsigned long long bits; } shifted, scale;
-    shifted.real = x * 1.4426950408889634 + 6755399441055744.0;
-    const double n = shifted.real - 6755399441055744.0;
-    const double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
-    scale.bits = (shifted.bits + 1023) << 52;
-    return exp_reduced(r) * scale.real;
-}
-
-/* The polynomial of degree 5 has the least relative error, 8e-8. */
+/* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^23, whose low bits then are n. The polynomial of degree 5 has the least relative error, 8e-8. */
 MESHONET_INLINE float exp_float(float x)
 {
     union { float real; unsigned int bits; } shifted, scale;
@@ -90,18 +79,16 @@ MESHONET_INLINE float log_float(float x)
 #define MOST EXP_MOST_float
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
 #undef MOST
 #define T double
 #define SUFFIX _double
-#define EXP exp_double
+#define EXP fast_exp
 #define MOST EXP_MOST_double
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
@@ -119,18 +106,16 @@ MESHONET_INLINE float log_float(float x)
 #define MOST EXP_MOST_float
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
 #undef MOST
 #define T double
 #define SUFFIX _wide_double
-#define EXP exp_double
+#define EXP fast_exp
 #define MOST EXP_MOST_double
 #include "pointwise.h"
 #include "convolve.h"
-#include "winograd.h"
 #undef T
 #undef SUFFIX
 #undef EXP
@@ -144,11 +129,9 @@ MESHONET_INLINE float log_float(float x)
     {                                                                                                                 \
         const Convolution *c = &l->c;                                                                                 \
         const T *x = l->x, *w = l->w, *bias = l->bias, *add = l->add;                                                 \
-        T *scratch = l->scratch, *out = l->out;                                                                       \
+        T *out = l->out;                                                                                              \
         if (l->kind == CONVOLVE)                                                                                      \
             convolve##SUFFIX(x, c, w, bias, add, out);                                                                \
-        else if (l->kind == WINOGRAD)                                                                                 \
-            winograd##SUFFIX(x, c, w, bias, add, scratch, out);                                                       \
         else if (l->kind == ACTIVATE)                                                                                 \
             activate##SUFFIX(x, c->batch, c->m, c->n, c->inputs, l->around, c->size, out);                            \
         else                                                                                                          \

@@ -13,24 +13,16 @@ typedef struct {
 
    CONVOLVE: x (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or
    as out (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs).
-   WINOGRAD: the same for 3 x 3 taps one pixel apart, at least 16 inputs and outputs and images of 5 x 5 or more, by
-   fewer products: w is (WINOGRAD_VALUES inputs, outputs rounded up), scratch WINOGRAD_SCRATCH numbers.
    ACTIVATE, REFINE: pointwise.h; c.size is the padding. */
-enum { CONVOLVE, WINOGRAD, ACTIVATE, REFINE };
+enum { CONVOLVE, ACTIVATE, REFINE };
 typedef struct {
     int kind, single, around;
     Convolution c;
     const void *x, *w, *bias, *add;
-    void *scratch, *out;
+    void *out;
 } Layer;
 
 void network_layer(const Layer *layer);
-
-#define WINOGRAD_VALUES 25
-#define WINOGRAD_TILES 36 /* that go together */
-#define WINOGRAD_PLANE(channels, line) (WINOGRAD_TILES * (channels) + (line)) /* lines apart, lest they share a set */
-#define WINOGRAD_SCRATCH(inputs, wide, line) \
-    (WINOGRAD_VALUES * (WINOGRAD_PLANE(inputs, line) + WINOGRAD_PLANE(wide, line)))
 
 #define LOOK_FEATURES 20 /* of features.py, as are the numbers below */
 #define LOOK_FLOOR 1e-2

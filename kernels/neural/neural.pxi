@@ -25,7 +25,7 @@ cdef extern from "neural/frame.h":
                           ptrdiff_t n) nogil
 
 cdef extern from "neural/network.h":
-    enum: CONVOLVE, WINOGRAD, ACTIVATE, REFINE
+    enum: CONVOLVE, ACTIVATE, REFINE
     ctypedef struct Convolution:
         ptrdiff_t batch, m, n, inputs, outputs
         int size, stride
@@ -36,11 +36,8 @@ cdef extern from "neural/network.h":
         const void *w
         const void *bias
         const void *add
-        void *scratch
         void *out
     void network_layer(const Layer *layer) nogil
-    ptrdiff_t WINOGRAD_SCRATCH(ptrdiff_t inputs, ptrdiff_t wide, ptrdiff_t line) nogil
-    int WINOGRAD_VALUES
     void network_look_float(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, float *out) nogil
     void network_look_double(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n,
                              double *out) nogil
@@ -211,17 +208,7 @@ cdef int begin(Layer *layer, int kind, x, out, shape) except -1:
     layer.c.batch, layer.c.m, layer.c.n, layer.c.inputs = x.shape
     layer.c.outputs, layer.c.size, layer.c.stride = shape[3], 0, 1
     layer.x, layer.out = reads_real(x, layer.single, x.shape), fills_real(out, layer.single, shape)
-    layer.w = layer.bias = layer.add = layer.scratch = NULL
-    return 0
-
-
-cdef int weigh(Layer *layer, ptrdiff_t taps, w, bias, add, shape) except -1:
-    """Give a layer its weights, for outputs rounded up to 64 bytes, and what is added."""
-    cdef ptrdiff_t per = 16 if layer.single else 8, wide = (layer.c.outputs + per - 1) // per * per
-    layer.w = reads_real(w, layer.single, (taps * layer.c.inputs, wide))
-    layer.bias = reads_real(bias, layer.single, (wide,))
-    if add is not None:
-        layer.add = reads_real(add, layer.single, shape)
+    layer.w = layer.bias = layer.add = NULL
     return 0
 
 
@@ -238,32 +225,13 @@ def convolve(x, w, bias, int size, int stride, add, out, LayerProgram later=None
     shape = (x.shape[0], (x.shape[1] - size) // stride + 1, (x.shape[2] - size) // stride + 1, out.shape[3])
     begin(&layer, CONVOLVE, x, out, shape)
     layer.c.size, layer.c.stride = size, stride
-    weigh(&layer, size * size, w, bias, add, shape)
+    per = 16 if layer.single else 8
+    wide = (out.shape[3] + per - 1) // per * per
+    layer.w = reads_real(w, layer.single, (size * size * layer.c.inputs, wide))
+    layer.bias = reads_real(bias, layer.single, (wide,))
+    if add is not None:
+        layer.add = reads_real(add, layer.single, shape)
     take(&layer, later, (x, w, bias, add, out))
-
-
-def winograd_scratch(ptrdiff_t inputs, ptrdiff_t wide, ptrdiff_t line):
-    """Return how many numbers `winograd` needs as scratch, with `line` of them in 64 bytes."""
-    return WINOGRAD_SCRATCH(inputs, wide, line)
-
-
-def winograd(x, w, bias, add, scratch, out, LayerProgram later=None):
-    """Do what `convolve` does with size 3 and stride 1, in fewer products.
-
-    `w` is (25 inputs, outputs rounded up to 64 bytes), the kernels at pairs of the points; there are at least 16
-    inputs and outputs, 5 x 5 pixels in `x` and `winograd_scratch` numbers in `scratch`.
-    """
-    cdef Layer layer
-    if x.shape[1] < 5 or x.shape[2] < 5 or out.shape[3] < 16 or x.shape[3] < 16:
-        raise ValueError("images or channels that are too few")
-    shape = (x.shape[0], x.shape[1] - 2, x.shape[2] - 2, out.shape[3])
-    begin(&layer, WINOGRAD, x, out, shape)
-    layer.c.size = 3
-    weigh(&layer, WINOGRAD_VALUES, w, bias, add, shape)
-    if len(scratch) < WINOGRAD_SCRATCH(layer.c.inputs, w.shape[1], 16 if layer.single else 8):
-        raise ValueError("scratch that is too small")
-    layer.scratch = fills_real(scratch, layer.single, scratch.shape)
-    take(&layer, later, (x, w, bias, add, scratch, out))
 
 
 def activate(x, out, bint around=False, LayerProgram later=None):

@@ -37,8 +37,10 @@ MESHONET_INLINE void some_rows(const double *a, ptrdiff_t a_line, ptrdiff_t inne
     }
 }
 
-/* The same for any number of rows: some of the last come twice rather than alone. */
-MESHONET_INLINE void product(const double *a, ptrdiff_t a_line, ptrdiff_t rows, ptrdiff_t inner, const double *b,
+/* The same for any number of rows: some of the last come twice rather than alone. Not inlined: copies of it would be slow
+   to compile and no faster. */
+MESHONET_CLONES
+static void product(const double *a, ptrdiff_t a_line, ptrdiff_t rows, ptrdiff_t inner, const double *b,
                              ptrdiff_t b_line, ptrdiff_t width, double *out, ptrdiff_t out_line)
 {
     const ptrdiff_t together = rows < BLOCK ? 1 : BLOCK;

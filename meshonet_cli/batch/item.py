@@ -1,4 +1,4 @@
-"""One member of a batch, under the names by which it is told of and written."""
+"""One member of a batch, with the names that messages and files have for it."""
 
 from __future__ import annotations
 

@@ -52,17 +52,17 @@ class one_by_one(Generic[T, S, R]):  # noqa: N801 - used as a function, and a cl
 
 
 def deliver(
-    found: Iterator[Item[T]],
+    members: Iterator[Item[T]],
     make: Make[T, S, R],
     destination: Destination,
     session: Session,
-    tell: Callable[[R, str], None],
+    written: Callable[[R, str], None],
     *,
     skip_existing: bool = False,
     together: int = 1,
     jobs: int = 1,
 ) -> None:
-    """Make something of every member of `found`, write it to `destination`, and report it.
+    """Make something of every member of `members`, write it to `destination`, and report it.
 
     A member that fails is reported and left out. Memory holds what `make` does, or some members for a job.
 
@@ -70,26 +70,26 @@ def deliver(
     ----------
     make : makes of members what to write, and reports, whose stage ``write`` is timed here; with several jobs
         it must be something that can be pickled.
-    tell : is given the report and the path when the member is written.
+    written : is called with the report and the path when a member is written.
     skip_existing : pass over members whose own file is there.
     together : members that one of several jobs gets at a time.
     jobs : processes that make, and write when every member has its own file.
     """
-    leading = next(found, None)
+    leading = next(members, None)
     if leading is None:
         return
     destination.check_only(leading)
-    found = chain([leading], found)
+    members = chain([leading], members)
     each = destination.each or not session.batch
-    todo = _paths(found, destination, session, skip_existing) if each else ((item, "") for item in found)
+    todo = _paths(members, destination, session, skip_existing) if each else ((item, "") for item in members)
     work = _Work(make, destination if each else None)
     done = _in_processes(work, todo, jobs, together) if jobs > 1 and session.batch else work(todo)
     if each:
         for item, path, outcome in done:
             with session.member(item.label, item.source):
-                tell(_made(outcome)[1], path)
+                written(_made(outcome)[1], path)
         return
-    stream = _streamed(done, destination, session, tell)
+    stream = _streamed(done, destination, session, written)
     first = next(stream, None)
     if first is not None:
         destination.write(destination.text, chain([first], stream))
@@ -143,9 +143,9 @@ def _made(outcome: tuple[S | None, R] | Exception) -> tuple[S | None, R]:
 
 
 def _paths(
-    found: Iterator[Item[T]], destination: Destination, session: Session, skip_existing: bool
+    members: Iterator[Item[T]], destination: Destination, session: Session, skip_existing: bool
 ) -> Iterator[tuple[Item[T], str]]:
-    for item in found:
+    for item in members:
         with session.member(item.label, item.source):
             path = destination.path(item)
             if skip_existing and path != "-" and Path(path).exists():
@@ -181,7 +181,7 @@ def _streamed(
     done: Iterator[Done[S, R]],
     destination: Destination,
     session: Session,
-    tell: Callable[[R, str], None],
+    written: Callable[[R, str], None],
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
     size: tuple[int, int, str] | None = None
@@ -196,7 +196,7 @@ def _streamed(
             continue
         with report.timed("write"):
             yield what
-        tell(report, destination.text)
+        written(report, destination.text)
 
 
 def _same_size(what: Grid | Boundary, size: tuple[int, int, str] | None) -> tuple[int, int, str]:

@@ -12,7 +12,7 @@ from meshonet_cli.session import Session
 
 
 def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
-    """Yield every member of every source; a source that cannot be read is told of and passed over.
+    """Yield every member of every source; one that cannot be read is reported and passed over.
 
     Raises
     ------
@@ -27,8 +27,8 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
     for source in sources:
         with session.member(source):
             begun = time.perf_counter()
-            found = read(source)
-            item, more = _following(found, source, session)
+            records = read(source)
+            item, more = _following(records, source, session)
             if item is None and not more:
                 raise InputError(
                     "holds nothing", "give a file with a boundary or a grid in it", source=source
@@ -37,7 +37,7 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
             while item is not None or more:
                 spent = time.perf_counter() - begun
                 begun = time.perf_counter()
-                following, more = _following(found, source, session) if more else (None, False)
+                following, more = _following(records, source, session) if more else (None, False)
                 only = only and following is None and not more
                 session.batch = session.batch or len(sources) > 1 or not only
                 if item is not None:
@@ -47,9 +47,9 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
                 item = following
 
 
-def _following(found: Iterator[T], source: str, session: Session) -> tuple[T | None, bool]:
+def _following(records: Iterator[T], source: str, session: Session) -> tuple[T | None, bool]:
     """Return the next record, None when it cannot be read, which is said, and whether there may be more."""
     with session.member(source):
-        item = next(found, None)
+        item = next(records, None)
         return item, item is not None
     return None, True

@@ -17,7 +17,7 @@ from meshonet.solvers.conformal.evaluate import StripGrid
 
 CELLS = 4.0  # reach of a nudge, in cells either way; with 3 some cells fold
 LARGEST = 0.4  # of a cell's width: beyond it the neighbours would suffer
-SWEEPS = 3  # over the corners, which feel each other a little
+SWEEPS = 3  # over the corners, which influence each other a little
 
 
 def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> None:
@@ -36,7 +36,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
-    """Return how far each corner's shift is felt along the wall (n, corners), and the shifts of phi."""
+    """Return the weight of each corner's shift along the wall (n, corners), and the shifts of phi."""
     n, step = len(wall), 2.0 * np.pi / len(wall)
     between = np.subtract.outer(corners, corners) % n
     apart = np.minimum(between, n - between) + n * np.eye(len(corners))
@@ -60,7 +60,7 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
 
 
 def fading(eta: Floats, first: float) -> Floats:
-    """Return the part of a shift that is left at `eta`: 1 at the first level, nothing at the walls."""
+    """Return the share of a shift at `eta`: 1 at the first level, 0 at the walls."""
     cells = eta / first
     return np.asarray(cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))
 

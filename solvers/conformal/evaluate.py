@@ -109,7 +109,7 @@ class StripGrid:
 
 @lru_cache(maxsize=8)
 def _interpolation(eta: bytes) -> Floats:
-    """Return `interpolation`, kept for bodies that follow on the same levels."""
+    """Return `interpolation`, cached for other bodies with the same levels."""
     return read_only(interpolation(np.frombuffer(eta)))
 
 
@@ -146,11 +146,11 @@ class _HighModes:
         return np.concatenate([k, -k]), modes
 
     def reach(self, depth: Floats) -> int:
-        """Return how many levels of `depth` (rising) feel any of the modes."""
+        """Return how many levels of `depth` (rising) any of the modes reaches."""
         return max((count for count, _ in self._felt(depth)), default=0)
 
     def bands(self, depth: Floats) -> Iterator[tuple[slice, Complexes, Complexes]]:
-        """Yield slices of `depth`, from the wall outwards, with the modes (levels, m) felt there."""
+        """Yield slices of `depth`, from the wall outwards, with the modes (levels, m) that reach them."""
         start = 0
         for count, some in self._felt(depth):
             if count > start:
@@ -161,7 +161,7 @@ class _HighModes:
                 start = count
 
     def _felt(self, depth: Floats) -> list[tuple[int, int]]:
-        """Return, highest octave of modes first, how many levels feel it and how many modes it ends."""
+        """Return for each octave of modes, the highest first, the levels it reaches and its last mode."""
         octaves: list[tuple[int, int]] = []
         strength = np.abs(self.ahead) + np.abs(self.behind[::-1])
         begin = 0

@@ -34,7 +34,7 @@ class Panel:
 
 
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> list[Panel]:
-    """Return the panels that cover levels `first` to `last` of `eta`, as far as they are worth it.
+    """Return the panels that cover levels `first` to `last` of `eta`, where they save evaluations.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal.bisector import halve_corners
@@ -141,3 +142,31 @@ def _elliptic(boundary: Boundary, why: str) -> Solution:
 
     solution = solve(boundary)
     return replace(solution, notes=(f"{why}: elliptic solver used", *solution.notes))
+
+
+@dataclass(frozen=True)
+class Conformal:
+    """O grids by Picard's iteration in the strip that a conformal map makes of the domain."""
+
+    polish: Polish = "auto"
+    name = "conformal"
+    together = None
+
+    def solve(
+        self,
+        problems: Sequence[Boundary],
+        start: Sequence[Grid] | None = None,  # noqa: ARG002 - the iteration starts from the harmonic extension
+    ) -> list[Solution]:
+        """Return a solution for each of the boundaries.
+
+        Raises
+        ------
+        InputError
+            a boundary that is not around a body.
+        """
+        for problem in problems:
+            if problem.topology != "o":
+                what = f"method conformal makes o grids, and this boundary is {problem.topology}"
+                raise InputError(what, "use another {method}")
+        solutions = solve(problems, self.polish)
+        return [replace(each, method=self.name, model=None) if each.model else each for each in solutions]

@@ -106,7 +106,7 @@ def decay(k: Any, T: Any, eta: Any, xp: Any = np) -> tuple[Any, Any]:
 
 
 def smoothing() -> Floats:
-    """Return what is taken of a change of each mode: those near `MODES` are aliases of others."""
+    """Return the filter of a change of each mode: those near `MODES` are aliases of others."""
     return np.asarray(np.exp(-36.0 * (np.abs(wavenumbers()) / (MODES + 1)) ** 12))
 
 
@@ -156,7 +156,7 @@ def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
 
 @lru_cache(maxsize=1)
 def _kernels() -> tuple[Floats, Floats, Floats]:
-    """Return what `step` takes: matrices, eigenvalues, and a filter against aliasing."""
+    """Return what the compiled step takes: matrices, eigenvalues, and a filter against aliasing."""
     grid = across()
     inner = np.zeros((2, LEVELS, LEVELS))
     inner[:, 1:-1, 1:-1] = grid.inverse, grid.vectors

@@ -20,7 +20,7 @@ from meshonet.geometry.errors import SolverError
 from meshonet.solvers.elliptic.control import Controls, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
 from meshonet.solvers.iteration import check_settings, initial_nodes
-from meshonet.solvers.progress import tell
+from meshonet.solvers.progress import cycle_ended
 from meshonet.solvers.solution import Outcome, Solution
 
 ATTEMPTS = (Settings(), Settings(coarsest=32, sweeps=4), Settings(coarsest=64, sweeps=8))
@@ -153,11 +153,11 @@ def _attempt(
     estimate = tol is None and initial is None
     residuals = [levels.residual()]
     corrections: list[float] = []
-    tell(method, nodes, 0, residuals[0] / start)
+    cycle_ended(method, nodes, 0, residuals[0] / start)
     while not residuals[-1] <= goal and len(corrections) < max_cycles:
         corrections.append(levels.cycle())
         residuals.append(levels.residual())
-        tell(method, nodes, len(corrections), residuals[-1] / start, corrections[-1])
+        cycle_ended(method, nodes, len(corrections), residuals[-1] / start, corrections[-1])
         if _diverges(residuals, start, 1.5 if settings == ATTEMPTS[0] else 10.0):
             raise _DivergedError(f"residual {residuals[-1] / start:.1e} after {len(corrections)} cycles")
         if estimate and residuals[-1] < 0.5 * start and _at_discretisation_level(corrections):

@@ -19,7 +19,7 @@ from meshonet.solvers.energy.local_descent import descend_windows
 from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.energy.untangle import unfold
-from meshonet.solvers.progress import heard, tell
+from meshonet.solvers.progress import cycle_ended, listened_to
 
 HARD = 1.1
 """Value of the functional around a body above which descents go on."""
@@ -99,14 +99,14 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
 
 def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
     """Return what calls listeners after iterations that move `nodes` (ni, nj, 2), None without listeners."""
-    if not heard():
+    if not listened_to():
         return None
     first = 0.0
 
     def listener(number: int, value: float, slope: float) -> None:
         nonlocal first
         first = slope if number == 0 else first
-        tell("variational", nodes, number, slope / first if first else 0.0, functional=value)
+        cycle_ended("variational", nodes, number, slope / first if first else 0.0, functional=value)
 
     return listener
 

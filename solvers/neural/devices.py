@@ -1,4 +1,4 @@
-"""Grids of many boundaries through torch, on a device of its: the networks' own, without guard."""
+"""Grids of many boundaries by torch on a CPU or GPU, straight from the networks: folds are not repaired."""
 
 from __future__ import annotations
 

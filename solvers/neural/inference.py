@@ -1,4 +1,4 @@
-"""From boundaries to grids by whatever model is named, or by what measures best."""
+"""From boundaries to grids by the model that is named, or by the method that measures best."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def infer_many(
 
 
 def many_of(model: str | None, device: Device | None = None, polish: Polish = "auto") -> Topology | None:
-    """Return the topology of which `infer_many` makes grids faster together, None if of none."""
+    """Return the topology of boundaries that `infer_many` solves faster together; None: one by one."""
     if device is None and (model == BASE or (model is None and polish == "auto")):
         return None  # no network
     operator = load(model or DEFAULTS["o"])
@@ -93,23 +93,16 @@ def many_of(model: str | None, device: Device | None = None, polish: Polish = "a
 
 
 def _by_best(topology: Topology, boundaries: Sequence[Boundary]) -> list[Solution]:
-    """Return what measures best for a topology, by no network."""
+    """Return solutions by the method that measures best for a topology; it needs no network."""
     if topology == "o":
         return conformal.solve(boundaries, substitute=_by_bodies)
-    from meshonet.solvers.energy.variational import solve
-    from meshonet.solvers.pipeline.select import solve_automatic
+    from meshonet.solvers.pipeline.select import without_network
 
-    if topology == "quad":
-        return [solve_automatic(boundary, solve, "variational") for boundary in boundaries]
-    solutions = [solve_automatic(boundary, solve, "auto") for boundary in boundaries]
-    note = "no shipped model makes c grids: this one is {}"
-    return [
-        replace(solution, notes=(note.format(solution.method), *solution.notes)) for solution in solutions
-    ]
+    return without_network(topology).solve(boundaries)
 
 
 def _by_bodies(boundary: Boundary, why: str) -> Solution | None:
-    """Return the grid by `hole-o` of a compact body, None where that has folds."""
+    """Return the grid of a compact body by `hole-o`, None if it is folded."""
     from meshonet.solvers.algebraic.resample.grids import thinned
     from meshonet.solvers.neural.quad.encoding import LATENT
     from meshonet.solvers.neural.quad.o_grids import compact

@@ -1,4 +1,4 @@
-"""What every trained operator is, whatever its network: boundaries in, solutions out."""
+"""The interface of all trained operators, whatever their network: boundaries in, solutions out."""
 
 from __future__ import annotations
 

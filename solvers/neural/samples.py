@@ -62,7 +62,7 @@ class Samples:
         return np.array([k for k, own in enumerate(self.splits) if (own or "train") == split], dtype=np.intp)
 
     def fingerprint(self) -> str:
-        """Return a text that differs when a node or a split does."""
+        """Return a hash of nodes and splits."""
         digest = hashlib.sha256(np.ascontiguousarray(self.nodes).tobytes())
         digest.update("/".join(self.splits).encode())
         return digest.hexdigest()[:16]

@@ -84,7 +84,7 @@ class Layered(Wrapper):
     marched : topologies that are marched from the wall when there is a height off walls.
     channels : make lines leave the walls of four-sided domains at right angles when there is such a height.
     slide : move wall nodes of four-sided domains; None: in channels, when they were sampled here.
-    chosen : settings that were given by name, to be refused where they are of no use.
+    chosen : settings that are not the defaults; they are refused where they are of no use.
     """
 
     cells: FirstCells
@@ -96,7 +96,7 @@ class Layered(Wrapper):
     chosen: tuple[str, ...] = ()
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary, its first cells as high as asked.
+        """Return the solution of a boundary, its first cells of the heights.
 
         Raises
         ------

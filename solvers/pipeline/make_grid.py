@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice
 
@@ -36,8 +37,9 @@ class Result:
     quality : of the grid.
     seconds : wall-clock seconds by stage: boundary, load (modules and models, once a process), grid (from
         boundary nodes in memory to grid nodes in memory), guard, quality.
-    notes : sentences a user should read, those of boundary and solution among them.
-    history : its cycles, when asked for.
+    notes : sentences a user should read, those of boundary and solution among them; names of parameters
+        stand in braces, for `meshonet.geometry.errors.spelled`.
+    history : its cycles, when the request keeps them.
     """
 
     solution: Solution
@@ -78,7 +80,7 @@ def make_grid(shape: Shape, request: GridRequest) -> Result:
 def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result | Exception]:
     """Yield for each of the shapes, in order, its grid or the error that it ended in.
 
-    Shapes are read as results are asked for, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
+    Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
     solves many faster in one call. They do not change one another's grids but in the last digits.
 
     Raises
@@ -90,11 +92,8 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     shapes = iter(shapes)
     while group := _group(shapes, request, MOST_TOGETHER if method.together else 1):
         _solve_together(group, method)
-        for member in group:
-            try:
-                yield _finished(member, method, request)
-            except Exception as error:
-                yield error
+        while group:
+            yield _finished_or_error(group.popleft(), method, request)
 
 
 @dataclass
@@ -106,8 +105,8 @@ class _Member:
     solution: Solution | None = None
 
 
-def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> list[_Member]:
-    group: list[_Member] = []
+def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_Member]:
+    group: deque[_Member] = deque()
     nodes = 0
     for shape in islice(shapes, most):
         begun = time.perf_counter()
@@ -133,7 +132,7 @@ def _sampled(shape: Shape, request: GridRequest) -> Boundary:
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
     """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those along a wake included.
 
-    Edges that were given share their nodes out as they are.
+    The nodes of boundaries are distributed as before.
     """
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
@@ -141,7 +140,7 @@ def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Samp
     return replace(sampling, ni=k * (boundary.ni - 1) + 1, nj=k * (boundary.nj - 1) + 1, wake_nodes=nodes)
 
 
-def _solve_together(group: Sequence[_Member], method: Method) -> None:
+def _solve_together(group: Iterable[_Member], method: Method) -> None:
     """Solve those that the method takes in one call; when that fails each is solved in its turn."""
     alike = [
         (member, member.boundary)
@@ -157,6 +156,13 @@ def _solve_together(group: Sequence[_Member], method: Method) -> None:
         for (member, _), solution in zip(alike, solutions, strict=True):
             member.solution = solution
             _add_times(member.seconds, solution, share)
+
+
+def _finished_or_error(member: _Member, method: Method, request: GridRequest) -> Result | Exception:
+    try:
+        return _finished(member, method, request)
+    except Exception as error:
+        return error
 
 
 def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
@@ -207,4 +213,4 @@ def _changed_first_cells(solution: Solution, checked: Solution) -> tuple[str, ..
     error = worst_first_cell(checked)
     if error < 1e-8:
         return ()
-    return (f"the guard changed first cells: they miss what was asked by up to {error:.1g} of it",)
+    return (f"the guard changed first cells: their heights are off by up to {error:.1g} of what was asked",)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.method import Each, Method, OneByOne, Wrapper, method_named
+from meshonet.solvers.method import Method, OneByOne, Wrapper, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.solution import Solution
 
@@ -89,14 +89,13 @@ def fewer_on_quads(method: Method) -> Auto:
     return Auto(Fewer(method), method, method, method.name)
 
 
+def without_network(topology: Topology) -> Method:
+    """Return what measures best in four-sided domains, variational grids, or around wakes."""
+    if topology == "quad":
+        return Fewer(method_named("variational"))
+    return AroundWake("no shipped model makes c grids: this one is")
+
+
 def best(operator: Method) -> Auto:
-    """Return what measures best: variational grids, `operator` around bodies, marched C grids."""
-    wake = AroundWake("no shipped model makes c grids: this one is")
-    return Auto(Fewer(method_named("variational")), operator, wake, "best")
-
-
-def solve_automatic(boundary: Boundary, solve: Callable[[Boundary], Solution], name: str) -> Solution:
-    """Solve with `solve`, the method `name`, as `elliptic` (``auto``) or `fewer_on_quads` would."""
-    method = Each("winslow" if name == "auto" else name, solve)
-    auto = Auto(Fewer(method), method, AroundWake() if name == "auto" else method)
-    return auto.solve_one(boundary)
+    """Return what measures best for each topology: `operator` around bodies, no network elsewhere."""
+    return Auto(without_network("quad"), operator, without_network("c"), "best")

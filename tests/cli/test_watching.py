@@ -20,7 +20,7 @@ from command_line import ROOT, Meshonet, dataset, ellipse
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.energy.functional import Weights, value
-from meshonet.solvers.progress import Cycle, listening, tell
+from meshonet.solvers.progress import Cycle, cycle_ended, listening
 from meshonet_cli.convergence import COLUMNS, Live
 
 
@@ -174,10 +174,10 @@ def test_the_terminal_is_not_flooded() -> None:
 def test_who_does_not_listen_hears_nothing() -> None:
     heard: list[Cycle] = []
     nodes = np.zeros((3, 4, 2))
-    tell("winslow", nodes, 1, 0.5)
+    cycle_ended("winslow", nodes, 1, 0.5)
     with listening(heard.append):
-        tell("winslow", nodes, 2, 0.25, 0.1)
-    tell("winslow", nodes, 3, 0.1)
+        cycle_ended("winslow", nodes, 2, 0.25, 0.1)
+    cycle_ended("winslow", nodes, 3, 0.1)
     assert heard == [Cycle("winslow", 3, 4, 2, 0.25, 0.1, 6)]
 
 
@@ -188,7 +188,7 @@ def test_threads_do_not_hear_one_another() -> None:
     def solve(name: str, number: int) -> None:
         with listening(lambda cycle: heard[name].append(cycle.number)):
             both.wait(10)
-            tell("winslow", np.zeros((3, 4, 2)), number, 0.5)
+            cycle_ended("winslow", np.zeros((3, 4, 2)), number, 0.5)
             both.wait(10)
 
     threads = [threading.Thread(target=solve, args=item) for item in (("a", 1), ("b", 2))]

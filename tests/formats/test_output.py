@@ -126,7 +126,10 @@ def test_standard_output_gets_nothing_on_failure(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_reader_that_stops_early_is_no_error() -> None:
-    code = "from meshonet.formats.output import whole_file\nwith whole_file('-') as p: p.write_bytes(bytes(10**7))"
+    code = (
+        "from meshonet.formats.output import whole_file\n"
+        "with whole_file('-') as part: part.write_bytes(bytes(10**7))"
+    )
     # more than a pipe holds: the writer is still at it when the reader leaves, whichever of them is slower
     pipe = f'{PYTHON} -c "{code}" | head -c 10 | wc -c; echo ${{PIPESTATUS[0]}}'
     done = subprocess.run(["bash", "-c", pipe], capture_output=True, text=True, timeout=60, check=True)

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 import torch
 from torch import Tensor
 
-from meshonet.geometry.arrays import array_like
+from meshonet.geometry.arrays import Topology, array_like
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.algebraic.resample import corner_damping
 from meshonet.solvers.algebraic.resample.o_grid import SQUARINGS, along_lines
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.neural.differentiable.resample import between
 from meshonet.solvers.neural.differentiable.sides import (
+    NetworkGrids,
     as_complex,
     as_numpy,
     check_levels,
     check_sides,
-    quad_network,
 )
-from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.encoding import LATENT
 from meshonet.solvers.neural.quad.inside import inside, slope
 from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, answered
@@ -27,26 +28,11 @@ from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.quad.unrolled import AROUND, around_middles, even, factors, rolled
 
 
-class BodyGrids:
-    """An operator for bodies as a differentiable function.
+class BodyGrids(NetworkGrids):
+    """An operator for bodies, ``hole-o`` by default, as a differentiable function."""
 
-    Parameters
-    ----------
-    model : ``hole-o``, ``hole-winslow``, the path of a file, or such an operator itself.
-    device : torch's name of where to compute.
-    dtype : torch's type of the arithmetic.
-
-    Raises
-    ------
-    InputError
-        no such model, or one that cannot be read.
-    """
-
-    def __init__(
-        self, model: str | Operator = "hole-o", device: str = "cpu", dtype: torch.dtype = torch.float64
-    ) -> None:
-        self._dtype = dtype
-        self._network, self._head = quad_network(model, "o", device, dtype, "use one for bodies")
+    topology: ClassVar[Topology] = "o"
+    remedy: ClassVar[str] = "use one for bodies"
 
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
@@ -79,13 +65,9 @@ class BodyGrids:
         inner = torch.cat([inner[:, :-1], inner[:, :1]], 1)[:, :, 1:-1]
         return torch.cat([south[:, :, None], inner, north[:, :, None]], 2)
 
-    def _answer(self, seen: Tensor) -> Tensor:
-        answer: Tensor = self._network(seen)[:, self._head]
-        return answer
-
 
 def _inside(wall: Tensor) -> Tensor:
-    """Return the point that `inside.inside` finds, which follows `wall` (n,) as a step of Newton's does."""
+    """Return the point of `inside.inside`; its gradient is that of one step of Newton's method."""
     point = complex(inside(as_numpy(wall).astype(np.complex128)))
     size = (wall.detach() - wall[0].detach()).abs().max()
     curve = (wall - wall[0]) / size
@@ -96,7 +78,7 @@ def _inside(wall: Tensor) -> Tensor:
 
 
 def _evaluated(coarse: Tensor, south: Tensor, north: Tensor, nj: int) -> Tensor:
-    """Return the nodes (batch, ni, nj), as `o_grid.evaluate_around` does; the rim is not theirs."""
+    """Return the nodes (batch, ni, nj) that `o_grid.evaluate_around` returns, except on the boundary."""
     m, ni = coarse.shape[1], south.shape[1]
     lines, share = along_lines(coarse, nj, torch)
     shares = array_like(corner_damping.linear(m, ni), share, torch) @ share

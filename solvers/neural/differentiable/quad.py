@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
 
+from meshonet.geometry.arrays import Topology
 from meshonet.solvers.neural.differentiable.resample import arrays, between, evaluated, folded
-from meshonet.solvers.neural.differentiable.sides import as_complex, check_sides, quad_network
-from meshonet.solvers.neural.operator import Operator
+from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, check_sides
 from meshonet.solvers.neural.quad.coarse_grids import share
 from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, frame
 from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
@@ -18,27 +18,11 @@ Sides = tuple[Tensor, ...]
 """South, north (batch, 2, ni), west and east (batch, 2, nj)."""
 
 
-class QuadGrids:
-    """An operator for four-sided domains as a differentiable function.
+class QuadGrids(NetworkGrids):
+    """An operator for four-sided domains, ``quad-general`` by default, as a differentiable function."""
 
-    Parameters
-    ----------
-    model : ``quad-general``, ``quad-winslow``, the path of a file, or such an operator itself.
-    device : torch's name of where to compute.
-    dtype : torch's type of the arithmetic.
-
-    Raises
-    ------
-    InputError
-        no such model, or one that cannot be read.
-    """
-
-    def __init__(
-        self, model: str | Operator = "quad-general", device: str = "cpu", dtype: torch.dtype = torch.float64
-    ) -> None:
-        self._dtype = dtype
-        remedy = "use one of four-sided domains, or BodyGrids"
-        self._network, self._head = quad_network(model, "quad", device, dtype, remedy)
+    topology: ClassVar[Topology] = "quad"
+    remedy: ClassVar[str] = "use one of four-sided domains, or BodyGrids"
 
     def __call__(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of grids inside four edges each.
@@ -65,7 +49,7 @@ class QuadGrids:
         base = interpolated(thin, _laws(thin))
         z, factor = _framed(base)
         near, step = approach(z, torch)
-        move = SCALE * self._network(features(near, step, torch))[:, self._head]
+        move = SCALE * self._answer(features(near, step, torch))
         answer = near + (move if self._head == WINSLOW else _shares(near, move) * move)
         return _moved(base, (answer - z) / factor)
 
@@ -78,7 +62,7 @@ def _framed(planes: Tensor) -> tuple[Tensor, Tensor]:
 
 
 def _shares(near: Tensor, by: Tensor) -> Tensor:
-    """Return how much (batch, 1, 1) of moves `by` to take from grids `near`; no gradients go through it."""
+    """Return the share (batch, 1, 1) of the moves `by` to take from grids `near`, without gradients."""
     start, answer = (torch.stack([z.real, z.imag], 1).detach() for z in (near, near + by))
     where = folded(answer).nonzero()[:, 0]
     parts = [share(*pair) for pair in zip(arrays(start[where]), arrays(answer[where]), strict=True)]

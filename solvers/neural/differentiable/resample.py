@@ -37,7 +37,7 @@ def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
 
 
 def _evaluated(coarse: Tensor, sides: tuple[Tensor, ...], curved: Tensor | None = None) -> Tensor:
-    """Return what `evaluated` does, of second derivatives the share that `curved` (batch, 1, m, n) leaves."""
+    """Return grids evaluated with the share `curved` (batch, 1, m, n) of the second derivatives."""
     (m, n), ni, nj = coarse.shape[2:], sides[0].shape[-1], sides[2].shape[-1]
 
     def matrix(values: Floats) -> Tensor:

@@ -1,8 +1,8 @@
-"""What differentiable operators take: nodes of sides in batches, and an operator by name or as an object."""
+"""Arguments of differentiable operators: nodes of sides in batches, an operator by name or as an object."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import torch
 from torch import Tensor
@@ -13,6 +13,9 @@ from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.registry import load
+
+SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}
+"""The operator of the quad network for a topology."""
 
 
 def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:
@@ -44,23 +47,40 @@ def check_levels(nj: int) -> None:
         raise InputError(f"nj is {nj} nodes", "use at least 2")
 
 
-def quad_network(
-    model: str | Operator, topology: Topology, device: str, dtype: torch.dtype, remedy: str
-) -> tuple[QuadUNet, int]:
-    """Return the fixed network of a quad operator, and the number of its answer.
+class NetworkGrids:
+    """An operator of the quad network as a differentiable function.
+
+    Parameters
+    ----------
+    model : name of a shipped operator, the path of a file, or such an operator itself.
+    device : torch's name of where to compute.
+    dtype : torch's type of the arithmetic.
 
     Raises
     ------
     InputError
-        no such model, or one that cannot be read; it makes grids of another topology, for which `remedy`.
+        no such model, or one that cannot be read or makes grids of another topology.
     """
-    operator = load(model) if isinstance(model, str) else model
-    if not isinstance(operator, QuadOperator) or operator.topology != topology:
-        raise InputError(f"model {operator.name} makes {operator.topology} grids", remedy)
-    network = QuadUNet(operator.widths, operator.blocks, around=topology == "o")
-    network.load_state_dict({name: torch.from_numpy(array) for name, array in operator.weights.items()})
-    network.to(device=device, dtype=dtype).requires_grad_(False)
-    return network, operator.head
+
+    topology: ClassVar[Topology]
+    remedy: ClassVar[str]
+
+    def __init__(
+        self, model: str | Operator = "", device: str = "cpu", dtype: torch.dtype = torch.float64
+    ) -> None:
+        operator = load(model or SHIPPED[self.topology]) if isinstance(model, str) else model
+        if not isinstance(operator, QuadOperator) or operator.topology != self.topology:
+            raise InputError(f"model {operator.name} makes {operator.topology} grids", self.remedy)
+        self._dtype, self._head = dtype, operator.head
+        self._network = QuadUNet(operator.widths, operator.blocks, around=self.topology == "o")
+        state = {name: torch.from_numpy(array) for name, array in operator.weights.items()}
+        self._network.load_state_dict(state)
+        self._network.to(device=device, dtype=dtype).requires_grad_(False)
+
+    def _answer(self, seen: Tensor) -> Tensor:
+        """Return the network's answer (batch, m, n) to features."""
+        answer: Tensor = self._network(seen)[:, self._head]
+        return answer
 
 
 def as_complex(planes: Tensor) -> Tensor:

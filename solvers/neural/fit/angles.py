@@ -1,4 +1,4 @@
-"""The cells' included angles of a batch of grids in torch, so that a network can be taught by them."""
+"""The cells' included angles of a batch of grids in torch, as parts of a loss."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a training run is made of: the same plan, data and machine give the same weights."""
+"""Settings of a training run: the same settings, data and machine give the same weights."""
 
 from __future__ import annotations
 

@@ -165,7 +165,7 @@ def _further(z: Tensor, by: int) -> Tensor:
 
 
 def _error(answer: Tensor, goal: Tensor) -> Tensor:
-    """Return the mean over grids of how far steps are from the goal's, in its steps, and a little of places.
+    """Return the mean relative error of the steps between nodes, and a little of the nodes themselves.
 
     The logarithm keeps the few domains that are hard from ruling the rest.
     """
@@ -179,7 +179,7 @@ def _error(answer: Tensor, goal: Tensor) -> Tensor:
 
 
 def _distance(answer: Tensor, goal: Tensor) -> Tensor:
-    """Return the logarithm of the distance between grids, which counts in near ones too, in the mean."""
+    """Return the mean logarithm of the distance between grids, so that small distances count too."""
     distance = (answer - goal).abs().square().mean((1, 2)).sqrt()
     return NEAR * torch.log1p(distance / CLOSE).mean()
 

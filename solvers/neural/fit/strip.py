@@ -42,7 +42,7 @@ class Sizes:
 
 
 class StripTask(Task):
-    """The strip network on solved strips and their mirror images; small answers count too.
+    """The strip network on solved strips and their mirror images, small answers weighted up.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the loop and the trainer need of a model and its data."""
+"""The interface of a model with its data to the loop and the trainer."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Task(nn.Module):
 
 @dataclass(frozen=True)
 class Run:
-    """A task, with the facts that its recipe tells and those beside them that a resumed run must share."""
+    """A task, the facts for its recipe, and further facts that a resumed run must have in common."""
 
     task: Task
     recipe: Mapping[str, Any]

@@ -15,7 +15,7 @@ from meshonet.solvers.neural.fit.plan import Device
 
 @dataclass(frozen=True)
 class Team:
-    """A process among its fellows.
+    """A process among those that train together.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Models that are trained on solved grids, one a file, written once for numpy and torch."""
+"""Models that are trained on solved grids, written once for numpy and torch."""

@@ -1,4 +1,4 @@
-"""What every operator model answers to: the one interface that training and inference know."""
+"""The interface of the models that are trained on solved grids."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class Frame:
-    """What a model is built for: topology, node counts and number of its training grids."""
+    """Topology, node counts and number of the training grids."""
 
     topology: Topology
     ni: int

@@ -1,4 +1,4 @@
-"""Operators of branch and trunk: an answer is a product of what they see of the boundary and of places.
+"""Operators of branch and trunk: a product of features of the boundary and features of places.
 
 With s the coordinates of m sensors, [:k] and [k:] the halves of features for x and y, and biases b::
 

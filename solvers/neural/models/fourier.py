@@ -34,7 +34,7 @@ SIDE = 5
 
 @dataclass(frozen=True)
 class Fourier(Architecture):
-    """What both have in common.
+    """The settings and layers of both.
 
     Parameters
     ----------

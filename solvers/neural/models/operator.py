@@ -167,7 +167,7 @@ class PaperOperator(Operator):
         return np.stack([along @ nodes[..., k] @ across for k in (0, 1)], axis=-1)
 
     def _try(self) -> None:
-        """Ask for a few nodes, so that arrays which do not fit are found when the file is read."""
+        """Evaluate a few nodes, so that arrays which do not fit are reported when the file is read."""
         model, frame = self.model, self.frame
         inputs = {"sensors": np.zeros((1, model.sensors, 2), np.float32)}
         where, index = square(2, 2).astype(np.float32), np.array([0, 1, 2, frame.ni * frame.nj - 1])

@@ -65,7 +65,7 @@ def _nearer(coarse: Floats, edges: Edges) -> Floats:
 
 
 def _begun(edges: Edges) -> Floats:
-    """Return transfinite grids as planes (batch, 2, n, n) at n = 33 nodes each."""
+    """Return transfinite grids as planes (batch, 2, 33, 33)."""
     base = np.empty((len(edges), 2, LATENT, LATENT))
     ni, nj = edges.counts
     tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
@@ -73,7 +73,7 @@ def _begun(edges: Edges) -> Floats:
 
 
 def _unit(planes: Floats) -> tuple[Floats, Floats]:
-    """Return planes at unit size (`meshonet.solvers.neural.quad.frame`), and the factors (batch, 2) to it."""
+    """Return planes at unit size (`encoding.frame`), and the factors (batch, 2) to it."""
     unit, factors = np.empty_like(planes), np.empty((len(planes), 2))
     frame_take_out(planes, unit, factors)
     return unit, factors
@@ -85,7 +85,7 @@ def evaluate(coarse: Floats, edges: Edges) -> Floats:
 
 
 def share(start: Floats, answer: Floats) -> float:
-    """Return how much of the way from `start` to `answer`, planes (2, m, n) both, to go: 1 but for folds."""
+    """Return the share of the step from `start` to `answer`, planes (2, m, n), to take: 1 unless it folds."""
     if count_folded(answer.transpose(1, 2, 0)) == 0:
         return 1.0
     tried = ((part, start + part * (answer - start)) for part in SHARES)

@@ -1,4 +1,4 @@
-"""The edges of many four-sided domains with the same node counts, and what is made of them alone."""
+"""The edges of many four-sided domains with the same node counts, and their transfinite grids."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Edges:
 
     @property
     def sides(self) -> Sides:
-        """The four."""
+        """South, north, west and east."""
         return self.south, self.north, self.west, self.east
 
     @property

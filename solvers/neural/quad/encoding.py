@@ -1,6 +1,7 @@
 """What the quad network sees and what its answer means: the one copy that training and inference share.
 
-At every node of a grid in its own frame: the grid, its steps and their changes, and what last moved it.
+At every node of a grid in its own frame: the grid, its steps and their changes, and what last moved it. `xp`
+is the module, numpy or torch, that arrays are of.
 """
 
 from __future__ import annotations
@@ -41,12 +42,7 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 
     ``(z - middle) * factor`` has its outline's area 1, and its mean step from west to east and, turned by a
     quarter, from south to north points along x. The eight relabellings of a domain have the same frame,
-    relabelled. Compiled for planes it is `kernels/neural/frame.c`.
-
-    Parameters
-    ----------
-    z : array of numpy or of torch; only its rim is looked at.
-    xp : the module, numpy or torch, that `z` is of.
+    relabelled. Only the rim is looked at. Compiled for planes it is `kernels/neural/frame.c`.
     """
     south, north, west, east = z[:, :, 0], z[:, :, -1], z[:, 0], z[:, -1]
     outline = xp.concatenate(
@@ -65,9 +61,7 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
 
     Parameters
     ----------
-    z : array of numpy or of torch.
-    step : of its shape, what last moved it (`approach`).
-    xp : the module, numpy or torch, that `z` is of.
+    step : of the shape of `z`, what last moved it (`picard.approach`).
     around : `z` are O grids (batch, m + 1, n) unrolled (`unrolled`), whose last column is the first a turn
         on: differences along xi go round, and places are those less even steps. Returns (batch, m, n, ...).
 

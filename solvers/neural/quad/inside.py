@@ -50,11 +50,7 @@ def inside(wall: Complexes) -> complex:
 def slope(p: Any, wall: Any, xp: Any) -> tuple[Any, Any, Any]:
     """Return the potential's gradient g and its second derivatives m and c at `p`, of a closed curve (n,).
 
-    A step v changes g by ``m v + c v̄``; m is real.
-
-    Parameters
-    ----------
-    xp : the module, numpy or torch, that `wall` is of.
+    A step v changes g by ``m v + c v̄``; m is real. `xp` is the module, numpy or torch, of `wall`.
     """
     x, lengths = _pieces(wall, xp)
     o = p - x

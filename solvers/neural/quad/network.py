@@ -8,9 +8,8 @@ On n = 33, 17, 9 and 5 nodes along each axis, with channels in sets of eight (`s
     d = m · project(silu(h))                   two components for each head, m = 0 on the rim
 
 with blocks (before and after) h + b(silu(a(silu(h)))) and 3 x 3 kernels in a, b and down. Expanded
-once, the kernels are those of an ordinary convolutional network, which is compiled, most of it by fewer
-products (`kernels/neural/winograd.h`).
-`meshonet.solvers.neural.differentiable.quad_unet` is the same in torch.
+once, the kernels are those of an ordinary convolutional network, which is compiled
+(`kernels/neural/convolve.h`). `meshonet.solvers.neural.differentiable.quad_unet` is the same in torch.
 Ronneberger et al., U-Net, MICCAI 2015.
 """
 
@@ -25,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats, read_only
-from meshonet.kernels._native import LayerProgram, activate, convolve, upsample, winograd, winograd_scratch
+from meshonet.kernels._native import LayerProgram, activate, convolve, upsample
 from meshonet.solvers.neural.quad import symmetry
 from meshonet.solvers.neural.quad.encoding import FEATURES, HEADS
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
@@ -35,9 +34,6 @@ Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
 CHUNK = 16
 """Domains that go through a layer together: their fields stay in the cache, and so do its weights."""
-
-FEWEST = 16
-"""Channels from which a convolution by 3 x 3 taps goes by fewer products."""
 
 MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8
 """Of networks that are read; five levels are 33, 17, 9, 5 and 3 nodes."""
@@ -130,8 +126,6 @@ class Network:
             layer, _, rest = name.rpartition(".")
             if rest == "weight":
                 kernel = symmetry.convolution(exact[name], symmetry.table(exact[name].shape[-1]), np)
-                if min(kernel.shape[:2]) >= FEWEST and kernel.shape[2] == 3 and not layer.startswith("down"):
-                    kernel = symmetry.at_points(kernel)
                 self._layers[layer] = _packed(kernel, exact[f"{layer}.bias"], self.dtype)
         self._idle: dict[tuple[int, int], list[LayerProgram]] = {}  # of no thread at the time
         self.heads = len(exact["project"])
@@ -193,16 +187,10 @@ class _Work:
 
     def layer(self, name: str, x: Reals, stride: int = 1, add: Reals | None = None, room: str = "") -> Reals:
         weight, bias, outputs = self._layers[name]
-        taps = len(weight) // x.shape[3]
-        size = 1 if taps == 1 else 3
+        size = 1 if len(weight) == x.shape[3] else 3
         m, n = ((count - size) // stride + 1 for count in x.shape[1:3])
         out = self._room(room or name, (len(x), m, n, outputs), x.dtype)
-        if taps > size * size:
-            count = winograd_scratch(x.shape[3], weight.shape[1], LINE // x.itemsize)
-            scratch = self._room("scratch", (count,), x.dtype)
-            winograd(x, weight, bias, add, scratch, out, self.program)
-        else:
-            convolve(x, weight, bias, size, stride, add, out, self.program)
+        convolve(x, weight, bias, size, stride, add, out, self.program)
         return out
 
     def finer(self, low: Reals, skip: Reals) -> Reals:

@@ -9,10 +9,9 @@ Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma)
 at their means over the domain. Differences are of nearly fourth order: three quarters of the leading error
 are taken out, which leaves that of a grid with half the steps.
 
-What is left when the steps end is the network's: corners and tails, where this many nodes are too few.
-After it a few more take what it has left of its own. Where coefficients vary much they alone converge
-slowly or not at all, so these are extrapolated: each goes to where the step would vanish if it were linear
-along the last move.
+What is left is the network's: corners and tails, where this many nodes are too few. A few more steps after
+it, which alone converge slowly or not at all where coefficients vary much, are extrapolated: each goes to
+where the step would vanish if it were linear along the last move. `xp` is numpy or torch.
 Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
 (1965) 547-560.
 """
@@ -56,8 +55,7 @@ def approach(
 
     Parameters
     ----------
-    z : (batch, n, n) grids of unit size, complex, of numpy or of torch.
-    xp : the module, numpy or torch, that `z` is of.
+    z : (batch, n, n) grids of unit size, complex, arrays of `xp`.
     around : `z` are strips (batch, m + 1, n), whose last column is the first a turn on.
     steps : of Picard's iteration.
     harmonic : they go out from the harmonic grid, else from `z`, and are extrapolated.
@@ -101,7 +99,7 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
 
 
 def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
-    """Return the move to where steps vanish that were `step` before the last `move`, and `found` after."""
+    """Return the move to where steps vanish that were `step` before the last `move`, then `correction`."""
     change = correction - step
     share = (change * correction).sum((1, 2, 3)) / ((change**2).sum((1, 2, 3)) + TINY)
     return correction - xp.clip(share, -1.0, 1.0)[:, None, None, None] * (change + move)

@@ -104,24 +104,6 @@ def convolution(weight: Any, places: Any, xp: Any) -> Any:
     return xp.moveaxis(spread, 2, 1).reshape(ORDER * out, ORDER * into, size, size)
 
 
-POINTS: Floats = np.array(
-    [
-        [1 / 2, 0, 0],
-        [-1 / 2, -1 / 2, -1 / 2],
-        [-1 / 6, 1 / 6, -1 / 6],
-        [1 / 6, 1 / 3, 2 / 3],
-        [0, 0, 1],
-    ]
-)
-"""(5, 3) takes the taps of a kernel along an axis to what `winograd.h` multiplies: values at 0, 1, -1, 2 and
-infinity, divided by what interpolation through these divides by."""
-
-
-def at_points(kernel: Floats) -> Floats:
-    """Return (out, in, 5, 5) of a kernel (out, in, 3, 3), `POINTS` along both axes."""
-    return np.asarray(POINTS @ kernel @ POINTS.T)
-
-
 def lift(weight: Any, seen: Any, xp: Any) -> Any:
     """Return (8 out, FEATURES) from `weight` (out, FEATURES): the features as seen from each element."""
     return xp.einsum("cf,gfk->cgk", weight, seen).reshape(ORDER * len(weight), -1)

@@ -1,4 +1,4 @@
-"""The strip network's forward pass in numpy.
+"""The strip network's forward pass in numpy, float64.
 
 A one-dimensional Fourier neural operator along theta, so that it commutes with shifts of theta::
 
@@ -7,19 +7,16 @@ A one-dimensional Fourier neural operator along theta, so that it commutes with 
     out = P h + K' h
 
 Li et al., Fourier Neural Operator for Parametric Partial Differential Equations (2020). The same layers in
-torch are `meshonet.solvers.neural.differentiable.strip_fno`; a test holds the two together.
+torch are `meshonet.solvers.neural.differentiable.strip_fno`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-Reals: TypeAlias = NDArray[np.floating[Any]]
-"""float32 or float64: the arithmetic is that of the weights."""
+from meshonet.geometry.arrays import Complexes, Floats
 
 TAPS = 5
 GATE = 0.3
@@ -30,45 +27,39 @@ class StripNetwork:
 
     Parameters
     ----------
-    weights : arrays by torch's names; float32 or float64 decides the arithmetic.
+    weights : arrays by torch's names.
     """
 
-    def __init__(self, weights: Mapping[str, Reals]) -> None:
-        self.dtype = weights["lift.weight"].dtype
-        self._lift = _Pointwise(weights, "lift")
+    def __init__(self, weights: Mapping[str, Floats]) -> None:
+        self._lift, self._project = (_Convolution(weights, name) for name in ("lift", "project"))
         self._layers = [
             (
-                _taps(weights, f"conv.{n}"),
+                _Convolution(weights, f"conv.{n}"),
                 _mixing(weights, f"spectral.{n}"),
-                _Pointwise(weights, f"expand.{n}"),
+                _Convolution(weights, f"expand.{n}"),
             )
             for n in range(sum(name.startswith("conv.") for name in weights) // 2)
         ]
-        self._project = _Pointwise(weights, "project")
         self._spectral_out = _mixing(weights, "spectral_out")
 
-    def __call__(self, channels: Reals, scalars: Reals) -> Reals:
-        """Return answers (batch, outputs, columns).
-
-        `channels` are (batch, inputs, columns), `scalars` (batch, count).
-        """
-        columns = channels.shape[2]
-        constant = np.repeat(scalars[:, :, None], columns, axis=2)
-        h = self._lift(np.concatenate([channels, constant], axis=1).swapaxes(0, 1).astype(self.dtype))
+    def __call__(self, channels: Floats, scalars: Floats) -> Floats:
+        """Return (batch, outputs, columns) for `channels` (batch, inputs, columns), `scalars` (batch, k)."""
+        constant = np.repeat(scalars[:, :, None], channels.shape[2], axis=2)
+        h = self._lift(np.concatenate([channels, constant], axis=1).swapaxes(0, 1))
         width = len(h) // 2
         h = h[:width] * h[width:] + gelu(h[:width])
-        for (taps, bias), mixing, expand in self._layers:
-            both = _convolve(taps, bias, h)
+        for convolution, mixing, expand in self._layers:
+            both = convolution(h)
             a, b = both[:width], both[width:]
             gate = np.tanh(a)
             gate *= b
-            gate *= self.dtype.type(GATE)
+            gate *= GATE
             gate += expand(gelu(a + spectral(mixing, h)))
             h = h + gate
         return np.asarray(self._project(h) + spectral(self._spectral_out, h)).swapaxes(0, 1)
 
 
-def check_shapes(weights: Mapping[str, Reals]) -> None:
+def check_shapes(weights: Mapping[str, Floats]) -> None:
     """Raise ValueError or KeyError unless `weights` are those of a network, by names and shapes."""
     width, inputs = weights["lift.weight"].shape[0] // 2, weights["lift.weight"].shape[1]
     outputs = weights["project.weight"].shape[0]
@@ -90,61 +81,48 @@ def check_shapes(weights: Mapping[str, Reals]) -> None:
             raise ValueError(f"array {name!r:.60} has shape {shape} in place of {wanted.get(name)}")
 
 
-def gelu(x: Reals) -> Reals:
+def gelu(x: Floats) -> Floats:
     """Return the Gaussian error linear unit in its tanh form. Hendrycks & Gimpel, arXiv 1606.08415."""
     y = x * x
-    y *= x.dtype.type(0.044715 * 0.7978845608028654)
-    y += x.dtype.type(0.7978845608028654)
+    y *= 0.044715 * 0.7978845608028654
+    y += 0.7978845608028654
     y *= x
     np.tanh(y, out=y)
-    y += x.dtype.type(1.0)
-    y *= x.dtype.type(0.5) * x
-    return np.asarray(y)
+    y += 1.0
+    y *= 0.5 * x
+    return y
 
 
-def spectral(mixing: Reals, h: Reals) -> Reals:
+def spectral(mixing: Complexes, h: Floats) -> Floats:
     """Return h (c, batch, n) with its first modes mixed by a complex matrix each: `mixing` (modes, c, d)."""
     count, n = len(mixing), h.shape[2]
     spectrum = np.ascontiguousarray(np.fft.rfft(h)[..., :count].T)
-    out = np.zeros((mixing.shape[2], h.shape[1], n // 2 + 1), mixing.dtype)
+    out = np.zeros((mixing.shape[2], h.shape[1], n // 2 + 1), complex)
     out[..., :count] = (spectrum @ mixing).T
-    return np.fft.irfft(out, n).astype(h.dtype, copy=False)
+    return np.fft.irfft(out, n)
 
 
-class _Pointwise:
-    """A linear map of the channels (c, batch, n), the same in every column."""
+class _Convolution:
+    """A circular convolution over one column or over `TAPS` of them, of h (c, batch, n), as one product."""
 
-    def __init__(self, weights: Mapping[str, Reals], name: str) -> None:
-        self._matrix = np.ascontiguousarray(weights[f"{name}.weight"][:, :, 0])
+    def __init__(self, weights: Mapping[str, Floats], name: str) -> None:
+        weight = weights[f"{name}.weight"]
+        self._taps = weight.shape[2]
+        self._matrix = np.concatenate([weight[:, :, t] for t in range(self._taps)], axis=1)
         self._bias = weights[f"{name}.bias"][:, None]
 
-    def __call__(self, h: Reals) -> Reals:
-        out = self._matrix @ h.reshape(len(h), -1)
+    def __call__(self, h: Floats) -> Floats:
+        width, batch, n = h.shape
+        if half := self._taps // 2:
+            around = np.concatenate([h[..., -half:], h, h[..., :half]], axis=2)
+            h = np.empty((self._taps, width, batch, n))
+            for t in range(self._taps):
+                h[t] = around[..., t : t + n]
+        out = self._matrix @ h.reshape(self._taps * width, -1)
         out += self._bias
-        return out.reshape(-1, *h.shape[1:])
+        return out.reshape(-1, batch, n)
 
 
-def _taps(weights: Mapping[str, Reals], name: str) -> tuple[Reals, Reals]:
-    """Return a convolution's weights side by side, (outputs, TAPS inputs), and its bias."""
+def _mixing(weights: Mapping[str, Floats], name: str) -> Complexes:
     weight = weights[f"{name}.weight"]
-    return np.concatenate([weight[:, :, t] for t in range(TAPS)], axis=1), weights[f"{name}.bias"][:, None]
-
-
-def _mixing(weights: Mapping[str, Reals], name: str) -> Reals:
-    weight = weights[f"{name}.weight"]
-    return np.asarray(weight[..., 0] + weight.dtype.type(1) * 1j * weight[..., 1]).astype(
-        np.result_type(weight.dtype, np.complex64)
-    )
-
-
-def _convolve(taps: Reals, bias: Reals, h: Reals) -> Reals:
-    """Return the circular convolution over `TAPS` columns as one matrix product."""
-    width, batch, n = h.shape
-    half = TAPS // 2
-    around = np.concatenate([h[..., -half:], h, h[..., :half]], axis=2)
-    shifted = np.empty((TAPS, width, batch, n), h.dtype)
-    for t in range(TAPS):
-        shifted[t] = around[..., t : t + n]
-    out = taps @ shifted.reshape(TAPS * width, -1)
-    out += bias
-    return out.reshape(-1, batch, n)
+    return np.asarray(weight[..., 0] + 1j * weight[..., 1])

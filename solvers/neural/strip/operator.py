@@ -16,7 +16,7 @@ from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.conformal.strip import LEVELS, smoothing
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.strip.encoding import CHANNELS, SCALARS, decode, encode
-from meshonet.solvers.neural.strip.network import Reals, StripNetwork, check_shapes
+from meshonet.solvers.neural.strip.network import StripNetwork, check_shapes
 from meshonet.solvers.solution import Solution
 
 
@@ -30,7 +30,7 @@ class StripOperator(Operator):
     basis, scale : (Q, LEVELS - 2) functions of the network's targets, and their size.
     """
 
-    weights: Mapping[str, Reals] = field(default_factory=dict)
+    weights: Mapping[str, Floats] = field(default_factory=dict)
     basis: Floats = field(default_factory=lambda: np.zeros((0, LEVELS - 2)))
     scale: float = 1.0
     network: StripNetwork | None = None
@@ -58,7 +58,7 @@ class StripOperator(Operator):
             return np.zeros((*wall.shape, LEVELS), complex)
         flip = np.zeros((len(wall), 1), bool) if hand is None else hand[:, None] < 0
         channels, scalars, size = encode(np.where(flip, wall.conj(), wall), np.where(flip, far.conj(), far))
-        coefficients = self.network(channels, scalars).astype(np.float64)
+        coefficients = self.network(channels, scalars)
         answer: Complexes = decode(coefficients, self.basis, self.scale, size)
         answer.imag[flip[:, 0]] *= -1.0
         if hand is not None:

@@ -16,13 +16,11 @@ from meshonet.kernels._native import (
     convolve,
     grid_features,
     upsample,
-    winograd,
-    winograd_scratch,
 )
 from meshonet.solvers.neural.quad.encoding import FEATURES, features
 from meshonet.solvers.neural.quad.network import CHUNK, Network, shapes
 from meshonet.solvers.neural.quad.picard import approach
-from meshonet.solvers.neural.quad.symmetry import ORDER, at_points
+from meshonet.solvers.neural.quad.symmetry import ORDER
 
 WIDTHS, BLOCKS = (1, 2, 3), (0, 1, 2)
 CLOSE: dict[Any, float] = {np.float32: 2e-5, np.float64: 1e-13}
@@ -83,48 +81,6 @@ def test_a_convolution_of_arrays_that_do_not_fit_is_refused() -> None:
         convolve(x, weight, bias, 3, 1, x, out)
     with pytest.raises(ValueError, match="smaller than the kernel"):
         convolve(x[:, :2, :2].copy(), weight, bias, 3, 1, None, out)
-
-
-@pytest.mark.parametrize(("dtype", "close"), [(np.float32, 5e-6), (np.float64, 1e-14)])
-@pytest.mark.parametrize("more", [False, True])
-@pytest.mark.parametrize(
-    ("batch", "m", "n", "into", "out"),
-    [(2, 35, 35, 16, 16), (3, 19, 19, 24, 24), (9, 7, 7, 64, 64), (1, 5, 7, 17, 16), (2, 13, 6, 40, 100)],
-)
-def test_fewer_products_make_the_same_convolution(
-    batch: int, m: int, n: int, into: int, out: int, more: bool, dtype: Any, close: float
-) -> None:
-    rng = np.random.default_rng(0)
-    x = rng.normal(size=(batch, m, n, into)).astype(dtype)
-    kernel, bias = rng.normal(size=(out, into, 3, 3)), rng.normal(size=out).astype(dtype)
-    windows = np.lib.stride_tricks.sliding_window_view(x.astype(float), (3, 3), axis=(1, 2))
-    expected = np.einsum("bmnipq,oipq->bmno", windows, kernel, optimize=True) + bias.astype(float)
-    add = rng.normal(size=expected.shape).astype(dtype) if more else None
-    weight, biases = packed(at_points(kernel), bias, dtype)
-    found = np.full(expected.shape, np.nan, dtype)
-    winograd(x, weight, biases, add, room(into, weight, dtype), found)
-    expected += 0.0 if add is None else add
-    np.testing.assert_allclose(found, expected, rtol=0, atol=close * np.abs(expected).max())
-
-
-def room(into: int, weight: NDArray[Any], dtype: Any) -> NDArray[Any]:
-    return np.zeros(winograd_scratch(into, weight.shape[1], 64 // np.dtype(dtype).itemsize), dtype)
-
-
-def test_fewer_products_of_arrays_that_do_not_fit_are_refused() -> None:
-    x, out = np.zeros((1, 5, 5, 16)), np.zeros((1, 3, 3, 16))
-    weight, bias = packed(np.zeros((16, 16, 5, 5)), np.zeros(16), np.float64)
-    scratch = room(16, weight, np.float64)
-    with pytest.raises(ValueError, match="too few"):
-        winograd(x[:, :4].copy(), weight, bias, None, scratch, out)
-    with pytest.raises(ValueError, match="is needed"):
-        winograd(x, weight, bias, None, scratch, out[:, 1:].copy())
-    with pytest.raises(ValueError, match="is needed"):
-        winograd(x, weight[1:], bias, None, scratch, out)
-    with pytest.raises(ValueError, match="is needed"):
-        winograd(x, weight, bias, x, scratch, out)
-    with pytest.raises(ValueError, match="scratch that is too small"):
-        winograd(x, weight, bias, None, scratch[1:], out)
 
 
 @pytest.mark.parametrize(("dtype", "close"), [(np.float32, 1e-6), (np.float64, 2e-15)])

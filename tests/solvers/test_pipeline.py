@@ -1,0 +1,102 @@
+"""Methods that wrap methods, batches, and what is carried as data instead of being read from words."""
+
+import numpy as np
+import pytest
+from solver_shapes import arch, folded, hole, wrench
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.solvers.algebraic.tfi import solve as interpolate
+from meshonet.solvers.method import METHODS, Each, method_named
+from meshonet.solvers.pipeline.coarse import Coarse
+from meshonet.solvers.pipeline.fallback import Fallback
+from meshonet.solvers.pipeline.make_grid import make_grid, make_grids
+from meshonet.solvers.pipeline.request import GridRequest, grid_request
+from meshonet.solvers.pipeline.sequence import Sequenced
+from meshonet.solvers.solution import Outcome, Solution
+
+
+def test_a_fallback_is_a_method_that_repairs() -> None:
+    (solution,) = Fallback(method_named("tfi")).solve([wrench(60, 60)])
+    assert folded(solution.grid.nodes) == 0
+    assert solution.path
+    assert solution.seconds["guard"] > 0
+    with pytest.raises(NoValidGridError, match="stay folded after repair; use more nodes"):
+        Fallback(method_named("tfi"), others=(), margin=2).solve([impossible()])
+    (kept,) = Fallback(method_named("tfi"), others=(), allow_invalid=True).solve([impossible()])
+    assert kept.outcome is Outcome.FOLDED
+
+
+def impossible() -> Boundary:
+    """A channel whose floor pierces its ceiling, cells of which stay folded whatever is done."""
+    boundary = arch(12, 4)
+    south = boundary.south.copy()
+    south[5:7, 1] += 1.2 * (boundary.north[5:7, 1] - south[5:7, 1])
+    return Boundary(south, boundary.north, boundary.west, boundary.east)
+
+
+def test_wrappers_have_the_name_of_their_method_and_combine() -> None:
+    method = method_named("winslow", tol=1e-9)
+    for wrapped in (Coarse(method, 17), Sequenced(method, 1), Fallback(Sequenced(method, 1))):
+        assert wrapped.name == "winslow"
+    with pytest.raises(InputError, match="a coarse solve has no use for a grid to start from; drop initial"):
+        Coarse(method, 17).solve([arch(33, 17)], [interpolate(arch(33, 17)).grid])
+    fine = method.solve([arch(33, 17)])[0].grid
+    again = Sequenced(method, 1).solve([arch(33, 17)])[0].grid
+    np.testing.assert_allclose(again.nodes, fine.nodes, atol=1e-7)
+
+
+def test_rows_of_methods_load_what_they_name() -> None:
+    for name, row in METHODS.items():
+        method = method_named(name)
+        assert method.name == name
+        assert isinstance(method, Each) != row.is_class
+
+
+def test_a_request_says_what_excludes_what() -> None:
+    for parameters, problem in (
+        ({"first_cell": 1e-3, "y_plus": 1, "reynolds": 1e6}, "first_cell and y_plus both say"),
+        ({"y_plus": 1}, "y_plus without reynolds"),
+        ({"coarse": 33, "refine": 1}, "coarse and refine both solve on fewer nodes"),
+        ({"method": "hyperbolic"}, "method hyperbolic without a first cell"),
+        ({"wall_angle": 80}, "wall_angle: method best sets no angle"),
+        ({"spacing_west": -1}, "spacing_west: a first cell of -1"),
+        ({"repair": True, "answer": "raw"}, "repair would change a raw answer"),
+        ({"method": "winslow", "tol": 3}, "tol: 3 is not between 0 and 1"),
+    ):
+        with pytest.raises(InputError, match=problem):
+            grid_request(**parameters)  # type: ignore[arg-type]
+
+
+def test_first_cells_that_the_guard_changes_are_noted(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fold(boundary: Boundary) -> Solution:
+        made = interpolate(boundary)
+        nodes = made.grid.nodes.copy(order="K")
+        nodes[10, 1], nodes[10, 2] = nodes[10, 2].copy(), nodes[10, 1].copy()
+        return Solution(boundary.grid(nodes), "fake", first_cells={"south": 1e-3})
+
+    monkeypatch.setattr(GridRequest, "solver", lambda self: Each("fake", fold))
+    result = make_grid(arch(21, 11), GridRequest())
+    assert result.solution.path == ("repair",)
+    assert any("the guard changed first cells" in note for note in result.notes)
+
+
+def test_many_are_solved_in_one_call_and_one_by_one_when_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: list[int] = []
+
+    class Many:
+        name, together = "many", "quad"
+
+        def solve(self, problems: list[Boundary], start: object = None) -> list[Solution]:
+            calls.append(len(problems))
+            if len(problems) > 1 and any(problem.ni == 13 for problem in problems):
+                raise MemoryError
+            return [interpolate(problem) for problem in problems]
+
+    monkeypatch.setattr(GridRequest, "solver", lambda self: Many())
+    shapes = [arch(21, 11), hole(21, 11), arch(21, 11)]
+    assert all(not isinstance(result, Exception) for result in make_grids(shapes, GridRequest()))
+    assert calls == [2, 1]
+    calls.clear()
+    assert len(list(make_grids([arch(21, 11), arch(13, 11)], GridRequest()))) == 2
+    assert calls == [2, 1, 1]
