@@ -59,7 +59,8 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
         a topology other than ``quad``.
     """
     if boundary.around_body:
-        raise InputError(f"walls of topology {boundary.topology} cannot slide", "slide those of channels")
+        problem = f"walls of topology {boundary.topology} cannot slide"
+        raise InputError(problem, "slide those of channels", parameter="slide")
     curves = Curve(boundary.south), Curve(boundary.north)
     knots = curves[0].knots, curves[1].knots
     m, n = (min(count, most) for count, most in zip((boundary.ni, boundary.nj), COUNTS, strict=True))
