@@ -97,7 +97,7 @@ def judged(way: str, make: Way, edges: Boundary, goal: Floats | None, pde: Float
 
 def around(edges: Boundary, goal: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     """Return `goal` from the middle of the shape, and which of its nodes count as near the wall."""
-    if edges.topology == "o":
+    if edges.periodic:
         reach = np.hypot(*(edges.south - edges.south[0]).T)
         off = goal - 0.5 * (edges.south[0] + edges.south[np.argmax(reach)])
         return off, np.hypot(off[..., 0], off[..., 1]) < NEAR * reach.max()

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from meshonet.formats.format import Heights
-from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
-from meshonet.formats.source import open_source
+from meshonet.formats.source import LARGEST, open_source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.coarsen import coarser_grid
 from meshonet.geometry.blocks.grid import Grid

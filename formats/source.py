@@ -14,6 +14,8 @@ from meshonet.geometry.errors import InputError
 SPLITS = ("train", "test")
 HEAD_BYTES = 65536
 """How much of a file a format sees when it is asked whether the file is one of its own."""
+LARGEST = 1e150
+"""Coordinates in files must be below this, so that areas and their sums are finite."""
 
 
 @dataclass(frozen=True)

@@ -32,8 +32,8 @@ class InputError(MeshonetError):
     place : where in the source, e.g. ``line 12`` or ``dataset 'south'``.
     parameter : the parameter the problem is in, by its name in Python.
 
-    Problem and remedy refer to parameters in braces, ``{far_field}``: Python's users read ``far_field``, those
-    of the command line ``--far-field`` (`spelled`).
+    Problem and remedy refer to parameters in braces, ``{far_field}``: in Python these read
+    ``far_field``, on the command line ``--far-field`` (`spelled`).
 
     Examples
     --------

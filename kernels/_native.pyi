@@ -64,13 +64,6 @@ class MultigridLevel:
     def correct(self, coarse: MultigridLevel) -> float: ...
 
 # energy
-def repair_energy(
-    x: Floats, y: Floats, width: Floats, height: Floats, periodic: bool, shape: float, epsilon: float
-) -> tuple[float, Floats, Floats, float]: ...
-def repair_minimise(
-    x: Floats, y: Floats, width: Floats, height: Floats, periodic: bool, shape: float, epsilon: float,
-    most: int, still: float, until_valid: float = 0.0,
-) -> tuple[int, float, float]: ...  # fmt: skip
 def variational_workspace(ni: int, nj: int) -> int: ...
 def variational_energy(
     z: Floats, aspect: float, shape: float, smoothness: float, epsilon: float, periodic: bool,

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from meshonet.api.models import models as models
     from meshonet.api.plot import plot as plot
     from meshonet.api.quality import quality as quality
+    from meshonet.api.train import train as train
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.grid import Grid as Grid
     from meshonet.geometry.errors import InputError as InputError
@@ -50,6 +51,7 @@ _MODULES = {
     "meshonet.api.models": ("models",),
     "meshonet.api.plot": ("plot",),
     "meshonet.api.quality": ("quality",),
+    "meshonet.api.train": ("train",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.grid": ("Grid",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),

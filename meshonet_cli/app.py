@@ -27,7 +27,6 @@ import typer
 import typer.core
 
 from meshonet_cli.commands import COMMANDS, Command
-from meshonet_cli.options.groups import GROUPS, IO
 from meshonet_cli.stopping import install
 from meshonet_cli.version import VERSION
 
@@ -59,6 +58,8 @@ class Plain(typer.core.TyperCommand):
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write arguments and options, these by their groups."""
+        from meshonet_cli.options.groups import GROUPS, IO  # which a list of all commands does not need
+
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], **{group: [] for group in GROUPS}}
         for parameter in self.get_params(ctx):
             record = parameter.get_help_record(ctx)

@@ -18,6 +18,7 @@ from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, one_by_one, prepare
 from meshonet_cli.batch.sources import items
 from meshonet_cli.batch.timed import Timed
+from meshonet_cli.errors import with_options
 from meshonet_cli.session import Session
 
 
@@ -32,14 +33,14 @@ class Sampled(Timed):
         edges = self.boundary
         parts = [patch.name for patch in edges.patches]
         facts = {"ni": edges.ni, "nj": edges.nj, "topology": edges.topology, "parts": parts}
-        notes = {"notes": list(edges.notes)} if edges.notes else {}
+        notes = {"notes": [with_options(note) for note in edges.notes]} if edges.notes else {}
         return {**self.member_json(), **facts, **notes, "seconds": self.times_json()}
 
     def line(self) -> str:
         """Return it for people."""
         size = f"{self.boundary.ni} x {self.boundary.nj} nodes, {self.boundary.topology}"
         head = f"{self.item.label} -> {self.output}: {size}, {self.times()}"
-        return "\n  ".join([head, *self.boundary.notes])
+        return "\n  ".join([head, *map(with_options, self.boundary.notes)])
 
     lines = line
 

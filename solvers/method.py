@@ -132,12 +132,15 @@ class Row(NamedTuple):
     summary : for help and documentation, behind the name.
     solves : whether ``solve-pde`` offers it.
     sweeps : whether relaxing Winslow's equations around kinks suits its grids: not where they have sources.
+    algebraic : whether its grids are formulas of the boundary, not repaired unless that is asked for, and
+        inside boundaries that are sampled in the same way with first cells and without.
     """
 
     target: str
     summary: str
     solves: bool = True
     sweeps: bool = True
+    algebraic: bool = False
 
     @property
     def is_class(self) -> bool:
@@ -147,7 +150,12 @@ class Row(NamedTuple):
 
 METHODS: Mapping[str, Row] = MappingProxyType(
     {
-        "tfi": Row("meshonet.solvers.algebraic.tfi:solve", "interpolates between the edges", solves=False),
+        "tfi": Row(
+            "meshonet.solvers.algebraic.tfi:solve",
+            "interpolates between the edges",
+            solves=False,
+            algebraic=True,
+        ),
         "winslow": Row("meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"),
         "thomas-middlecoff": Row(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",

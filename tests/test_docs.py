@@ -45,6 +45,10 @@ def test_the_models_page_is_current() -> None:
     assert (ROOT / "docs" / "models.md").read_text() == pages().models_page(), "run make docs"  # type: ignore[attr-defined]
 
 
+def test_the_formats_page_is_current() -> None:
+    assert (ROOT / "docs" / "formats.md").read_text() == pages().formats_page(), "run make docs"  # type: ignore[attr-defined]
+
+
 def test_curves_have_a_row_for_every_epoch_of_their_model() -> None:
     found = sorted((ROOT / "docs" / "curves").glob("*.csv"))
     assert found
@@ -166,3 +170,12 @@ def test_the_example_makefile_grids_a_folder_and_judges_it(tmp_path: Path) -> No
     assert done.returncode == 0, done.stderr
     assert {path.name for path in (tmp_path / "grids").iterdir()} == {"one.vts", "two.vts"}
     assert (tmp_path / "quality.json").read_text().count('"folded"') >= 2
+
+
+def test_every_path_of_the_architecture_page_is_there() -> None:
+    """Paths in backticks, from the root or from a package; NAME stands for what is added."""
+    page = (ROOT / "docs" / "architecture.md").read_text()
+    words = re.findall(r"`([a-z_/]+(?:/|\.py|\.md|\.pyi|\.pyx))`", page)
+    assert len(words) > 30
+    roots = (ROOT, ROOT / "docs", ROOT / "tests" / "formats", ROOT / "meshonet_cli")
+    assert not [word for word in words if not any((root / word).exists() for root in roots)]

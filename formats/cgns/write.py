@@ -127,8 +127,9 @@ def _write_connections(zone: Node, name: str, grid: Grid, planes: int) -> None:
             count += 1
             joint = child(node, f"Cut{count}", "GridConnectivity1to1_t", name)
             (side, *ends), across = donor, PLACES[own[0]]
+            start, stop = ends[::along]
             child(joint, "PointRange", "IndexRange_t", _range(*own, grid, planes))
-            child(joint, "PointRangeDonor", "IndexRange_t", _range(side, *ends[::along], grid, planes))
+            child(joint, "PointRangeDonor", "IndexRange_t", _range(side, start, stop, grid, planes))
             transform = np.array([along, along, 3], np.int32)[: 3 if planes else 2]
             transform[across[0]] = -1 if across[1] == PLACES[side][1] else 1
             transform[:2] *= [1, 2]

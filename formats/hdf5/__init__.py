@@ -10,8 +10,8 @@
     sensors      (n, m, 2), sub-sampled boundary nodes, when they are wanted
 
 Everything is chunked by sample, or by a few where these are small, and resizable along n. `parts`, a list of
-``[name, side, start, stop]``, and `provenance` are JSON; the first grid's provenance is repeated in the file's
-attributes, for reading by eye. Grids of several blocks, or of other blocks than plane ones, have version 2::
+``[name, side, start, stop]``, and `provenance` are JSON; the first grid's provenance stands in the file's
+attributes too, for reading by eye. Grids of several blocks, or of blocks in space, have version 2::
 
     attributes   format = "meshonet-grid", version = 2, connections (JSON)
     blocks/0, blocks/1 ...   (n, ni, nj, 2), (n, ni, nj, nk, 3) or (n, ni, nj, 3)

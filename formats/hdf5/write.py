@@ -214,12 +214,13 @@ def _size_of(sample: Boundary | Grid) -> str:
 
 def _arrays_of(sample: Boundary | Grid) -> dict[str, Floats]:
     if isinstance(sample, Boundary):
-        edges = {side: getattr(sample, side) for side in SIDES}
+        edges: dict[str, Floats] = {side: getattr(sample, side) for side in SIDES}
         return edges if sample.sensors is None else edges | {"sensors": sample.sensors}
     if sample.topology == "blocks":
         return {f"blocks/{k}": block.nodes for k, block in enumerate(sample.blocks)}
     # the edges are those of the nodes: a grid of any quality is written, also one that is no valid boundary
-    return {side: sample.face(0, side) for side in SIDES} | {"nodes": sample.nodes}
+    faces: dict[str, Floats] = {side: sample.face(0, side) for side in SIDES}
+    return faces | {"nodes": sample.nodes}
 
 
 def _row_of(patch: Patch, several: bool) -> list[object]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from meshonet.formats.source import LARGEST
 from meshonet.geometry.arrays import TOPOLOGIES, Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import wake_nodes
@@ -11,8 +12,6 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 
-LARGEST = 1e150
-"""Coordinates must be below this, so that areas and their sums are finite."""
 _SEAM = 1e-6
 
 

@@ -14,9 +14,8 @@ import numpy as np
 from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.mesh.loops import Loop, closed_loops
 from meshonet.formats.mesh.quad_strips import line_across
-from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.source import printable
+from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.patches import Patch

@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from meshonet.formats.mesh.recover_topology import LARGEST
 from meshonet.formats.mesh.surface import MOST_EDGES, Surface, shapes_of
 from meshonet.formats.mesh.unstructured import Indices
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape

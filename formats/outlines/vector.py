@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshonet.formats.mesh.closed_curve import closed_curve
-from meshonet.formats.mesh.recover_topology import LARGEST
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area

@@ -48,7 +48,8 @@ def _write(path: Path, grid: Grid, planes: int) -> None:
         rows += [f"SYMMETRY 1 {face} 1 {grid.ni} 1 {grid.nj}" for face in (1, 2)]
     for connection in grid.connections:
         own, (side, *ends) = connection.stretches(0)
-        donor = _range(side, *ends[:: connection.orientation[0]], planes)
+        first, last = ends[:: connection.orientation[0]]
+        donor = _range(side, first, last, planes)
         rows.append(f"ONE_TO_ONE {_range(*own, planes)} {donor} FALSE")
     text = [_RULE, "# Block# IDIM JDIM KDIM", _RULE, "1", f"1 {grid.ni} {grid.nj} {planes}", _RULE]
     text += ["# Type B1 F1 S1 E1 S2 E2 [B2 F2 S1 E1 S2 E2 Swap]", _RULE, *rows, ""]

@@ -11,7 +11,7 @@ import re
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from meshonet.formats.mesh.recover_topology import LARGEST
+from meshonet.formats.source import LARGEST
 from meshonet.geometry.errors import InputError
 
 Kind = Literal["blank", "text", "row", "noted", "gap", "broken", "damaged"]

@@ -42,7 +42,7 @@ class Block:
     ----------
     nodes : (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface; float64, any unit of length, kept in
         planar layout (see `meshonet.geometry.arrays`).
-    finite : the nodes are known to be finite, and the check is left out: it takes a tenth of making some grids.
+    finite : the nodes are known to be finite: the check, a tenth of the time of some methods, is left out.
 
     Raises
     ------

@@ -65,8 +65,7 @@ def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
     for patch in patches:
         for node in (patch.start, patch.stop):
             if node % k:
-                raise InputError(
-                    f"patch {patch.name!r} ends at node {node} of {patch.side}, which every {k}-th leaves out",
-                    f"make the grid with ends at multiples of {k} ({{wake_nodes}} for a wake), or coarsen less",
-                )
+                end = f"patch {patch.name!r} ends at node {node} of {patch.side}"
+                ends = f"make the grid with ends at multiples of {k} ({{wake_nodes}} for a wake)"
+                raise InputError(f"{end}, which every {k}-th leaves out", f"{ends}, or coarsen less")
     return tuple(replace(patch, start=patch.start // k, stop=patch.stop // k) for patch in patches)

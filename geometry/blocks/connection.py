@@ -71,7 +71,7 @@ class Connection:
     transform: Motion | None = None
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the nodes (n, d) or (n, m, d) of both sides in the same order, the first moved by `transform`."""
+        """Return the nodes of both sides in one order (n, d) or (n, m, d), the first moved by `transform`."""
         own, donor = _part(face(self.block, self.side), self.range), face(self.donor, self.donor_side)
         donor = _part(donor, self.donor_range)
         if len(self.orientation) != own.ndim - 1:
@@ -148,7 +148,7 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 
 
 def wake_nodes(south: Floats) -> int:
-    """Return how many nodes at the start of `south` (ni, 2) are repeated, in reverse, at its end; 0 if all are.
+    """Return how many nodes at the start of `south` (ni, 2) are repeated in reverse at its end; 0 if all are.
 
     This is how a wake is found in nodes that came without connections.
     """
@@ -158,7 +158,7 @@ def wake_nodes(south: Floats) -> int:
 
 
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
-    """Return the connections of a block of `topology` with the south side `south` (ni, 2) and nj rows.
+    """Return the connections of a block of `topology`, found in its south side (ni, 2), with nj rows.
 
     Raises
     ------

@@ -14,6 +14,9 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.errors import InputError
 
+_AROUND: tuple[Side, Side] = ("south", "north")
+_ACROSS: tuple[Side, Side] = ("west", "east")
+
 
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
     """Return `m` nodes (m, 2) on the curve through `nodes` (n, 2), spaced by the same law.
@@ -65,41 +68,29 @@ def resample_edges(
     """
     if closed and ni < 4:
         raise InputError(f"{ni} nodes around a body", "use at least 4")
-    sides: dict[Side, Floats] = {}
-    around: tuple[Side, Side] = ("south", "north")
-    across: tuple[Side, Side] = ("west", "east")
+    marks = _marks(len(edges["south"]), ni, wake)
+    south, north = (_in_pieces(edges[side], *marks, closed) for side in _AROUND)
+    west, east = (resample_edge(edges[side], nj, closed=False) for side in _ACROSS)
     if wake:
-        marks = wake_marks(len(edges["south"]), wake, ni)
-        for side in around:
-            sides[side] = _in_pieces(edges[side], *marks)
         cells = marks[1][1]
-        sides["south"][ni - 1 - cells :] = sides["south"][: cells + 1][::-1]
-    else:
-        for side in around:
-            sides[side] = resample_edge(edges[side], ni, closed=closed)
-    for side in across:
-        sides[side] = resample_edge(edges[side], nj, closed=False)
-    return sides
+        south[ni - 1 - cells :] = south[: cells + 1][::-1]
+    return {"south": south, "north": north, "west": west, "east": east}
 
 
-def wake_marks(had: int, wake: int, ni: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
-    """Return ends of wake, wall and wake among `had` nodes and among `ni`: four node numbers each.
-
-    Raises
-    ------
-    InputError
-        no room for the wall.
-    """
-    cells = max(round(wake * (ni - 1) / (had - 1)), 1) if wake else 0
-    if wake and ni - 1 - 2 * cells < 2:
+def _marks(had: int, ni: int, wake: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Return the ends of wake, wall and wake, or of the whole side, among `had` nodes and among `ni`."""
+    if not wake:
+        return (0, had - 1), (0, ni - 1)
+    cells = max(round(wake * (ni - 1) / (had - 1)), 1)
+    if ni - 1 - 2 * cells < 2:
         raise InputError(f"{ni} nodes along a C boundary with a wake", f"use at least {2 * cells + 3}")
     return (0, wake, had - 1 - wake, had - 1), (0, cells, ni - 1 - cells, ni - 1)
 
 
-def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...]) -> Floats:
+def _in_pieces(side: Floats, ends: tuple[int, ...], places: tuple[int, ...], closed: bool) -> Floats:
     """Return the nodes of `side`, each stretch between two `ends` resampled to lie between two `places`."""
     pieces = [
-        resample_edge(side[a : b + 1], q - p + 1, closed=False)
+        resample_edge(side[a : b + 1], q - p + 1, closed=closed)
         for (a, b), (p, q) in zip(pairwise(ends), pairwise(places), strict=True)
     ]
     return np.concatenate([*(piece[:-1] for piece in pieces[:-1]), pieces[-1]])
@@ -109,11 +100,10 @@ def resample_patches(
     patches: tuple[Patch, ...], had: tuple[int, int], has: tuple[int, int], wake: int
 ) -> tuple[Patch, ...]:
     """Return the patches of a boundary that `had` so many nodes along xi and eta and now `has` so many."""
-    along_xi = wake_marks(had[0], wake, has[0])
-    along_eta = (0, had[1] - 1), (0, has[1] - 1)
+    along_xi, along_eta = _marks(had[0], has[0], wake), _marks(had[1], has[1], 0)
 
     def moved(patch: Patch) -> Patch:
-        marks = along_xi if patch.side in ("south", "north") else along_eta
+        marks = along_xi if patch.side in _AROUND else along_eta
         start, stop = (round(float(np.interp(k, *marks))) for k in (patch.start, patch.stop))
         start = min(start, marks[1][-1] - 1)
         return replace(patch, start=start, stop=max(stop, start + 1))

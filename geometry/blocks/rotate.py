@@ -30,7 +30,7 @@ def turned(grid: Grid) -> Grid:
     InputError
         an O or C grid, whose xi runs around the body by definition.
     """
-    if grid.topology != "quad":
+    if grid.around_body:
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
     patches = tuple(_turned(patch, grid.ni - 1) for patch in grid.patches)
     block = Block(np.swapaxes(grid.nodes, 0, 1)[:, ::-1], finite=True)

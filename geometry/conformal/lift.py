@@ -110,7 +110,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
             "the wall does not wind once around its middle",
             "use a method without a conformal map for this shape",
         )
-    return Lift(centre, quarter, tuple(Corner(*one) for one in removed), pole, phase), w, corners
+    return Lift(centre, quarter, tuple(Corner(*removal) for removal in removed), pole, phase), w, corners
 
 
 def follow(wall: Complexes, centre: complex, quarter: complex) -> Complexes:

@@ -135,8 +135,8 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
 def _monotone(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
     """Return the piecewise cubic through rising (x, y) that rises everywhere, at points inside x.
 
-    As `meshonet.geometry.curves.monotone`, with the slopes of the end intervals at the ends; `periodic` lets the
-    two ends share one.
+    As `meshonet.geometry.curves.monotone`, but the slopes at the ends are those of the end intervals;
+    `periodic` lets the two ends share one.
     """
     h = np.diff(x)
     rise = np.diff(y) / h

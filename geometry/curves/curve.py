@@ -12,8 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices, find_corners
 from meshonet.kernels._native import curve_locate, curve_points, curve_slopes, curve_speeds
 
-_STEPS = 8
-"""Parts of an interval in the table of arc length."""
+_STEPS = 8  # parts of an interval in the table of arc length
 _GAUSS = np.array([0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15)])
 _WEIGHTS = np.array([5.0, 8.0, 5.0]) / (18.0 * _STEPS)
 _INNER = ((np.arange(_STEPS)[:, None] + _GAUSS) / _STEPS).ravel()
@@ -28,8 +27,8 @@ class Curve:
     points : (n, 2), any unit of length, neighbours distinct, at least 2 (closed: 3). A closed curve may
         repeat its first point at the end.
     closed : the curve returns from the last point to the first.
-    corners : indices of points where the tangent may jump; None finds them (`meshonet.geometry.polygon.corners`). The ends
-        of an open curve are corners anyway.
+    corners : indices of points where the tangent may jump, the ends of an open curve besides; None finds
+        them (`meshonet.geometry.polygon.corners`).
     straight : (intervals,) true where the curve is to follow the chord instead of the spline.
 
     Raises
@@ -146,25 +145,25 @@ class Curve:
 
 
 def _checked(points: Floats, closed: bool) -> Floats:
-    given = np.array(points, dtype=np.float64)
-    if given.ndim != 2 or given.shape[1] != 2:
-        raise InputError(f"curve points have shape {given.shape}", "give (n, 2)")
-    bad = np.flatnonzero(~np.isfinite(given).all(axis=1))
+    nodes = np.array(points, dtype=np.float64)
+    if nodes.ndim != 2 or nodes.shape[1] != 2:
+        raise InputError(f"curve points have shape {nodes.shape}", "give (n, 2)")
+    bad = np.flatnonzero(~np.isfinite(nodes).all(axis=1))
     if bad.size:
         raise InputError(f"curve point {bad[0]} is not finite", "check the input for NaN or infinity")
-    if closed and len(given) > 1 and np.array_equal(given[0], given[-1]):
-        given = given[:-1]
+    if closed and len(nodes) > 1 and np.array_equal(nodes[0], nodes[-1]):
+        nodes = nodes[:-1]
     least = 3 if closed else 2
-    if len(given) < least:
+    if len(nodes) < least:
         raise InputError(
-            f"{len(given)} points make no {'closed ' if closed else ''}curve", f"give at least {least}"
+            f"{len(nodes)} points make no {'closed ' if closed else ''}curve", f"give at least {least}"
         )
-    step = np.diff(given, axis=0, append=given[:1]) if closed else np.diff(given, axis=0)
+    step = np.diff(nodes, axis=0, append=nodes[:1]) if closed else np.diff(nodes, axis=0)
     same = np.flatnonzero((step == 0).all(axis=1))
     if same.size:
-        x, y = given[same[0]]
+        x, y = nodes[same[0]]
         raise InputError(f"curve point {same[0]} and the next are the same, ({x:.6g}, {y:.6g})", "remove one")
-    return given
+    return nodes
 
 
 def _norm(d: Floats) -> Floats:

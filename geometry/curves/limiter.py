@@ -1,9 +1,9 @@
-"""Tangents turned back where a spline would swing out between its points.
+"""Limits on the tangents of a spline, against overshoots between its points.
 
-A curve without bumps leaves a point between the directions of the chords before and after it. A cubic
-spline does not always: next to a short interval or an unmarked kink it swings out. And where two points
-close together make a step, turning one way and back, a tangent between those chords still throws a wide
-bulge into the long interval beside it: there it has to stay near the long chord.
+The tangent at a point is kept between the directions of the chords before and after it, which a cubic spline
+leaves next to a short interval or an unmarked kink. Where two points close together make a step, turning one
+way and back, even such a tangent makes a wide bulge in the long interval beside them: there it is kept near
+the long chord.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.polygon.corners import Indices, turning
+from meshonet.geometry.polygon.corners import Indices, angle_between, turning
 
 SLACK = 0.25
 """How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
@@ -89,7 +89,7 @@ def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indice
     the angle that the chords enclose.
     """
     before, after = chord[corners - 1], chord[corners]
-    angle, kept = _angle(before, after), _angle(stop[corners - 1], start[corners])
+    angle, kept = angle_between(before, after), angle_between(stop[corners - 1], start[corners])
     open_by = np.where(np.sign(kept) == np.sign(angle), np.pi - np.abs(kept), np.abs(kept) - np.pi)
     closed_up = (np.abs(angle) > np.radians(120.0)) & (open_by < 0.25 * (np.pi - np.abs(angle)))
     if not closed_up.any():
@@ -100,16 +100,9 @@ def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indice
     return start, stop
 
 
-def _angle(a: Floats, b: Floats) -> Floats:
-    """Return the angle (n,) from vectors a to b (n, 2), left positive."""
-    return np.asarray(
-        np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1])
-    )
-
-
 def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
     """Return slopes (n, 2), angles from the chord within `least` and `most`, no longer than `LONGEST`."""
-    angle = _angle(chord, slope)
+    angle = angle_between(chord, slope)
     size = np.hypot(slope[:, 0], slope[:, 1])
     wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))
     if wrong.size == 0:

@@ -18,7 +18,7 @@ def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Fl
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
     Between corners the curve is the cubic spline whose tangent and curvature are continuous, with a
-    parabola in the intervals next to a corner. Then `meshonet.geometry.curves.limiter` turns back what would be a bump.
+    parabola in the intervals next to a corner. `meshonet.geometry.curves.limiter` then removes overshoots.
 
     Parameters
     ----------

@@ -13,6 +13,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.families.edges import arc_lengths, as_nodes, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -51,14 +52,14 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
     first = _facing(body.points, start)
     south = _nodes(body, first, laws[0], ni) * turn
     north = _nodes(far, _facing(far.points, float(np.angle(body.points[first])) + twist), laws[1], ni) * turn
-    walls = _pairs(south), _pairs(north)
+    walls = as_nodes(south), as_nodes(north)
     cut = straight(walls[0][0], walls[1][0], nj)
     return Boundary(walls[0], walls[1], cut, cut, topology="o")
 
 
 def _placed_within(body: Ring, far: Ring, rng: np.random.Generator) -> complex | None:
     """Return a place for the body inside `far`, or None when it does not fit there."""
-    if find_crossing(_pairs(body.points)) is not None or not _around(body.points, 0.0):
+    if find_crossing(as_nodes(body.points)) is not None or not _around(body.points, 0.0):
         return None
     where = complex(0.75 * rng.random() * far.points[rng.integers(len(far.points))])
     if rng.random() < 0.2:
@@ -100,10 +101,10 @@ def _nodes(ring: Ring, first: int, law: Callable[[Floats], Floats], n: int) -> C
     m = len(ring.points)
     points = np.roll(ring.points, -first)[::-1]
     points = np.concatenate([points[-1:], points])  # clockwise, closed
-    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(points)))])
+    length = arc_lengths(points)
     corners = np.sort([length[(first - k) % m] for k in ring.corners if k != first])
     at = on_corners(law(np.linspace(0.0, 1.0, n)) * length[-1], np.asarray(corners))
-    nodes = np.interp(at, length, points.real) + 1j * np.interp(at, length, points.imag)
+    nodes = at_lengths(points, length, at)
     nodes[-1] = nodes[0]
     return nodes
 
@@ -205,10 +206,5 @@ def _through(corners: Complexes) -> Ring:
 
 def _even_steps(z: Complexes) -> Complexes:
     closed = np.append(z, z[0])
-    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(closed)))])
-    at = np.linspace(0.0, length[-1], FINE, endpoint=False)
-    return np.interp(at, length, closed.real) + 1j * np.interp(at, length, closed.imag)
-
-
-def _pairs(z: Complexes) -> Floats:
-    return np.stack([z.real, z.imag], axis=1)
+    length = arc_lengths(closed)
+    return at_lengths(closed, length, np.linspace(0.0, length[-1], FINE, endpoint=False))

@@ -69,5 +69,5 @@ def family(name: str) -> Family:
     """
     if name not in FAMILIES:
         raise InputError(f"family {name!r} is not known", "use one of " + ", ".join(FAMILIES))
-    found: Family = importlib.import_module(f"meshonet.geometry.families.{name}").FAMILY
-    return found
+    member: Family = importlib.import_module(f"meshonet.geometry.families.{name}").FAMILY
+    return member

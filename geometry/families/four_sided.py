@@ -13,6 +13,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.families.edges import arc_lengths, as_nodes, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
 FINE = 601
@@ -39,7 +40,7 @@ def boundary(rng: np.random.Generator, ni: int, nj: int) -> Boundary:
         if _usable([_placed(side, law, CHECKED) for side, law in zip(sides, laws, strict=True)]):
             break
     counts = ni, ni, nj, nj
-    nodes = [_points(_placed(*each)) for each in zip(sides, laws, counts, strict=True)]
+    nodes = [as_nodes(_placed(*each)) for each in zip(sides, laws, counts, strict=True)]
     south, north, west, east = nodes
     west[[0, -1]], east[[0, -1]] = (south[0], north[0]), (south[-1], north[-1])
     return Boundary(south, north, west, east, "quad")
@@ -143,9 +144,8 @@ def _law(rng: np.random.Generator) -> Callable[[Floats], Floats]:
 
 def _placed(side: Complexes, law: Callable[[Floats], Floats], n: int) -> Complexes:
     """Return n nodes on a side, by arc length."""
-    length = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(side)))])
-    at = law(np.linspace(0.0, 1.0, n)) * length[-1]
-    return np.interp(at, length, side.real) + 1j * np.interp(at, length, side.imag)
+    length = arc_lengths(side)
+    return at_lengths(side, length, law(np.linspace(0.0, 1.0, n)) * length[-1])
 
 
 def _usable(sides: list[Complexes]) -> bool:
@@ -162,8 +162,4 @@ def _usable(sides: list[Complexes]) -> bool:
     )
     if not all(LEAST < np.angle(v / u) < MOST for u, v in corners):
         return False
-    return find_crossing(_points(outline)) is None
-
-
-def _points(z: Complexes) -> Floats:
-    return np.stack([z.real, z.imag], axis=-1)
+    return find_crossing(as_nodes(outline)) is None

@@ -134,10 +134,10 @@ def _as_found(rng: np.random.Generator, points: Floats) -> Floats:
     even, ends = q * (n - 1), np.sin(np.pi * q) ** 2 * 0.5 * (n - 1)
     k = np.round(0.6 * even + 0.4 * np.where(q < 0.5, ends, n - 1 - ends)).astype(int)
     k = np.unique(np.r_[0, k, np.argmin(points[:, 0]), n - 1])
-    found = points[k].copy()
-    inner = np.clip(4 * found[:, 0] * (1 - found[:, 0]), 0, 1)
-    found[:, 1] += 10 ** rng.uniform(-5.5, -4.2) * rng.normal(size=len(found)) * inner
-    return found
+    sampled = points[k].copy()
+    inner = np.clip(4 * sampled[:, 0] * (1 - sampled[:, 0]), 0, 1)
+    sampled[:, 1] += 10 ** rng.uniform(-5.5, -4.2) * rng.normal(size=len(sampled)) * inner
+    return sampled
 
 
 def _cosine() -> Floats:

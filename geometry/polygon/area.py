@@ -20,7 +20,7 @@ def polygon_area(points: Floats) -> float:
 
 
 def check_extent(extent: float) -> None:
-    """Raise InputError when the size of a shape is zero, or so large or small that areas of it are not finite."""
+    """Raise InputError when the size of a shape is 0, or too large or small for its area to be computed."""
     if not 1e-60 < extent < 1e60:
         what = "no extent" if extent == 0 else f"an extent of {extent:.3g}"
         raise InputError(f"the points have {what}", "give coordinates in a unit that suits the shape")

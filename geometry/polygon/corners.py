@@ -19,10 +19,16 @@ SHARP = np.radians(40.0)
 ALWAYS = np.radians(75.0)
 """A turn that counts whatever its neighbours do."""
 HAIRPIN = np.radians(100.0)
-"""From here on a point may be the coarse round end of a thin body; from `SHARP` on where it turns alone."""
+"""A turn that may be the round end of a thin body with few points (`SHARP` beside small turns)."""
 ALONE = np.radians(50.0)
 FEW = 12
 """A closed polygon of at most so many points is meant as one."""
+
+
+def angle_between(a: Floats, b: Floats) -> Floats:
+    """Return the angles (n,) in radians from vectors `a` to `b`, both (n, 2), left positive."""
+    (ax, ay), (bx, by) = a.T, b.T
+    return np.asarray(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 def turning(points: Floats, *, closed: bool = False) -> Floats:
@@ -36,11 +42,9 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
     [0.0, 90.0, 0.0]
     """
     ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
-    dx, dy = (ring[1:] - ring[:-1]).T
-    angle = np.zeros(len(points))
-    inner = angle if closed else angle[1:-1]
-    np.arctan2(dx[:-1] * dy[1:] - dy[:-1] * dx[1:], dx[:-1] * dx[1:] + dy[:-1] * dy[1:], out=inner)
-    return angle
+    step = ring[1:] - ring[:-1]
+    angle = angle_between(step[:-1], step[1:])
+    return angle if closed else np.concatenate([[0.0], angle, [0.0]])[: len(points)]
 
 
 def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Indices:
@@ -80,15 +84,15 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
         ahead, after = np.roll(angle, -1), np.roll(angle, -2)
         pair = (np.minimum(angle, ahead) > SHARP) & (np.roll(angle, 1) < 0.2 * angle) & (after < 0.2 * ahead)
         sharp |= pair | np.roll(pair, 1)
-    found = np.flatnonzero(sharp)
+    corners = np.flatnonzero(sharp)
     if polygon:
-        return found
-    hairpin = (angle[found] > HAIRPIN) | ((angle[found] > SHARP) & (beside[found] < ALONE))
+        return corners
+    hairpin = (angle[corners] > HAIRPIN) | ((angle[corners] > SHARP) & (beside[corners] < ALONE))
     round_end = [
         h and growth_exponent(points, int(k), closed=closed) < 0.75
-        for k, h in zip(found, hairpin, strict=True)
+        for k, h in zip(corners, hairpin, strict=True)
     ]
-    return found[~np.array(round_end, dtype=bool)]
+    return corners[~np.array(round_end, dtype=bool)]
 
 
 def growth_exponent(points: Floats, k: int, *, closed: bool = True) -> float:

@@ -17,8 +17,8 @@ EQUAL = 1e-10  # of the wall's reach: nodes closer than this are mirror images
 def farthest(wall: Complexes) -> tuple[int, int]:
     """Return the first and the last of the nodes that are farthest from node 0, rounding aside."""
     reach = np.abs(wall - wall[0])
-    found = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())
-    return int(found[0]), int(found[-1])
+    ends = np.flatnonzero(reach > (1.0 - 1e-12) * reach.max())
+    return int(ends[0]), int(ends[-1])
 
 
 def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
@@ -33,8 +33,8 @@ def handedness(wall: Complexes, far: Complexes) -> tuple[int, Axis]:
     for nodes in (wall, far):
         local = (nodes - wall[0]) / along
         half = np.arange(len(nodes) // 2 + 1)
-        one, other = local[half], local[-half % len(nodes)]
-        amiss = np.concatenate([one.imag + other.imag, one.real - other.real])
+        nodes_at, partners = local[half], local[-half % len(nodes)]
+        amiss = np.concatenate([nodes_at.imag + partners.imag, nodes_at.real - partners.real])
         worst = float(amiss[np.argmax(np.abs(amiss))])
         if abs(worst) > EQUAL * float(np.abs(local).max()):
             return (1 if worst > 0.0 else -1), (complex(wall[0]), complex(unit**2))

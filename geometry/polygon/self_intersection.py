@@ -11,13 +11,11 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import crossing_segments
 
-_BUDGET = 50_000_000
-"""Comparisons before the sweep gives way to an index tree: a quarter of a second."""
+_BUDGET = 50_000_000  # comparisons, a quarter of a second, before an index tree replaces the sweep
 _SWEEP = np.array([0.846, 0.533])
 """Direction of the sweep. Along an axis, every segment of a straight side across it would meet all others."""
 _ROUNDING = 1e-15
-_CHUNK = 256
-"""Segments asked about at once, so that a tangle does not fill the memory with its crossings."""
+_CHUNK = 256  # segments queried at once, so that the crossings of a tangle do not fill the memory
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,8 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
     along = p @ _SWEEP
-    other = np.roll(along, -1) if closed else along[1:]
-    low, top = np.minimum(along[: len(end)], other), np.maximum(along[: len(end)], other)
+    along_end = np.roll(along, -1) if closed else along[1:]
+    low, top = np.minimum(along[: len(end)], along_end), np.maximum(along[: len(end)], along_end)
     top += _ROUNDING * np.abs(along).max(initial=0.0)  # of the products
     pairs, complete = crossing_segments(p, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
     if not complete:

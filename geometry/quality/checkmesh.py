@@ -112,9 +112,9 @@ def centroids(nodes: Floats) -> Floats:
     return np.asarray(a + ((b + c) * first[..., None] + (c + d) * second[..., None]) / (3 * area))
 
 
-def _between(own: Floats, other: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
+def _between(own: Floats, neighbour: Floats, a: Floats, b: Floats) -> tuple[Floats, Floats]:
     """Return angle and skewness of faces from `a` to `b`; (b - a) turned right points to the `other` side."""
-    edge, way = b - a, other - own
+    edge, way = b - a, neighbour - own
     square = edge[..., 0] * way[..., 1] - edge[..., 1] * way[..., 0]
     square = -square  # abs(S) abs(d) cos: the normal is the edge turned right
     angle = np.degrees(np.arctan2(np.abs(_dot(edge, way)), square))

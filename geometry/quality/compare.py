@@ -37,7 +37,7 @@ class Difference:
     boundary: float
 
 
-def compare(grid: Grid, other: Grid) -> Difference:
+def compare(grid: Grid, reference: Grid) -> Difference:
     """Return how far the nodes of `grid` are from those of `other`.
 
     Raises
@@ -51,12 +51,12 @@ def compare(grid: Grid, other: Grid) -> Difference:
     >>> compare(Grid.from_nodes(square + [3.0, 4.0]), Grid.from_nodes(square)).max
     5.0
     """
-    if grid.nodes.shape != other.nodes.shape:
-        counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {other.ni}x{other.nj}"
+    if grid.nodes.shape != reference.nodes.shape:
+        counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {reference.ni}x{reference.nj}"
         raise InputError(counts, "compare grids of one size")
-    away = np.hypot(grid.x - other.x, grid.y - other.y)
+    away = np.hypot(grid.x - reference.x, grid.y - reference.y)
     i, j = np.unravel_index(int(away.argmax()), away.shape)
-    spread = _root_mean_square(np.hypot(other.x - other.x.mean(), other.y - other.y.mean()))
+    spread = _root_mean_square(np.hypot(reference.x - reference.x.mean(), reference.y - reference.y.mean()))
     extent = max(spread, float(np.finfo(float).tiny))  # all nodes in one place
     rows = max(1, round(NEAR * grid.nj))
     sides = [away[:, 0], away[:, -1]]

@@ -15,7 +15,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 
 ROWS = 128
-"""Columns of nodes that are worked on at a time, so that large grids need no more memory than they have."""
+"""Columns of nodes processed at a time, so that large grids need little memory besides their own."""
 
 LARGE = 1e30
 """Growth beside a step of no length."""

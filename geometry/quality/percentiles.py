@@ -1,9 +1,9 @@
 """Percentiles of every metric over all cells, exact, without keeping the values of all cells.
 
-A few tiles of the grid say roughly where a percentile is: between two values of theirs, the bracket. One run
-over all cells counts what lies below the bracket and keeps what lies in it, a few hundredths of all; the
-percentile is among those. Where a bracket missed, or held too much, all values of that metric are sorted out.
-The result is that of `numpy.percentile` (linear interpolation between cells) to the last bit either way.
+A sample of tiles brackets each percentile between two values. One run over all cells counts the values below
+the bracket and keeps those inside, a few hundredths of all; the percentile is among them. Where a bracket
+misses, or holds too many, all values of that metric are used. Either way the result equals that of
+`numpy.percentile` (linear interpolation between cells) to the last bit.
 """
 
 from __future__ import annotations
@@ -78,9 +78,9 @@ def prepared(x: Floats, y: Floats, percents: tuple[float, ...]) -> Run:
     """Return a run that brackets the percentiles `percents` of every metric of the grid (ni, nj)."""
     sample = _sample(x, y)
     ends = [(max(0.0, p - MARGIN), min(100.0, p + MARGIN)) for p in percents]
-    found = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
+    values_at_ends = np.percentile(sample, np.ravel(ends), axis=1, method="nearest", overwrite_input=True)
     n = len(COMPILED)
-    brackets = np.ascontiguousarray(found.T).reshape(n, len(percents), 2)
+    brackets = np.ascontiguousarray(values_at_ends.T).reshape(n, len(percents), 2)
     room = int(ROOM * (x.shape[0] - 1) * (x.shape[1] - 1)) + 1
     return Run(brackets, np.zeros((n, len(percents), 4), dtype=np.int64), np.empty((n, len(percents), room)))
 

@@ -151,7 +151,7 @@ class Figures:
     @cached_property
     def wall_rows(self) -> tuple[WallRow, ...]:
         """The cells at its walls."""
-        return tuple(wall_row(self.grid, part) for part in self.walls)
+        return tuple(wall_row(self.grid, patch) for patch in self.walls)
 
     def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, int] | None] | None:
         """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
@@ -168,21 +168,21 @@ class Figures:
             return (float(min(row.equal_cells for row in self.wall_rows)), None) if self.wall_rows else None
         if name == "far_field":
             return self._far_field()
-        found = self._wall_growth() if name == "wall_growth" else getattr(self.faces, name)
-        return None if found is None else (found.max, found.at)
+        figure = self._wall_growth() if name == "wall_growth" else getattr(self.faces, name)
+        return None if figure is None else (figure.max, figure.at)
 
     def _wall_growth(self) -> Extreme | None:
-        sides = {part.side for part in self.walls}
+        sides = {patch.side for patch in self.walls}
         along = [
             self.growth.eta if sides & {"south", "north"} else None,
             self.growth.xi if sides & {"west", "east"} else None,
         ]
-        return max((one for one in along if one), key=lambda one: one.max, default=None)
+        return max((extreme for extreme in along if extreme), key=lambda extreme: extreme.max, default=None)
 
     def _far_field(self) -> tuple[float, None] | None:
         if not self.grid.around_body or not self.walls:
             return None
-        wall = np.concatenate([self.grid.nodes[part.start : part.stop + 1, 0] for part in self.walls])
+        wall = np.concatenate([self.grid.nodes[patch.start : patch.stop + 1, 0] for patch in self.walls])
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
         start = wall[np.argmax(np.hypot(*(wall - middle).T))]
         chord = float(np.hypot(*(wall - start).T).max())
@@ -202,11 +202,11 @@ def profile_report(figures: Figures, profile: str) -> ProfileReport:
         raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
     results = []
     for check in PROFILES[profile]:
-        found = figures.value(check.figure, low=check.limits[0].compare == "<")
-        if found is None:
+        figure = figures.value(check.figure, low=check.limits[0].compare == "<")
+        if figure is None:
             results.append(CheckResult(check, None, None, "none"))
             continue
-        broken = [limit.level for limit in check.limits if limit.broken(found[0])]
+        broken = [limit.level for limit in check.limits if limit.broken(figure[0])]
         verdict: Verdict = "fail" if "fail" in broken else "warn" if broken else "pass"
-        results.append(CheckResult(check, *found, verdict))
+        results.append(CheckResult(check, *figure, verdict))
     return ProfileReport(profile, tuple(results))

@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.gates import Gate
@@ -104,14 +103,11 @@ class QualityReport:
         return facts
 
 
-def quality_report(
-    grid: Grid, walls: Sequence[Patch] = (), profile: str | None = None, reference: Grid | None = None
-) -> QualityReport:
+def quality_report(grid: Grid, profile: str | None = None, reference: Grid | None = None) -> QualityReport:
     """Measure `grid`.
 
     Parameters
     ----------
-    walls : its stretches of wall.
     profile : thresholds to judge by, one of `meshonet.geometry.quality.profiles.PROFILES`.
     reference : grid of the same size to compare with.
 
@@ -121,7 +117,7 @@ def quality_report(
         the reference has another size.
     """
     quality = measure(grid, percentiles=True)
-    figures = Figures(grid, quality, walls)
+    figures = Figures(grid, quality, grid.walls())
     return QualityReport(
         grid,
         quality,

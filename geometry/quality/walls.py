@@ -46,8 +46,8 @@ class WallRow:
     equal_cells: int
 
 
-def wall_row(grid: Grid, part: Patch) -> WallRow:
-    """Return the figures of the cells at `part` of the boundary of `grid`.
+def wall_row(grid: Grid, patch: Patch) -> WallRow:
+    """Return the figures of the cells at `patch` of the boundary of `grid`.
 
     Examples
     --------
@@ -56,21 +56,21 @@ def wall_row(grid: Grid, part: Patch) -> WallRow:
     >>> row.height.max, row.off_square.max, row.equal_cells
     (0.1, 0.0, 2)
     """
-    lines = leaving(grid, part)
+    lines = leaving(grid, patch)
     steps = np.diff(lines, axis=1)
     heights = np.hypot(steps[..., 0], steps[..., 1])
     equal = np.abs(heights - heights[:, :1]) <= SAME * heights[:, :1]
     alike = np.where(equal.all(axis=1), equal.shape[1], np.argmin(equal, axis=1))
     along = np.diff(lines[:, 0], axis=0)
     off = [_off_square(along, steps[:-1, 0]), _off_square(along, steps[1:, 0])]
-    return WallRow(part.name, part.side, _spread(heights[:, 0]), _spread(np.stack(off)), int(alike.min()))
+    return WallRow(patch.name, patch.side, _spread(heights[:, 0]), _spread(np.stack(off)), int(alike.min()))
 
 
-def leaving(grid: Grid, part: Patch) -> Floats:
-    """Return the lines (n, depth, 2) that leave the nodes of `part`, the wall first."""
-    nodes = grid.nodes if part.side in ("south", "north") else grid.nodes.swapaxes(0, 1)
-    nodes = nodes[part.start : part.stop + 1]
-    return (nodes if part.side in ("south", "west") else nodes[:, ::-1])[:, :DEPTH]
+def leaving(grid: Grid, patch: Patch) -> Floats:
+    """Return the lines (n, depth, 2) that leave the nodes of `patch`, the wall first."""
+    nodes = grid.nodes if patch.side in ("south", "north") else grid.nodes.swapaxes(0, 1)
+    nodes = nodes[patch.start : patch.stop + 1]
+    return (nodes if patch.side in ("south", "west") else nodes[:, ::-1])[:, :DEPTH]
 
 
 def _off_square(along: Floats, away: Floats) -> Floats:

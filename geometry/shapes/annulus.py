@@ -41,10 +41,10 @@ class Annulus:
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
-        found = self._body.boundary(replace(sampling, topology="o"))
-        north = self._around(found.north)
-        cut = straight(found.south[0], north[0], found.nj)
-        return replace(found, north=north, west=cut, east=cut)
+        boundary = self._body.boundary(replace(sampling, topology="o"))
+        north = self._around(boundary.north)
+        cut = straight(boundary.south[0], north[0], boundary.nj)
+        return replace(boundary, north=north, west=cut, east=cut)
 
     def _around(self, circle: Floats) -> Floats:
         """Return nodes (n, 2) of the outer curve in about equal steps, its corners among them.

@@ -34,7 +34,7 @@ TURNED = math.radians(10.0)
 
 
 def _start(wall: Floats, centre: Floats) -> tuple[float, tuple[str, ...]]:
-    """Return the angle (radians) of the first far-field node around a closed wall (ni, 2), and a note of it."""
+    """Return the angle (radians) of the first far-field node around a wall (ni, 2), and a note of it."""
     behind = _direction(wall, centre)
     try:
         lift, w, _ = lift_body(mirrored(wall[:-1]))

@@ -1,4 +1,4 @@
-"""Names carried over from the edges of a file to the parts of the boundary sampled from them."""
+"""Names carried over from the edges of a file to the patches of the boundary sampled from them."""
 
 from __future__ import annotations
 
@@ -14,12 +14,11 @@ from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
-_BLOCK = 1 << 22
-"""Distances worked out at a time."""
+_BLOCK = 1 << 22  # distances worked out at a time
 
 
 class Labelled:
-    """A shape whose curve has names, which its boundaries get as parts.
+    """A shape whose curve has names, which become patches of its boundaries.
 
     Parameters
     ----------
@@ -40,18 +39,18 @@ class Labelled:
         """Return the boundary of the shape, each cell of it called as the edge nearest to its middle."""
         boundary = self._shape.boundary(sampling)
         sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
-        parts = []
+        patches = []
         for side in sides:
             nodes = getattr(boundary, side)
             near = self._nearest(0.5 * (nodes[1:] + nodes[:-1]))
             reach = float(np.hypot(*np.ptp(self._edges.reshape(-1, 2), axis=0)))
             names = [self._names[k] if gap < 0.01 * reach else "" for k, gap in near]
-            parts += runs(side, names)
-        return replace(boundary, patches=tuple(parts))
+            patches += runs(side, names)
+        return replace(boundary, patches=tuple(patches))
 
     def _nearest(self, points: Floats) -> list[tuple[int, float]]:
         """Return the nearest edge to each of `points` (m, 2), and its distance."""
-        found: list[tuple[int, float]] = []
+        nearest: list[tuple[int, float]] = []
         start, along = self._edges[:, 0], self._edges[:, 1] - self._edges[:, 0]
         square = np.maximum((along**2).sum(axis=1), 1e-300)
         step = max(1, _BLOCK // len(self._edges))
@@ -60,21 +59,21 @@ class Labelled:
             t = np.clip((off * along).sum(axis=-1) / square, 0.0, 1.0)
             gap = np.hypot(*np.moveaxis(off - t[..., None] * along, -1, 0))
             k = gap.argmin(axis=1)
-            found += zip(k.tolist(), gap[np.arange(len(k)), k].tolist(), strict=True)
-        return found
+            nearest += zip(k.tolist(), gap[np.arange(len(k)), k].tolist(), strict=True)
+        return nearest
 
 
 def runs(side: Side, names: Sequence[str]) -> list[Patch]:
-    """Return the parts of a side whose cells are called `names`; those without a name are called by the side.
+    """Return the patches of a side whose cells are called `names`; those without one are called by the side.
 
     Examples
     --------
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]
     """
-    parts, start = [], 0
+    patches, start = [], 0
     for name, cells in groupby(names):
         stop = start + len(list(cells))
-        parts.append(Patch(name or side, side, start, stop))
+        patches.append(Patch(name or side, side, start, stop))
         start = stop
-    return parts
+    return patches

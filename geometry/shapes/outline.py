@@ -27,8 +27,7 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.spacing.along_curve import stretch_arcs
 from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
-_LEAST_TURN = np.radians(30.0)
-"""A corner that turns less does not count as one of the four of a domain."""
+_LEAST_TURN = np.radians(30.0)  # a corner that turns less does not count as one of the four of a domain
 
 
 class Outline:
@@ -128,8 +127,8 @@ class Outline:
 
     def _quad(self, sampling: Sampling) -> Boundary:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
-        asked = sampling.corners or self.corners
-        corners = self._asked_corners(asked) if asked is not None else self._found_corners()
+        chosen = sampling.corners or self.corners
+        corners = self._ordered_corners(chosen) if chosen is not None else self._sharpest_corners()
         curve = Curve(
             self.curve.points, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners))
         )
@@ -146,25 +145,25 @@ class Outline:
         south, east, north, west = edges
         return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
 
-    def _asked_corners(self, asked: tuple[int, int, int, int]) -> tuple[int, ...]:
+    def _ordered_corners(self, chosen: tuple[int, int, int, int]) -> tuple[int, ...]:
         """Return the corners asked for, counter-clockwise from the first."""
         n = len(self.curve.points)
-        for corner in asked:
+        for corner in chosen:
             if not 0 <= corner < n:
                 raise InputError(
                     f"corner {corner} of {n} points does not exist", f"use 0 to {n - 1}", source=self.name
                 )
-        ahead = [(corner - asked[0]) % n for corner in asked]
+        ahead = [(corner - chosen[0]) % n for corner in chosen]
         if ahead != sorted(ahead) and ahead[1:] != sorted(ahead[1:], reverse=True):
             raise InputError(
-                f"corners {','.join(map(str, asked))} are not in order along the outline",
+                f"corners {','.join(map(str, chosen))} are not in order along the outline",
                 "sort them",
                 source=self.name,
             )
-        ordered = [(asked[0] + step) % n for step in sorted(ahead)]
+        ordered = [(chosen[0] + step) % n for step in sorted(ahead)]
         return tuple(ordered if self._left else [ordered[0], *ordered[:0:-1]])
 
-    def _found_corners(self) -> tuple[int, ...]:
+    def _sharpest_corners(self) -> tuple[int, ...]:
         """Return the four sharpest corners, counter-clockwise, the lowest edge between the first two.
 
         Of equally sharp ones (to a degree) those nearest the corners of the box count; where there are not
@@ -177,13 +176,13 @@ class Outline:
         if len(sharp) >= 4:
             turn = np.round(np.degrees(np.abs(turning(p, closed=True)[sharp])))
             inward = np.hypot(1.0 - np.abs(unit[sharp, 0]), 1.0 - np.abs(unit[sharp, 1]))
-            chosen = np.sort(sharp[np.lexsort((inward, -turn))[:4]])
+            best = np.sort(sharp[np.lexsort((inward, -turn))[:4]])
         else:
             reach = [int(np.argmax(unit @ np.array(d))) for d in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             if len(set(reach)) < 4:
                 raise InputError("no four corners stand out", "name them with {corners}", source=self.name)
-            chosen = np.sort(np.array(reach))
-        order = chosen if self._left else chosen[::-1]
+            best = np.sort(np.array(reach))
+        order = best if self._left else best[::-1]
         knots, length = self.curve.knots, self.curve.length
         heights = []
         for k in range(4):
@@ -221,7 +220,7 @@ class Outline:
         return Curve(p, closed=True, corners=np.flatnonzero(corner))
 
     def _around(self, curve: Curve, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
-        """Return the arc lengths (ni,) of the nodes around a body, and a note where ``auto`` is not the usual."""
+        """Return the arc lengths (ni,) of the nodes around a body, and a note of another spacing."""
         notes: tuple[str, ...] = ()
         if sampling.spacing == "conformal" or (sampling.spacing == "auto" and curve.corners.size == 0):
             try:

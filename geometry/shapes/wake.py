@@ -29,27 +29,22 @@ from meshonet.geometry.spacing.laws import TanhLaw
 C_EDGE = 1.6
 """Cell at the trailing edge of a C grid: this over the nodes along xi, in chords. With smaller ones the rest
 grows by more than 15 % each at 250 nodes."""
-_GROWTH = 1.135
-"""Growth of wake cells that is enough, and below which cells are better spent on the wall."""
-_SHARES = 0.2, 0.23
-"""Smallest and largest part of all cells that one side of the wake takes by itself."""
-_RAMP = 3.0
-"""Cells of a wake over which growth sets in: the lines that leave its first ones converge."""
-_LATE = 0.05
-"""Part by which cells at the outlet grow faster than on average, and those at the edge slower."""
-_STEEPEST = math.radians(34.0)
-"""Largest angle at which the wake leaves the trailing edge."""
+_GROWTH = 1.135  # growth of wake cells that is enough, and below which cells are better spent on the wall
+_SHARES = 0.2, 0.23  # smallest and largest part of all cells that one side of the wake takes by itself
+_RAMP = 3.0  # cells of a wake over which growth sets in: the lines that leave its first ones converge
+_LATE = 0.05  # part by which cells at the outlet grow faster than on average, and those at the edge slower
+_STEEPEST = math.radians(34.0)  # largest angle at which the wake leaves the trailing edge
 _LEAST_WALL = 5
 
 
-def cells_of_wake(ni: int, asked: int | None, first: float, length: float) -> int:
+def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float) -> int:
     """Return the cells of the wake of a C grid with `ni` nodes along xi.
 
     Parameters
     ----------
     ni : nodes of south, both sides of the wake included.
-    asked : nodes of the wake, the trailing edge included, or None for as many as cells that grow from `first`
-        on by 13 % need, between 12 and 22 % of all.
+    nodes_wanted : of the wake, the trailing edge included; None for cells that grow from `first` by 13 %, and
+        are 20 to 23 % of all.
     first : the cell at the trailing edge.
     length : of the wake.
 
@@ -58,8 +53,8 @@ def cells_of_wake(ni: int, asked: int | None, first: float, length: float) -> in
     InputError
         no room for the wall.
     """
-    if asked is not None:
-        cells = asked - 1
+    if nodes_wanted is not None:
+        cells = nodes_wanted - 1
     else:
         least, most = (max(2, round(share * (ni - 1))) for share in _SHARES)
         cells = min(max(cells_for_growth(first, length, _GROWTH), least), most)

@@ -14,8 +14,7 @@ from meshonet.geometry.spacing.laws import LAWS, Spacing, spacing_tanh
 from meshonet.geometry.spacing.size_field import distances_by_curvature
 
 MANY = 64
-"""More corners than this, and than a quarter of the cells, are taken for facets of a drawn curve: nodes are not
-moved onto them."""
+"""More corners than this, and than a quarter of the cells, are facets of a drawn curve: they get no nodes."""
 
 
 def stretch_arcs(

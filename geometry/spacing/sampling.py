@@ -37,7 +37,7 @@ class Sampling:
         closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
         edge, and ``exact`` otherwise.
     wake : length of a C boundary's wake in chords; None is as long as the far field is away.
-    wake_nodes : nodes of it, the trailing edge included; None derives the number from the cell at the trailing edge.
+    wake_nodes : nodes of it, the trailing edge included; None derives it from the cell at the edge.
     viscous : the cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 

@@ -12,24 +12,18 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 
 GROWTH = math.log(1.10)
-"""How fast a cell may grow along the wall: by 10 % from one to the next."""
+"""Largest growth of cells along the wall: 10 % from one to the next."""
 HURRY = 1.3
-"""Factor by which it may grow faster where nodes are few, before curvature and the nose alone get fewer."""
-_SCARCE = 5.0
-"""Factor from which on, curvature and the nose getting that much fewer, cells grow faster again."""
-_RAMP = 3.0
-"""Cells over which growth sets in behind a trailing edge whose step is asked for."""
-_EDGE = 0.025
-"""Part of the wall, at either end, where curvature asks for no less than the step of the edge."""
+"""Factor on the growth where nodes are few, before only curvature and nose are resolved more coarsely."""
+_SCARCE = 5.0  # coarsening of curvature and nose beyond which cells grow faster again
+_RAMP = 3.0  # cells over which growth sets in behind a trailing edge whose step is asked for
+_EDGE = 0.025  # part of the wall at either end where curvature sets no cell below the step of the edge
 TURN = math.radians(3.0)
 """How much of the curve's turning one cell may take."""
-_WINDOW = 2e-3
-"""Chords over which curvature is averaged, so that the last digit of the points does not count."""
+_WINDOW = 2e-3  # chords over which curvature is averaged, against noise of the last digit of the points
 _SAMPLES = 1600
-_SCARCEST = math.log(64.0)
-"""Logarithm of the largest factor by which curvature and the leading edge get less."""
-_REACH = 8.0
-"""Cells over which the field is bent to meet a step asked for."""
+_SCARCEST = math.log(64.0)  # logarithm of the largest coarsening of curvature and leading edge
+_REACH = 8.0  # cells over which the sizes are adjusted to meet a prescribed step
 
 
 def arcs_by_curvature(
@@ -44,11 +38,11 @@ def arcs_by_curvature(
 ) -> Floats:
     """Return arc lengths (cells + 1,) from one end of the trailing edge round the nose to the other.
 
-    The size field h is the smooth least of four terms, 1/h⁴ = Σ 1/hₖ⁴: a step at the trailing and one at the
-    leading edge that grow with the distance from it, `TURN` over the curvature limited to the same growth,
-    and a largest cell chosen so that the integral of ds/h is the number of cells. With too few cells for
-    the first three, curvature and the leading edge get less, and the growth is up to `HURRY` times as fast
-    where it is `hurried`; where that is not enough, all are scaled up together.
+    The cell size h is a smooth minimum of four, 1/h⁴ = Σ 1/hₖ⁴: the steps at the trailing and the leading
+    edge, each growing with the distance from it; `TURN` over the curvature, with growth limited alike; and a
+    largest cell, such that the integral of ds/h is the number of cells. When the cells are too few for the
+    first three, those of curvature and of the leading edge become larger, and growth is up to `HURRY` times
+    as fast (with `hurried`); when that does not suffice, all sizes are scaled up.
 
     Parameters
     ----------
@@ -57,8 +51,8 @@ def arcs_by_curvature(
     cells : wanted.
     chord : unit of the averaging window.
     steps : cells at the trailing and at the leading edge.
-    exact : whether these are to be met, to 0.5 % where the field can be bent so far.
-    hurried : cells may grow faster where nodes are few, as in C grids, whose wake takes half of them.
+    exact : whether these are to be met, to 0.5 % where the adjustment suffices.
+    hurried : allow `HURRY`, as for C grids, whose wake takes half of the nodes.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
@@ -133,24 +127,24 @@ def _affordable(cells: int, s: Floats, known: Callable[[float], Floats]) -> Floa
     goal, width = math.log(cells), 0.5 * np.diff(s)
 
     def excess(log_factor: float) -> tuple[float, Floats]:
-        found = known(math.exp(log_factor))
-        density = np.sqrt(np.sqrt(found))
-        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, found
+        terms = known(math.exp(log_factor))
+        density = np.sqrt(np.sqrt(terms))
+        return math.log(float(width @ (density[1:] + density[:-1]))) - goal, terms
 
-    low, (above, found) = 0.0, excess(0.0)
-    high, (below, at_most) = _SCARCEST, (0.0, found) if above <= 0 else excess(_SCARCEST)
+    low, (above, terms) = 0.0, excess(0.0)
+    high, (below, at_most) = _SCARCEST, (0.0, terms) if above <= 0 else excess(_SCARCEST)
     if above <= 0 or below >= 0:
-        return found if above <= 0 else at_most
+        return terms if above <= 0 else at_most
     for _ in range(30):  # Illinois method
         middle = (low * below - high * above) / (below - above)
-        value, found = excess(middle)
+        value, terms = excess(middle)
         if abs(value) < 1e-3:
             break
         if value > 0:
             low, above, below = middle, value, 0.5 * below
         else:
             high, below, above = middle, value, 0.5 * above
-    return found
+    return terms
 
 
 def _known(

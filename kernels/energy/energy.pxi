@@ -1,18 +1,3 @@
-cdef extern from "energy/repair.h":
-    ctypedef struct Patch:
-        ptrdiff_t ni, nj
-        int periodic
-        double *x
-        double *y
-        const double *width
-        const double *height
-        double shape
-    size_t repair_workspace(ptrdiff_t ni, ptrdiff_t nj, int periodic) nogil
-    double c_repair_energy "repair_energy"(const Patch *patch, double epsilon, double *gx, double *gy,
-                                           double *smallest, double *work) nogil
-    int c_repair_minimise "repair_minimise"(const Patch *patch, double epsilon, int most, double still,
-                                            double until_valid, double *energy, double *smallest, double *work) nogil
-
 cdef extern from "energy/variational.h":
     ctypedef struct Weights:
         double aspect, shape, smoothness, epsilon
@@ -65,38 +50,6 @@ cdef extern from "energy/variational.h":
 
 cdef extern from "Python.h":
     int PyErr_CheckSignals() except -1
-
-
-cdef Patch patch_of(x, y, width, height, bint periodic, double shape) except *:
-    cdef Patch p
-    p.ni, p.nj = x.shape
-    p.periodic, p.shape = periodic, shape
-    p.x, p.y = fills(x, (p.ni, p.nj)), fills(y, (p.ni, p.nj))
-    p.width, p.height = reads(width, (p.ni - 1,)), reads(height, (p.nj - 1,))
-    return p
-
-
-def repair_energy(x, y, width, height, bint periodic, double shape, double epsilon):
-    """Return (energy, d/dx, d/dy, smallest corner Jacobian over reference area) of a patch (ni, nj)."""
-    cdef Patch p = patch_of(x, y, width, height, periodic, shape)
-    cdef double smallest = 0.0, total
-    gradient, work = np.empty((2, p.ni, p.nj)), np.empty(repair_workspace(p.ni, p.nj, p.periodic))
-    cdef double *g = fills(gradient, gradient.shape)
-    total = c_repair_energy(&p, epsilon, g, g + p.ni * p.nj, &smallest, fills(work, work.shape))
-    return total, gradient[0], gradient[1], smallest
-
-
-def repair_minimise(x, y, width, height, bint periodic, double shape, double epsilon, int most, double still,
-                    double until_valid=0.0):
-    """Minimise the energy in place; return (iterations, energy, smallest corner Jacobian over reference area)."""
-    cdef Patch p = patch_of(x, y, width, height, periodic, shape)
-    cdef double total = 0.0, smallest = 0.0
-    cdef int done
-    work = np.empty(repair_workspace(p.ni, p.nj, p.periodic))
-    cdef double *room = fills(work, work.shape)
-    with nogil:
-        done = c_repair_minimise(&p, epsilon, most, still, until_valid, &total, &smallest, room)
-    return done, total, smallest
 
 
 def variational_workspace(ptrdiff_t ni, ptrdiff_t nj):

@@ -36,7 +36,7 @@ def quality(
     """
     grid = single_grid(grid)
     reference = None if compare is None else single_grid(compare)
-    return quality_report(grid, grid.walls(), profile, reference)
+    return quality_report(grid, profile, reference)
 
 
 def single_grid(grid: Grid | str | Path) -> Grid:

@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
-from meshonet.geometry.errors import spelled
 from meshonet.solvers.method import METHODS
 from meshonet_cli import options as o
+from meshonet_cli.errors import with_options
 
 EXAMPLES = (
     "meshonet solve-pde duct.csv --res 80x40 -o duct.vts",
@@ -35,7 +35,7 @@ Method = Annotated[
     MethodName,
     _option(
         "--method", metavar="|".join(SOLVERS), show_default=True,
-        help=spelled(" ".join(f"{name}: {text}." for name, text in SOLVERS.items()), o.spelling),
+        help=with_options(" ".join(f"{name}: {text}." for name, text in SOLVERS.items())),
     ),
 ]
 Tolerance = Annotated[

@@ -1,6 +1,8 @@
 """``meshonet train``."""
 
-from typing import Annotated, Literal
+import json
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -192,12 +194,35 @@ def train(
 
     Several processes under torchrun share each step.
     """
-    from meshonet_cli.learning import Run, learn
+    from meshonet.api.train import train as fit
+    from meshonet_cli.report.training import Log, result_lines
 
-    plan = {
-        "epochs": epochs, "batch": batch, "rate": rate, "schedule": schedule, "points": points, "seed": seed,
-        "patience": patience, "device": device, "amp": amp, "compiled": compiled,
-        "checkpoint_every": checkpoint_every,
-    }  # fmt: skip
-    run = Run(output, model, plan, settings or (), split, held_out, threads, resume, log_csv, initial)
-    return learn(dataset, run, printing.session(), fmt=from_format)
+    session = printing.session()
+    result = fit(
+        dataset, output, model=model, settings=_values(settings or ()), split=split, held_out=held_out,
+        initial=initial, resume=resume, threads=threads, from_format=from_format,
+        report=Log(session, log_csv, resume=resume), note=session.note,
+        epochs=epochs, batch=batch, rate=rate, schedule=schedule, points=points, seed=seed,
+        patience=patience, device=device, amp=amp, compiled=compiled, checkpoint_every=checkpoint_every,
+    )  # fmt: skip
+    if result and session.as_json:
+        session.result({"output": output, **result})
+    for line in result_lines(result) if result else ():
+        session.note(f"{output}: {line}")
+    return session.finish()
+
+
+def _values(words: Sequence[str]) -> dict[str, Any]:
+    """Return the values of ``name=value`` words by name, read as JSON where they are that."""
+    values: dict[str, Any] = {}
+    for word in words:
+        name, mark, text = word.partition("=")
+        if not mark:
+            from meshonet.geometry.errors import InputError
+
+            raise InputError(f"{word!r} is not NAME=VALUE", "use e.g. sensors=80", parameter="settings")
+        try:
+            values[name] = json.loads(text)
+        except ValueError:
+            values[name] = text
+    return values

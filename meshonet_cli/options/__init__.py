@@ -14,7 +14,6 @@ from meshonet_cli.options.groups import METHOD as METHOD
 from meshonet_cli.options.groups import SAMPLING as SAMPLING
 from meshonet_cli.options.groups import only_with as only_with
 from meshonet_cli.options.groups import option_of as option_of
-from meshonet_cli.options.groups import spelling as spelling
 from meshonet_cli.options.io import *  # noqa: F403
 from meshonet_cli.options.method import *  # noqa: F403
 from meshonet_cli.options.sampling import *  # noqa: F403

@@ -19,17 +19,6 @@ def option_of(group: str) -> Callable[..., Any]:
     return partial(typer.Option, rich_help_panel=group, show_default=False)
 
 
-def spelling(parameter: str) -> str:
-    """Return how help texts spell a parameter.
-
-    Examples
-    --------
-    >>> spelling("far_field")
-    '--far-field'
-    """
-    return "--" + parameter.replace("_", "-")
-
-
 def only_with(needed: str, given: bool, **others: object) -> None:
     """Raise InputError when an option that needs another one is there (not None) without it.
 

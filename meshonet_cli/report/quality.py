@@ -34,7 +34,7 @@ class Measured(Timed):
         folded = f"{quality.folded} folded" if quality.folded else "none folded"
         size = f"{grid.ni} x {grid.nj} nodes, {grid.topology} grid, {quality.cells} cells"
         rows = [f"{self.item.label}: {size}, {folded}", quality_table(quality)]
-        if report.figures.wall_rows and (report.profile or grid.topology != "quad"):
+        if report.figures.wall_rows and (report.profile or grid.around_body):
             rows.append(walls_table(report.figures.wall_rows))
         if report.profile:
             rows.append(profile_table(report.figures, report.profile))

@@ -2,59 +2,80 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.loop import Progress
-    from meshonet.solvers.neural.fit.plan import Plan
 
 LINES = 25
-"""Told of a run where there is no terminal."""
+"""Lines about a run where there is no terminal."""
+
+
+def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the figures of a trained model for people."""
+    name, figures = result["model"], result["figures"]
+    if name == "strip":
+        network, base = figures["network"]["median"], figures["base"]["median"]
+        yield f"held-out error {network:.1e}, without the network {base:.1e} (medians)"
+    for head in ("winslow", "variational") if name == "quad" else ():
+        error, base = figures[head]["relative_l2"]["median"], figures[head]["base"]
+        yield f"held-out distance to {head} grids {error:.1e}, without the network {base:.1e} (medians)"
+    for kind in ("train", "test"):
+        if kind in figures:
+            own = figures[kind]
+            yield (
+                f"relative L2 error of {own['grids']} {kind} grids {own['median']:.1e} (median), "
+                f"{own['worst']:.1e} (worst); boundary off by {own['boundary']:.1e}"
+            )
 
 
 class Log:
-    """Told of progress.
+    """Shows progress, and adds a row for each report to a CSV file.
 
     Parameters
     ----------
-    session : where it is told.
-    path : CSV file to which a row a report is added, or None. A run that begins anew begins it anew; one that
-        goes on cuts the rows after its checkpoint.
-    leads : whether this process writes it.
+    path : CSV file, or None. A run that begins anew begins it anew; one that goes on cuts the rows after its
+        checkpoint.
     """
 
-    def __init__(self, session: Session, plan: Plan, path: str | None, *, resume: bool, leads: bool) -> None:
-        self.session, self.path = session, Path(path) if path and leads else None
+    def __init__(self, session: Session, path: str | None, *, resume: bool) -> None:
+        self.session, self.path = session, Path(path) if path else None
         self.fresh, self.resume = True, resume
-        self.every = max(1, plan.epochs // (LINES * plan.log_every)) * plan.log_every
+        self.shown = 0
 
-    def __call__(self, told: Progress) -> None:
-        """Tell of it."""
-        parts = ", ".join(f"{name} {value:.2e}" for name, value in told.parts.items())
-        parts = f" ({parts})" if len(told.parts) > 1 else ""
-        left = (told.epochs - told.epoch) * told.seconds / max(told.done, 1)
-        held_out = f", held out {told.held_out['loss']:.2e}" if "loss" in told.held_out else ""
+    def __call__(self, progress: Progress) -> None:
+        """Show it."""
+        parts = ", ".join(f"{name} {value:.2e}" for name, value in progress.parts.items())
+        parts = f" ({parts})" if len(progress.parts) > 1 else ""
+        left = (progress.epochs - progress.epoch) * progress.seconds / max(progress.done, 1)
+        held_out = f", held out {progress.held_out['loss']:.2e}" if "loss" in progress.held_out else ""
         line = (
-            f"epoch {told.epoch}/{told.epochs}: loss {told.loss:.3e}{parts}{held_out}, rate {told.rate:.1e}, "
-            f"{told.speed:.0f} shapes/s, {_time(left)} left"
+            f"epoch {progress.epoch}/{progress.epochs}: loss {progress.loss:.3e}{parts}{held_out}, "
+            f"rate {progress.rate:.1e}, {progress.speed:.0f} shapes/s, {_time(left)} left"
         )
-        if not self.session.progress(told.epoch, told.epochs, line) and (
-            told.epoch % self.every == 0 or told.epoch == told.epochs
-        ):
+        due = progress.epoch - self.shown >= progress.epochs // LINES or progress.epoch == progress.epochs
+        if not self.session.progress(progress.epoch, progress.epochs, line) and due:
             self.session.note(line)
+            self.shown = progress.epoch
         if self.path is not None:
-            self._row(self.path, told)
+            self._row(self.path, progress)
 
-    def _row(self, path: Path, told: Progress) -> None:
-        row: dict[str, float] = {"epoch": told.epoch, "seen": told.seen, "loss": told.loss, **told.parts}
-        row |= {f"held_out_{name}": value for name, value in told.held_out.items()}
-        row |= {"rate": told.rate, "seconds": told.seconds}
+    def _row(self, path: Path, progress: Progress) -> None:
+        row: dict[str, float] = {
+            "epoch": progress.epoch,
+            "seen": progress.seen,
+            "loss": progress.loss,
+            **progress.parts,
+        }
+        row |= {f"held_out_{name}": value for name, value in progress.held_out.items()}
+        row |= {"rate": progress.rate, "seconds": progress.seconds}
         if self.fresh:
-            kept = _kept(path, told.epoch) if self.resume else []
+            kept = _kept(path, progress.epoch) if self.resume else []
             with whole_file(str(path)) as part:
                 part.write_text("".join([",".join(row) + "\n", *kept]), encoding="utf-8")
             self.fresh = False

@@ -68,7 +68,8 @@ def solve(boundary: Boundary, *, blending: Blending = "arclength") -> Solution:
 def parameters(edges: Four, blending: Blending) -> Four:
     """Return the parameters 0..1 along `edges` (south, north, west, east), each (n, 2) -> (n,)."""
     if blending not in get_args(Blending):
-        raise InputError(f"blending {blending!r} is not known", "use " + "/".join(get_args(Blending)))
+        remedy = "use " + "/".join(get_args(Blending))
+        raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
     if blending == "linear":
         south, north, west, east = (np.linspace(0.0, 1.0, len(edge)) for edge in edges)
     else:

@@ -34,9 +34,9 @@ def extend(boundary: Boundary) -> Floats:
     >>> extend(square)[1, 2].tolist()
     [0.25, 0.5]
     """
-    nodes = _ring(boundary) if boundary.topology == "o" else _rectangle(boundary)
+    nodes = _ring(boundary) if boundary.periodic else _rectangle(boundary)
     nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    nodes[0], nodes[-1] = (nodes[0], nodes[0]) if boundary.topology == "o" else (boundary.west, boundary.east)
+    nodes[0], nodes[-1] = (nodes[0], nodes[0]) if boundary.periodic else (boundary.west, boundary.east)
     return nodes
 
 

@@ -89,7 +89,7 @@ def thomas_middlecoff(boundary: Boundary) -> Controls:
 
     Thomas and Middlecoff, AIAA J. 18 (1980) 652-656.
     """
-    periodic = boundary.topology == "o"
+    periodic = boundary.periodic
     up = np.linspace(0.0, 1.0, boundary.nj)
     right = np.linspace(0.0, 1.0, boundary.ni)
     south, north = (step_ratios(edge, periodic=periodic) for edge in (boundary.south, boundary.north))

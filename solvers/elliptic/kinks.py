@@ -10,7 +10,7 @@ from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import angles
-from meshonet.solvers.elliptic.relax import relax
+from meshonet.solvers.elliptic.multigrid import relax
 
 REACH = 3.0
 """Coarse cells to each side of a kink, and inwards, that are relaxed at full resolution.
@@ -37,7 +37,7 @@ def sweep_kinks(
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]
     for axis, sides in ((0, ("south", "north")), (1, ("west", "east"))):
-        if boundary.topology == "o" and axis == 1:
+        if boundary.periodic and axis == 1:
             continue
         n, lines = nodes.shape[axis], nodes.shape[1 - axis]
         wide = REACH * steps[axis], REACH * steps[1 - axis]

@@ -162,6 +162,13 @@ class Multigrid:
                 return
 
 
+def relax(nodes: Floats, sweeps: int) -> None:
+    """Relax the inner nodes of planar `nodes` (ni, nj, 2) in place by so many sweeps, on this level alone."""
+    xi, eta = (uniform(n, False).differences for n in nodes.shape[:2])
+    scratch = np.empty(multigrid_scratch(nodes.shape[0] - 1, nodes.shape[1] - 1))
+    MultigridLevel(nodes[..., 0], nodes[..., 1], xi, eta, False, scratch, False).smooth(False, sweeps)
+
+
 def _thinned(four: Four, xi: Direction, eta: Direction) -> Four:
     """Return what the next coarser level keeps of (south, north, west, east)."""
     south, north, west, east = four

@@ -16,9 +16,10 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, Floats, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError, SolverError
+from meshonet.geometry.errors import SolverError
 from meshonet.solvers.elliptic.control import Controls, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
+from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.progress import cycle_ended
 from meshonet.solvers.solution import Outcome, Solution
 
@@ -137,15 +138,13 @@ def _attempt(
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
-    periodic = boundary.topology == "o"
-    levels = Multigrid(nodes, edges, periodic, settings, controls)
+    levels = Multigrid(nodes, edges, boundary.periodic, settings, controls)
     if initial is None:
         start = levels.nested_iteration()
     else:
         levels.interpolate_edges(0)
         start = levels.residual()
-        inside = slice(0 if periodic else 1, None if periodic else -1)
-        nodes[inside, 1:-1] = initial.nodes[inside, 1:-1]
+        nodes[...] = initial_nodes(boundary, initial)
     noise = _round_off(boundary)
     if start <= noise:  # transfinite interpolation solves the equations: a rectangle, say
         levels.interpolate_edges(0)
@@ -195,16 +194,3 @@ def _at_discretisation_level(corrections: list[float]) -> bool:
         return False
     rate = corrections[-1] / corrections[-2]
     return rate < 0.9 and corrections[-1] * rate / (1.0 - rate) <= corrections[0] / 3.0
-
-
-def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    """Raise InputError unless the settings are such as `solve` takes."""
-    if tol is not None and not 0 < tol < 1:
-        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-8")
-    if max_cycles < 1:
-        raise InputError(f"{max_cycles} cycles are too few", "allow at least 1")
-    if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
-        had = f"{initial.ni}x{initial.nj}"
-        raise InputError(
-            f"the initial grid has {had} nodes, not {boundary.ni}x{boundary.nj}", "give equal counts"
-        )

@@ -6,9 +6,9 @@
                              ^                                      |
                              +------- until angles are right -------+    first on few nodes, then on all
 
-The sources are those of `meshonet.solvers.elliptic.wall_control`. They can hold first cells that are somewhat thinner
-than even rows; where thinner ones are asked for, the solver goes part of the way and `meshonet.solvers.layers.redistribute`
-the rest, along lines that by then leave the wall as they should.
+The sources (`meshonet.solvers.elliptic.wall_control`) can hold first cells somewhat thinner than those of
+even rows. Thinner ones are made by `meshonet.solvers.layers.redistribute`, along lines that by then leave the
+wall at the angle.
 """
 
 from __future__ import annotations
@@ -27,8 +27,10 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
-from meshonet.solvers.elliptic.solve import check_settings, solve
-from meshonet.solvers.elliptic.wall_control import ControlledEdge, layers_at
+from meshonet.solvers.elliptic.solve import solve
+from meshonet.solvers.elliptic.wall_control import ControlledEdge
+from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
+from meshonet.solvers.iteration import check_settings
 from meshonet.solvers.solution import Solution
 
 FEW = 129
@@ -47,11 +49,10 @@ CLOSE = 0.002
 """Error (sine of an angle, logarithm of a height; root mean square) at which correction stops."""
 
 THINNEST = 0.5
-"""Thinnest first cells that sources are to hold, in those of Winslow's solution; below that
-`meshonet.solvers.layers.redistribute` takes over."""
+"""Thinnest first cells that sources are to hold, in those of Winslow's solution."""
 
 RELAXATION = 0.5
-"""Part of the linear answer by which sources are corrected."""
+"""Part of the linearised correction that is made."""
 
 
 def solve_steger_sorenson(
@@ -88,24 +89,24 @@ def solve_steger_sorenson(
         as `solve`.
     """
     check_settings(boundary, tol, max_cycles, initial)
-    asked = _asked(boundary, heights, angle)
+    heights = _checked(boundary, heights, angle)
     begun = time.perf_counter()
     start = initial.nodes if initial is not None else solve(boundary).grid.nodes
-    edges = _edges(boundary, asked, angle, start)
+    edges = _edges(boundary, heights, angle, start)
     counts = min(boundary.ni, FEW), min(boundary.nj, FEW)
     if counts != (boundary.ni, boundary.nj) and initial is None:
         small = thinned(boundary, *counts)
         nodes = solve(small).grid.nodes.copy(order="K")
-        few = _edges(small, asked, angle, nodes)
+        few = _edges(small, heights, angle, nodes)
         _seek(nodes, small, few, ROUNDS[0])
         for edge, coarse in zip(edges, few, strict=True):
-            edge.taken_from(coarse)
+            edge.resample(coarse)
         nodes, rounds = evaluate(nodes, boundary), ROUNDS[1]
     else:
         nodes, rounds = start.copy(order="K"), ROUNDS[0]
     _seek(nodes, boundary, edges, rounds)
     solution, part = _settled(boundary, start, nodes, edges, tol, max_cycles)
-    notes = (*solution.notes, _told(solution.grid.nodes, edges, part))
+    notes = (*solution.notes, _angle_note(solution.grid.nodes, edges, part))
     return replace(solution, seconds={"grid": time.perf_counter() - begun}, notes=notes)
 
 
@@ -117,34 +118,33 @@ def largest_lean(nodes: Floats, boundary: Boundary) -> float:
     return float(np.degrees(np.arcsin(min(sine, 1.0))))
 
 
-def _asked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> dict[str, float]:
+def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: float) -> Mapping[str, float]:
     """Return the heights by side, once all is checked."""
     if boundary.topology == "c":
-        raise InputError("steger-sorenson has no C grids", "use topology o or method hyperbolic")
+        problem, remedy = "steger-sorenson has no C grids", "use topology o or method hyperbolic"
+        raise InputError(problem, remedy, parameter="method")
     if not 30.0 <= angle <= 150.0:
-        raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150")
-    walls = ("south", "north") if boundary.topology == "quad" else ("south",)
-    asked = dict(heights) if heights else dict.fromkeys(walls, 0.0)
-    for side in asked:
-        if boundary.topology != "quad" and side != "south":
+        raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150", parameter="wall_angle")
+    walls = ("south", "north") if not boundary.around_body else ("south",)
+    for side in heights or ():
+        if boundary.around_body and side != "south":
             problem = f"{side} in topology {boundary.topology} cannot be controlled"
             raise InputError(problem, "control its wall, south")
-    return asked
+    return heights or dict.fromkeys(walls, 0.0)
 
 
 def _edges(
-    boundary: Boundary, asked: Mapping[str, float], angle: float, nodes: Floats
+    boundary: Boundary, heights: Mapping[str, float], angle: float, nodes: Floats
 ) -> list[ControlledEdge]:
     """Return the edges under control, with heights that sources can hold beside those of `nodes`."""
-    found = []
-    closed = boundary.topology == "o"
-    for side, height in asked.items():
+    edges = []
+    closed = boundary.periodic
+    for side, height in heights.items():
         count = boundary.nj if side in ("south", "north") else boundary.ni
-        edge, first, _ = layers_at(nodes, side)
-        free = float(np.median(np.hypot(*(first - edge).T)))
+        free = float(np.median(first_heights(lines_off(nodes, side))))
         held = max(height, THINNEST * free) if height else 0.0
-        found.append(ControlledEdge(side, getattr(boundary, side), count, angle, held, closed))
-    return found
+        edges.append(ControlledEdge(side, getattr(boundary, side), count, angle, held, closed))
+    return edges
 
 
 def _sum(edges: Sequence[ControlledEdge], boundary: Boundary) -> Controls:
@@ -155,19 +155,20 @@ def _sum(edges: Sequence[ControlledEdge], boundary: Boundary) -> Controls:
 def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], rounds: int) -> None:
     """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right.
 
-    What is not finite or goes astray is taken back to the best so far, with smaller corrections.
+    Nodes that are not finite or err three times as much as the best so far are taken back to these, and the
+    corrections are halved.
     """
     four = boundary.south, boundary.north, boundary.west, boundary.east
     work = planar_nodes(boundary.ni, boundary.nj)
-    levels = Multigrid(work, four, boundary.topology == "o", controls=_sum(edges, boundary))
+    levels = Multigrid(work, four, boundary.periodic, controls=_sum(edges, boundary))
     work[...] = nodes
     for _ in range(FIRST):
         levels.cycle()
-    best, least, since, relaxation = _kept(edges), np.inf, 0, RELAXATION
+    best, least, since, relaxation = [edge.sources.copy() for edge in edges], np.inf, 0, RELAXATION
     for _ in range(rounds):
         error = _error(work, edges)
         if error < least:
-            best, least, since = _kept(edges), error, 0
+            best, least, since = [edge.sources.copy() for edge in edges], error, 0
             nodes[...] = work
         else:
             since += 1
@@ -187,20 +188,16 @@ def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], ro
 
 
 def _error(nodes: Floats, edges: Sequence[ControlledEdge]) -> float:
-    """Return the root mean square of what is wrong at the edges, infinite when `nodes` are not finite."""
+    """Return the root mean square of the errors at the edges, infinite when `nodes` are not finite."""
     if not np.isfinite(nodes[..., 0].sum() + nodes[..., 1].sum()):
         return np.inf
-    wrong = [error for edge in edges for error in edge.errors(nodes)]
-    return float(max(np.sqrt(np.mean(np.square(error))) for error in wrong))
+    errors = [error for edge in edges for error in edge.errors(nodes)]
+    return float(max(np.sqrt(np.mean(np.square(error))) for error in errors))
 
 
-def _kept(edges: Sequence[ControlledEdge]) -> list[tuple[Floats, Floats]]:
-    return [(edge.along.copy(), edge.across.copy()) for edge in edges]
-
-
-def _restore(edges: Sequence[ControlledEdge], kept: list[tuple[Floats, Floats]]) -> None:
-    for edge, (along, across) in zip(edges, kept, strict=True):
-        edge.along, edge.across = along.copy(), across.copy()
+def _restore(edges: Sequence[ControlledEdge], sources: Sequence[Floats]) -> None:
+    for edge, kept in zip(edges, sources, strict=True):
+        edge.sources[...] = kept
 
 
 def _settled(
@@ -233,16 +230,12 @@ def _settled(
     return solve(boundary, tol=tol, max_cycles=max_cycles, initial=begun, method="steger-sorenson"), 0.0
 
 
-def _told(nodes: Floats, edges: Sequence[ControlledEdge], part: float) -> str:
+def _angle_note(nodes: Floats, edges: Sequence[ControlledEdge], part: float) -> str:
     """Return how near the lines came to their angles."""
     off = [np.degrees(np.arcsin(np.clip(np.abs(edge.errors(nodes)[0]), 0.0, 1.0))) for edge in edges]
-    sides = ", ".join(edge.side for edge in edges)
-    told = (
-        f"lines leave {sides} at {edges[0].angle:g} degrees, off by {max(map(np.max, off)):.1f} at most and "
-    )
-    told += f"{np.mean(np.concatenate(off)):.2f} on average"
-    return (
-        told
-        if part == 1.0
-        else f"{told}; sources weakened to {part:g} of what that takes, which diverged or folded cells"
-    )
+    sides, most = ", ".join(edge.side for edge in edges), max(map(np.max, off))
+    note = f"lines leave {sides} at {edges[0].angle:g} degrees, off by {most:.1f} at most"
+    note += f" and {np.mean(np.concatenate(off)):.2f} on average"
+    if part < 1.0:
+        note += f"; sources weakened to {part:g} of what that takes, which diverged or folded cells"
+    return note

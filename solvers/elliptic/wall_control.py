@@ -1,4 +1,4 @@
-"""One controlled edge: how its lines stand, how high its first cells are, and the sources that change both.
+"""One controlled edge: angle of its lines, height of its first cells, and the sources that change both.
 
 The sources decay from the edge inwards, φ(i, j) = p(i) e^{-b j} along it and ψ(i, j) = q(i) e^{-b j} across,
 as Steger and Sorenson's. To first order on an even grid with steps dx, dy a wave κ/dy of p turns the lines at
@@ -16,6 +16,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.solvers.elliptic.control import Controls, Factors
+from meshonet.solvers.elliptic.wall_lines import first_heights, leaning, lines_off
 
 DECAY = 6.0
 """Exponent of the decay from an edge to the opposite one."""
@@ -24,7 +25,7 @@ RAMP = 0.03
 """Part of the nodes of an edge over which control sets in beside a corner."""
 
 LIMIT = 1.0
-"""Largest logarithm of a ratio of neighbouring steps that a source may ask for."""
+"""Largest logarithm of a ratio of neighbouring steps that a source may stand for."""
 
 
 class ControlledEdge:
@@ -48,39 +49,31 @@ class ControlledEdge:
         self._tangent = curve.tangent(np.append(curve.knots, 0.0) if periodic else curve.knots)
         self._steps = np.hypot(*np.diff(edge, axis=0).T)
         self._weight = _away_from(curve, len(edge), periodic)
-        self.along = np.zeros(len(edge))
-        self.across = np.zeros(len(edge))
+        self.sources = np.zeros((2, len(edge)))
+        """p and q, along and across the edge."""
         self._count = across
 
     def errors(self, nodes: Floats) -> tuple[Floats, Floats]:
         """Return by how much lines lean forward (sine) and the logarithm of height over what it should be.
 
-        (n,) each, less and less towards corners and ends of the edge, where lines cannot stand as asked.
+        (n,) each, less and less towards corners and ends of the edge, where the angle cannot be had.
         """
-        a, b, c = layers_at(nodes, self.side)
-        first, second = np.hypot(*(b - a).T), np.hypot(*(c - b).T)
-        out = (b - a) / first[:, None]
-        direction = out + (out - (c - b) / second[:, None]) * (first / (first + second))[:, None]
-        lean = (direction * self._tangent).sum(axis=1) / np.hypot(*direction.T) - np.cos(
-            np.radians(self.angle)
-        )
-        high = np.log(first / self.height) if self.height else np.zeros(len(first))
+        lines = lines_off(nodes, self.side)
+        lean = leaning(lines, self._tangent) - np.cos(np.radians(self.angle))
+        high = np.log(first_heights(lines) / self.height) if self.height else np.zeros(len(lines))
         return self._weight * lean, self._weight * high
 
     def correct(self, nodes: Floats, relaxation: float) -> None:
         """Change the sources against what is wrong with `nodes`."""
         lean, high = self.errors(nodes)
-        a, b, _ = layers_at(nodes, self.side)
-        up = np.hypot(*(b - a).T)
-        before, after = self._steps, self._steps
-        beside = np.empty(len(up))
-        beside[1:-1] = 0.5 * (before[:-1] + after[1:])
-        beside[0], beside[-1] = after[0], before[-1]
+        up = first_heights(lines_off(nodes, self.side))
+        steps = self._steps
+        beside = np.concatenate([steps[:1], 0.5 * (steps[:-1] + steps[1:]), steps[-1:]])
         flat = float(np.mean(up) / np.mean(beside))
         decay = DECAY / (self._count - 1)
-        for sources, wrong in ((self.along, lean * beside / up), (self.across, high)):
-            sources += relaxation * _stiffened(wrong, decay, flat, self.periodic)
-            np.clip(sources, -LIMIT, LIMIT, out=sources)
+        for sources, error in zip(self.sources, (lean * beside / up, high), strict=True):
+            sources += relaxation * _stiffened(error, decay, flat, self.periodic)
+        np.clip(self.sources, -LIMIT, LIMIT, out=self.sources)
 
     def controls(self) -> Controls:
         """Return the sources as control functions."""
@@ -89,17 +82,18 @@ class ControlledEdge:
         inwards = 1.0
         if self.side in ("north", "east"):
             fade, inwards = fade[::-1].copy(), -1.0
-        along, across = self.along[None], inwards * self.across[None]
+        along, across = self.sources[:1], inwards * self.sources[1:]
         if self.side in ("south", "north"):
             return Controls(Factors(along, fade[None]), Factors(across, fade[None]))
         return Controls(Factors(fade[None], across), Factors(fade[None], along))
 
-    def taken_from(self, coarse: ControlledEdge) -> None:
+    def resample(self, coarse: ControlledEdge) -> None:
         """Take over the sources of the same edge with other counts."""
-        n, m = len(self.along), len(coarse.along)
+        n, m = self.sources.shape[1], coarse.sources.shape[1]
         place, few = np.linspace(0.0, 1.0, n), np.linspace(0.0, 1.0, m)
-        self.along = np.interp(place, few, coarse.along) * ((m - 1) / (n - 1))
-        self.across = np.interp(place, few, coarse.across) * ((coarse._count - 1) / (self._count - 1))
+        factors = (m - 1) / (n - 1), (coarse._count - 1) / (self._count - 1)
+        for k, factor in enumerate(factors):
+            self.sources[k] = np.interp(place, few, coarse.sources[k]) * factor
 
 
 def _away_from(curve: Curve, n: int, periodic: bool) -> Floats:
@@ -112,15 +106,6 @@ def _away_from(curve: Curve, n: int, periodic: bool) -> Floats:
         apart = np.abs(index - corner)
         distance = np.minimum(distance, np.minimum(apart, n - 1 - apart) if periodic else apart)
     return np.clip(distance / max(3.0, RAMP * n), 0.0, 1.0)
-
-
-def layers_at(nodes: Floats, side: str) -> tuple[Floats, Floats, Floats]:
-    """Return the nodes of an edge and of the two lines next to it, (n, 2) each."""
-    if side in ("west", "east"):
-        nodes = np.swapaxes(nodes, 0, 1)
-    rows = (0, 1, 2) if side in ("south", "west") else (-1, -2, -3)
-    a, b, c = (nodes[:, k] for k in rows)
-    return a, b, c
 
 
 def _stiffened(values: Floats, decay: float, flat: float, periodic: bool) -> Floats:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats, as_planar
+
 NEIGHBOURS = [(da, db) for da in (-1, 0, 1) for db in (-1, 0, 1) if (da, db) != (0, 0)]
 
 
@@ -30,6 +32,21 @@ class Window:
     def cells(self) -> int:
         """Count of cells."""
         return (self.i1 - self.i0) * (self.j1 - self.j0)
+
+    def rows(self, ni: int, periodic: bool) -> NDArray[np.intp]:
+        """Return the first indices of the nodes, in a grid of `ni` rows."""
+        rows = np.arange(self.i0, self.i1 + 1)
+        return rows % (ni - 1) if periodic else rows
+
+    def cut(self, nodes: Floats, periodic: bool) -> Floats:
+        """Return a planar copy of the window's part of `nodes` (ni, nj, 2)."""
+        return as_planar(nodes[self.rows(len(nodes), periodic), self.j0 : self.j1 + 1])
+
+    def put(self, nodes: Floats, periodic: bool, patch: Floats) -> None:
+        """Set the inner nodes of the window to those of `patch`, as `cut` returned it."""
+        nodes[self.rows(len(nodes), periodic)[1:-1], self.j0 + 1 : self.j1] = patch[1:-1, 1:-1]
+        if periodic:
+            nodes[-1] = nodes[0]
 
 
 def windows(

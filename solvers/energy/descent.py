@@ -11,20 +11,21 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import Stiffness, VariationalDescent
+from meshonet.kernels._native import Stiffness
 from meshonet.kernels._native import newton as newton_steps
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
-from meshonet.solvers.energy.local_descent import REACH, descend_windows, unfold
-from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.local_descent import descend_windows
+from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.repair import repair
+from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.progress import cycle_ended, listened_to
 
 HARD = 1.1
 """Value of the functional around a body above which descents go on."""
 
 WON = 3e-2
-"""Part of the functional that a step of Newton's method lowers it by for another one to follow."""
+"""Relative decrease of the functional below which Newton's method ends."""
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
@@ -54,23 +55,21 @@ def descend(
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
         return 0, count_folded(nodes) == 0
-    z = np.moveaxis(nodes, -1, 0)
     aspect = aspect_of(nodes, periodic)
     relief = relief_of(nodes[:, 0]) if periodic else None
-    descent = minimiser(ni, nj, periodic, aspect, weights)
+    descent = Descent(nodes, weights, periodic, aspect)
     if stiffness is not None:
         hessian, (m, n) = stiffness
-        descent.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
-    terms = aspect, weights.shape, weights.smoothness
+        descent.minimiser.steer(hessian, spline_matrix(m, ni)[1:-1, 1:-1], spline_matrix(n, nj)[1:-1, 1:-1])
     if relief is not None:
         descend_windows(nodes, aspect, weights, relief)
-    if count_folded(nodes) and not _made_valid(nodes, descent, terms, periodic):
+    if count_folded(nodes) and not _made_valid(nodes, weights, periodic):
         return 0, False
-    moves, told = in_cells(still, nodes), teller(nodes)
+    moves, listener = in_cells(still, nodes), listener_of(nodes)
     begin = most if first is None else min(first, most)
-    value, _, done = descent.run(z, *terms, 0.0, relief, moves, REACH, begin, told)
+    value, _, done = descent.run(moves, begin, relief=relief, listener=listener)
     if begin <= done < most and value > HARD:
-        done += descent.run(z, *terms, 0.0, relief, moves, REACH, most - done, told)[2]
+        done += descent.run(moves, most - done, relief=relief, listener=listener)[2]
     return done, True
 
 
@@ -94,22 +93,22 @@ def stiffness_of(nodes: Floats, weights: Weights) -> tuple[Stiffness, tuple[int,
     """Return the Hessian at planar `nodes` of few counts, and these, for `descend`; None if folded."""
     if count_folded(nodes):
         return None
-    found = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
-    return (found, (nodes.shape[0], nodes.shape[1])) if found.usable else None
+    hessian = Stiffness(np.moveaxis(nodes, -1, 0), aspect_of(nodes), weights.shape, weights.smoothness)
+    return (hessian, (nodes.shape[0], nodes.shape[1])) if hessian.usable else None
 
 
-def teller(nodes: Floats) -> Callable[[int, float, float], None] | None:
-    """Return what tells listeners of iterations that move `nodes` (ni, nj, 2), None without listeners."""
+def listener_of(nodes: Floats) -> Callable[[int, float, float], None] | None:
+    """Return what calls listeners after iterations that move `nodes` (ni, nj, 2), None without listeners."""
     if not listened_to():
         return None
     first = 0.0
 
-    def told(number: int, value: float, slope: float) -> None:
+    def listener(number: int, value: float, slope: float) -> None:
         nonlocal first
         first = slope if number == 0 else first
         cycle_ended("variational", nodes, number, slope / first if first else 0.0, functional=value)
 
-    return told
+    return listener
 
 
 def in_cells(still: float, nodes: Floats) -> float:
@@ -117,11 +116,9 @@ def in_cells(still: float, nodes: Floats) -> float:
     return still * float(np.sqrt((nodes.shape[0] - 1) * (nodes.shape[1] - 1)))
 
 
-def _made_valid(
-    nodes: Floats, descent: VariationalDescent, terms: tuple[float, float, float], periodic: bool
-) -> bool:
+def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
     """Unfold planar `nodes` in place, by local repair or else as a whole; return success."""
     if repair(nodes, periodic) == 0:
         return True
     small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
-    return small and unfold(np.moveaxis(nodes, -1, 0), descent, terms)
+    return small and unfold(nodes, weights)[0]

@@ -1,37 +1,31 @@
-"""The minimum on windows around folded and skewed cells, which starts of whole descents lack most.
+"""The minimum on windows around folded and skewed cells, before all nodes of an O grid are moved.
 
 Splines smear what corners of a wall do to the lines that leave them. There the functional is far from a
-parabola, and whole descents spend most of their iterations on a few cells.
+parabola, and descents of whole grids spend most of their iterations on a few cells.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import VariationalDescent, variational_energy, variational_workspace
 from meshonet.solvers.energy.clusters import windows
 from meshonet.solvers.energy.functional import Weights
-from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.preconditioner import Descent
+from meshonet.solvers.energy.untangle import STILL, unfold
 
 SKEWED = 1.5
 """1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it."""
 
-MARGIN = 6
-"""Cells around a group of such ones that move with them."""
+MARGIN_CELLS = 6
+"""Cells around a group of skewed ones that move with them."""
 
-LARGEST = 1500
+LARGEST_CELLS = 1500
 """Cells of a window at the most."""
 
 ITERATIONS = 30
 """In a window at the most."""
-
-STILL = 1e-3
-"""Moves at which it stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
-
-REACH = 0.25
-"""Cells that a node moves at the most in a first iteration."""
 
 
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
@@ -39,8 +33,7 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
 
     Parameters
     ----------
-    aspect, weights : of the functional.
-    relief : as `meshonet.solvers.energy.functional.relief_of`.
+    aspect, weights, relief : of the functional (`meshonet.solvers.energy.functional`).
     """
     skewed = skewness(nodes)
     poor = np.argwhere(skewed > SKEWED)
@@ -48,21 +41,17 @@ def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floa
         poor = np.argwhere(skewed == np.inf)
     if len(poor) == 0:
         return
-    terms = aspect, weights.shape, weights.smoothness
-    for window in windows(poor, MARGIN, nodes.shape[:2], True, LARGEST):
-        rows = np.arange(window.i0, window.i1 + 1) % (len(nodes) - 1)
-        patch = as_planar(nodes[rows, window.j0 : window.j1 + 1])
+    for window in windows(poor, MARGIN_CELLS, nodes.shape[:2], True, LARGEST_CELLS):
+        patch = window.cut(nodes, True)
         m, n = patch.shape[:2]
         if min(m, n) < 3:
             continue
-        z, descent = np.moveaxis(patch, -1, 0), minimiser(m, n, False, aspect, weights)
-        if count_folded(patch) and not unfold(z, descent, terms):
+        if count_folded(patch) and not unfold(patch, weights, aspect=aspect)[0]:
             continue
-        eased = relief[rows] if window.j0 == 0 else None
+        eased = relief[window.rows(len(nodes), True)] if window.j0 == 0 else None
         still = STILL * float(np.sqrt((m - 1) * (n - 1)))
-        descent.run(z, *terms, 0.0, eased, still, REACH, ITERATIONS)
-        nodes[rows[1:-1], window.j0 + 1 : window.j1] = patch[1:-1, 1:-1]
-        nodes[-1] = nodes[0]
+        Descent(patch, weights, aspect=aspect).run(still, ITERATIONS, relief=eased)
+        window.put(nodes, True, patch)
 
 
 def skewness(nodes: Floats) -> Floats:
@@ -77,25 +66,3 @@ def skewness(nodes: Floats) -> Floats:
             np.minimum(least, area / np.maximum(g[:, south] * h[west], 1e-300), out=least)
     with np.errstate(divide="ignore"):
         return np.asarray(np.where(least > 0.0, least, 0.0) ** -4.0)
-
-
-def unfold(z: Floats, descent: VariationalDescent, terms: tuple[float, float, float]) -> bool:
-    """Unfold the planes `z` (2, ni, nj) in place by minimising with regularised Jacobians; return success."""
-    nodes = np.moveaxis(z, 0, -1)
-    ni, nj = nodes.shape[:2]
-    cell = _area(nodes) / ((ni - 1) * (nj - 1))
-    work = np.empty(variational_workspace(ni, nj))
-    smallest = variational_energy(z, *terms, 0.0, False, None, np.empty_like(z), work)[1]
-    epsilon = max(0.05 * cell, -0.5 * smallest)
-    for _ in range(25):
-        if descent.run(z, *terms, epsilon, None, 1e-3, REACH, 40)[1] > 0:
-            return True
-        epsilon *= 0.4
-    return False
-
-
-def _area(nodes: Floats) -> float:
-    """Return the area inside the rim of `nodes`."""
-    x, y = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]).T
-    x, y = x - x[0], y - y[0]
-    return float(abs(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))

@@ -1,4 +1,4 @@
-"""The inverse of the functional's Hessian on a grid of equal squares, by transforms along both directions.
+"""Descents, preconditioned by the inverse of the functional's Hessian on a grid of equal squares.
 
 There the harmonic term is a Laplacian and the edge length term a biharmonic operator, both diagonal in
 products of sines (along eta, and along xi between fixed nodes) or of sines and cosines (around a body). The
@@ -7,6 +7,7 @@ compiled descent applies them in the frame of each node, by products of matrices
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import TypeAlias
 
@@ -14,10 +15,54 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import Modes, VariationalDescent
-from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.functional import Weights, aspect_of
+
+REACH_CELLS = 0.25
+"""How far a node moves at the most in the first iteration of a descent."""
 
 MODES = 512
 """Modes along a direction that are kept; finer ones are all divided by the same."""
+
+
+class Descent:
+    """Descents of the functional from planar nodes (ni, nj, 2), which are moved in place.
+
+    Parameters
+    ----------
+    nodes : those of the rim are fixed.
+    weights : of the functional.
+    periodic : around a body: the last row of nodes is the first, and its nodes move like any others.
+    aspect : a of the functional; None is that of `nodes`.
+    """
+
+    def __init__(
+        self, nodes: Floats, weights: Weights, periodic: bool = False, aspect: float | None = None
+    ) -> None:
+        self._z = np.moveaxis(nodes, -1, 0)
+        aspect = aspect or aspect_of(nodes, periodic)
+        self._terms = aspect, weights.shape, weights.smoothness
+        self.minimiser = minimiser(nodes.shape[0], nodes.shape[1], periodic, aspect, weights)
+
+    def run(
+        self,
+        still: float,
+        most: int,
+        *,
+        epsilon: float = 0.0,
+        relief: Floats | None = None,
+        listener: Callable[[int, float, float], None] | None = None,
+    ) -> tuple[float, float, int]:
+        """Descend; return the value of the functional, the smallest corner Jacobian and the iterations.
+
+        Parameters
+        ----------
+        still : move of a node, in its own cells, below which it stops.
+        most : iterations at the most.
+        epsilon : an area, by which Jacobians are regularised.
+        relief : as `meshonet.solvers.energy.functional.relief_of`.
+        listener : called with number, value and norm of the gradient at the start and after each iteration.
+        """
+        return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 
 
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:

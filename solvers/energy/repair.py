@@ -1,4 +1,4 @@
-"""Unfold cells: minimise the corner energy of `solvers._repair` around the folded ones.
+"""Unfold the folded cells of a grid by moving nodes around them.
 
 A grid with a few folded cells is unfolded on windows around them, which grow while they stay folded. What
 that cannot undo is unfolded on coarser copies of the grid first: the coarsest at once, then each finer one
@@ -8,16 +8,33 @@ cannot be unfolded is given up after a second or two.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.arrays import Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.quality.measure import count_folded, folded_cells, per_cell
-from meshonet.solvers.energy.clusters import Window, windows
-from meshonet.solvers.energy.untangle import Patience, smooth, unfold
+from meshonet.solvers.energy.clusters import windows
+from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.preconditioner import Descent
+from meshonet.solvers.energy.untangle import unfold
+
+UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0), 200)
+"""Weights, and iterations with one regularisation, tried in turn while cells stay folded.
+
+The harmonic term alone unfolds more, with wider angles; around spikes it takes many iterations.
+"""
+
+SMOOTHING = Weights()
+"""Weights with which the corners of an unfolded patch are opened."""
+
+SMOOTHING_ITERATIONS = 1500
+SMOOTHING_STILL = 3e-5
+"""Iterations of that at the most, and the move of nodes, in cells, below which it stops."""
 
 MARGIN = 6
 """Cells around a group of folded ones that move with them, at first."""
@@ -25,10 +42,10 @@ MARGIN = 6
 MARGINS = (12, 16)
 """Those of later rounds, where cells stay folded."""
 
-PATCHES = (32, 64)
+NESTED_MARGINS = (32, 64)
 """The same for windows that are unfolded through coarser copies."""
 
-LARGEST = 2500
+LARGEST_CELLS = 2500
 """Cells of a grid or window up to which it is unfolded at once."""
 
 FEW = 0.001
@@ -39,6 +56,16 @@ POOR = 0.1
 
 SHARP = 0.5
 """Radians by which an edge turns at a node that coarser copies must keep."""
+
+FUTILE = 2.4e7
+"""Nodes times iterations that may be spent on patches which stay folded: a second or two."""
+
+
+@dataclass
+class Patience:
+    """What may still be spent in vain, in nodes times iterations. Unfolding that succeeds costs none."""
+
+    left: float = FUTILE
 
 
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
@@ -53,72 +80,89 @@ def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
         return len(bad)
-    if _few(len(bad), nodes) and unfold_windows(nodes, periodic, Patience(), margin) == 0:
-        smooth_windows(nodes, periodic, bad, margin)
+    margins = (margin, *(wider for wider in MARGINS if wider > margin))
+    if _few(len(bad), nodes) and _repair_windows(nodes, periodic, Patience(), margins) == 0:
+        _smooth_windows(nodes, periodic, bad, margin)
         return 0
     patience = Patience()
-    left = unfold_nested(nodes, periodic, patience) and unfold_patches(nodes, periodic, patience)
-    poor = np.argwhere(
-        per_cell(Grid.from_nodes(nodes, "o" if periodic else "quad"), "scaled_jacobian") < POOR
-    )
+    left = _repair_nested(nodes, periodic, patience)
+    left = left and _repair_windows(nodes, periodic, patience, NESTED_MARGINS, nested=True)
+    grid = Grid.from_nodes(nodes, "o" if periodic else "quad")
+    poor = np.argwhere(per_cell(grid, "scaled_jacobian") < POOR)
     if left == 0 and _few(len(poor), nodes):
-        smooth_windows(nodes, periodic, poor, margin)
+        _smooth_windows(nodes, periodic, poor, margin)
     return left
 
 
-def unfold_windows(nodes: Floats, periodic: bool, patience: Patience, margin: int = MARGIN) -> int:
-    """Unfold windows around folded cells, as `repair`."""
+def _repair_windows(
+    nodes: Floats,
+    periodic: bool,
+    patience: Patience,
+    margins: tuple[int, ...] = (MARGIN, *MARGINS),
+    nested: bool = False,
+) -> int:
+    """Unfold windows around folded cells, at once or (`nested`) through coarser copies, as `repair`."""
+    largest = (16 if nested else 1) * LARGEST_CELLS
     left = count_folded(nodes)
-    for cells in (margin, *(wider for wider in MARGINS if wider > margin)):
+    for cells in margins:
         if left == 0:
             break
-        for window in windows(folded_cells(nodes), cells, nodes.shape[:2], periodic, LARGEST):
-            patch = _cut(nodes, window, periodic)
+        for window in windows(folded_cells(nodes), cells, nodes.shape[:2], periodic, largest):
+            patch = window.cut(nodes, periodic)
             before = count_folded(patch)
-            if before and unfold(patch, False, patience) < before:
-                _put(nodes, window, periodic, patch)
+            if before and (_repair_nested if nested else untangle)(patch, False, patience) < before:
+                window.put(nodes, periodic, patch)
         left = count_folded(nodes)
     return left
 
 
-def smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], margin: int) -> None:
+def _smooth_windows(nodes: Floats, periodic: bool, cells: NDArray[np.int64], margin: int) -> None:
     """Smooth windows around `cells` (n, 2) of valid planar `nodes` (ni, nj, 2), in place."""
-    for window in windows(cells, 2 * margin, nodes.shape[:2], periodic, LARGEST):
-        patch = _cut(nodes, window, periodic)
-        smooth(patch)
-        if count_folded(patch) == 0:
-            _put(nodes, window, periodic, patch)
+    for window in windows(cells, 2 * margin, nodes.shape[:2], periodic, LARGEST_CELLS):
+        patch = window.cut(nodes, periodic)
+        _smooth(patch)
+        window.put(nodes, periodic, patch)
 
 
-def unfold_patches(nodes: Floats, periodic: bool, patience: Patience) -> int:
-    """Unfold larger windows through coarser copies, as `repair`."""
-    left = count_folded(nodes)
-    for margin in PATCHES:
-        if left == 0:
+def untangle(patch: Floats, periodic: bool, patience: Patience) -> int:
+    """Unfold and smooth planar `patch` (m, n, 2) in place, all nodes at once, as `repair`."""
+    if patience.left <= 0 or min(patch.shape[:2]) < 3:
+        return count_folded(patch)
+    spent, valid, tried = 0, False, patch
+    for weights, iterations in UNFOLDING:
+        tried = patch.copy(order="K")
+        valid, done = unfold(tried, weights, periodic=periodic, iterations=iterations)
+        spent += done * patch[..., 0].size
+        if valid:
             break
-        for window in windows(folded_cells(nodes), margin, nodes.shape[:2], periodic, 16 * LARGEST):
-            patch = _cut(nodes, window, periodic)
-            before = count_folded(patch)
-            if before and unfold_nested(patch, False, patience) < before:
-                _put(nodes, window, periodic, patch)
-        left = count_folded(nodes)
-    return left
+    patch[...] = tried
+    if valid:
+        _smooth(patch, periodic)
+    else:
+        patience.left -= spent
+    return count_folded(patch)
 
 
-def unfold_nested(nodes: Floats, periodic: bool, patience: Patience) -> int:
+def _smooth(patch: Floats, periodic: bool = False) -> None:
+    """Open the corners of planar `patch` (m, n, 2) in place, where it is valid."""
+    if min(patch.shape[:2]) > 2 and count_folded(patch) == 0:
+        Descent(patch, SMOOTHING, periodic).run(SMOOTHING_STILL, SMOOTHING_ITERATIONS)
+
+
+def _repair_nested(nodes: Floats, periodic: bool, patience: Patience) -> int:
     """Unfold coarser copies first and let this grid follow, as `repair`."""
     ni, nj = nodes.shape[:2]
     tangled = not _few(count_folded(nodes), nodes)
-    small = ni * nj <= LARGEST
-    if ni * nj > LARGEST // 2 and min(ni, nj) > 5:
+    small = ni * nj <= LARGEST_CELLS
+    if ni * nj > LARGEST_CELLS // 2 and min(ni, nj) > 5:
         _follow_coarser(nodes, periodic, patience)
     elif tangled:
-        unfold(nodes, periodic, patience)
-    left = unfold_windows(nodes, periodic, patience)
+        untangle(nodes, periodic, patience)
+    left = _repair_windows(nodes, periodic, patience)
     if left and small:
-        left = unfold(nodes, periodic, patience)
+        left = untangle(nodes, periodic, patience)
     if left == 0 and small and tangled:
-        smooth(nodes, periodic)
+        _smooth(nodes, periodic)
     return left
 
 
@@ -130,7 +174,7 @@ def _follow_coarser(nodes: Floats, periodic: bool, patience: Patience) -> None:
     if count_folded(coarse) == 0:
         return
     before = coarse.copy(order="K")
-    unfold_nested(coarse, periodic, patience)
+    _repair_nested(coarse, periodic, patience)
     moved = nodes + _between(coarse - before, i, j, ni, nj)
     filled = _between(coarse, i, j, ni, nj)
     filled[:, 0], filled[:, -1] = nodes[:, 0], nodes[:, -1]
@@ -144,31 +188,13 @@ def _few(cells: int, nodes: Floats) -> bool:
     return cells <= max(FEW * nodes.shape[0] * nodes.shape[1], 50)
 
 
-def _cut(nodes: Floats, window: Window, periodic: bool) -> Floats:
-    """Return a planar copy of the nodes of `window`."""
-    rows = np.arange(window.i0, window.i1 + 1)
-    if periodic:
-        rows %= nodes.shape[0] - 1
-    return as_planar(nodes[rows, window.j0 : window.j1 + 1])
-
-
-def _put(nodes: Floats, window: Window, periodic: bool, patch: Floats) -> None:
-    """Set the inner nodes of `window` to those of `patch`."""
-    rows = np.arange(window.i0 + 1, window.i1)
-    if periodic:
-        rows %= nodes.shape[0] - 1
-    nodes[rows, window.j0 + 1 : window.j1] = patch[1:-1, 1:-1]
-    if periodic:
-        nodes[-1] = nodes[0]
-
-
-def _kept(one: Floats, other: Floats) -> NDArray[np.intp]:
+def _kept(edge: Floats, opposite: Floats) -> NDArray[np.intp]:
     """Return about every second index of two opposite edges (n, 2), the ends and sharp corners among them.
 
     A copy that lost the tip of a spike would lead its lines through the spike.
     """
-    n = len(one)
-    corners = np.flatnonzero(np.maximum(_turning(one), _turning(other)) > SHARP) + 1
+    n = len(edge)
+    corners = np.flatnonzero(np.maximum(np.abs(turning(edge)), np.abs(turning(opposite))) > SHARP)
     if len(corners) > n // 8:  # a rough edge: all its nodes are alike
         corners = corners[:0]
     stops = np.concatenate([[0], corners, [n - 1]])
@@ -176,22 +202,13 @@ def _kept(one: Floats, other: Floats) -> NDArray[np.intp]:
     return np.concatenate([*pieces, [n - 1]])
 
 
-def _turning(points: Floats) -> Floats:
-    """Return the angle in radians by which the polyline `points` (n, 2) turns at its inner points (n-2,)."""
-    step = np.diff(points, axis=0)
-    before, after = step[:-1], step[1:]
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turning: Floats = np.abs(np.arctan2(cross, (before * after).sum(axis=1)))
-    return turning
-
-
 def _between(values: Floats, i: NDArray[np.intp], j: NDArray[np.intp], ni: int, nj: int) -> Floats:
-    """Return planar (ni, nj, 2), linear between the `values` at rows i and columns j."""
-    result = np.moveaxis(np.empty((2, ni, nj)), 0, -1)
-    rows, columns = np.arange(ni), np.arange(nj)
-    left = np.minimum(np.searchsorted(i, rows, side="right") - 1, len(i) - 2)
-    weight = ((rows - i[left]) / (i[left + 1] - i[left]))[:, None]
+    """Return planar (ni, nj, 2), bilinear between the `values` at rows i and columns j."""
+    result = planar_nodes(ni, nj)
+    along, across = (
+        np.stack([np.interp(np.arange(n), knots, row) for row in np.eye(len(knots))], axis=1)
+        for knots, n in ((i, ni), (j, nj))
+    )
     for k in (0, 1):
-        along = np.stack([np.interp(columns, j, row) for row in values[..., k]])
-        result[..., k] = (1 - weight) * along[left] + weight * along[left + 1]
+        result[..., k] = along @ values[..., k] @ across.T
     return result

@@ -8,7 +8,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.elliptic.relax import relax
+from meshonet.solvers.elliptic.multigrid import relax
 
 RELAXED = 400
 """Cells up to which line relaxation alone is the quickest way to Winslow's solution."""
@@ -22,7 +22,7 @@ def winslow_start(boundary: Boundary) -> Floats:
 
     Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
     """
-    if boundary.topology == "quad" and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
+    if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes
         relax(nodes, SWEEPS)
         if np.isfinite(nodes).all():

@@ -1,8 +1,8 @@
 """Boundary in, variational grid out: nested iteration from Winslow's solution on the coarsest copy.
 
-Each level starts from the minimum of the next coarser one, evaluated by splines (`meshonet.solvers.pipeline.coarse`). A start
-with folded cells is unfolded first: by local repair, then by minimising with regularised Jacobians. Smooth
-moves of the descents (`descent`) follow the Hessian of the coarsest level.
+Each level starts from the minimum of the next coarser one, evaluated by splines. A start with folded cells is
+unfolded first: by local repair, else as a whole. The Hessian of the coarsest level preconditions the smooth
+moves of finer ones.
 """
 
 from __future__ import annotations
@@ -15,16 +15,15 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
-from meshonet.kernels._native import variational_energy, variational_workspace
 from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
 from meshonet.solvers.elliptic.kinks import sweep_kinks
-from meshonet.solvers.energy.descent import descend, in_cells, stiffness_of, teller
-from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, aspect_of
-from meshonet.solvers.energy.local_descent import REACH, unfold
-from meshonet.solvers.energy.preconditioner import minimiser
+from meshonet.solvers.energy.descent import descend, in_cells, listener_of, stiffness_of
+from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, value
+from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.start import winslow_start
+from meshonet.solvers.energy.untangle import unfold
+from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.solution import Solution
 
 COARSEST = 17
@@ -102,21 +101,21 @@ def solve(
     InputError
         `initial` of other node counts; `tol` or `max_cycles` not positive.
     """
-    _check(boundary, tol, max_cycles, initial)
+    check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
     weights = weights or WEIGHTS[boundary.topology]
     still = tol if tol is not None else STILL
     if initial is None:
-        full = tol is not None or boundary.topology != "quad"
+        full = tol is not None or boundary.around_body
         limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
-        few = FEW_AROUND if tol is None and boundary.topology == "o" else None
+        few = FEW_AROUND if tol is None and boundary.periodic else None
         found = _nested(boundary, weights, still, limits, few=few)
-        if not found[-1] and boundary.topology == "quad":  # the other minimum of the coarsest level
+        if not found[-1] and not boundary.around_body:  # the other minimum of the coarsest level
             found = _nested(boundary, weights, still, limits, np.inf)
         nodes, weights, iterations, valid = found
     else:
-        nodes = _inside(boundary, initial)
-        iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.topology == "o")
+        nodes = initial_nodes(boundary, initial)
+        iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.periodic)
     notes = () if valid else ("no valid start was found; the grid is not the minimum",)
     facts = {"method": "variational", "shape": weights.shape, "smoothness": weights.smoothness}
     grid = boundary.grid(nodes, {**facts, "cycles": iterations})
@@ -138,8 +137,8 @@ def _nested(
     the same of values that are not `HARD`. A folded start that unfolds as a whole is not repaired up to the
     value `easy`.
     """
-    periodic = boundary.topology == "o"
-    coarsest = (COARSEST if boundary.topology == "quad" else COARSEST_AROUND), COARSEST
+    periodic = boundary.periodic
+    coarsest = (COARSEST if not boundary.around_body else COARSEST_AROUND), COARSEST
     levels = [thinned(boundary, boundary.ni, boundary.nj) if boundary.topology == "c" else boundary]
     while any(n > least for n, least in zip((levels[-1].ni, levels[-1].nj), coarsest, strict=True)):
         now = levels[-1].ni, levels[-1].nj
@@ -180,7 +179,7 @@ def _coarsest(
     """
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in angles(start)]
-    periodic = boundary.topology == "o"
+    periodic = boundary.periodic
     nodes, iterations, valid = _descended(start, weights, still, most, periodic, easy, first)
     best = nodes, weights, iterations, valid
     for _ in range(WEAKER):
@@ -210,19 +209,15 @@ def _descended(
     nodes = start.copy(order="K")
     if periodic or count_folded(start) == 0:
         return nodes, *descend(nodes, weights, still, most, periodic=periodic, first=first)
-    terms = aspect_of(start), weights.shape, weights.smoothness
-    ni, nj = start.shape[:2]
-    z, descent = np.moveaxis(nodes, -1, 0), minimiser(ni, nj, False, terms[0], weights)
-    value, low, iterations = np.inf, 0.0, 0
-    if unfold(z, descent, terms):
-        told = teller(nodes)
-        value, low, iterations = descent.run(z, *terms, 0.0, None, in_cells(still, start), REACH, most, told)
-    if value <= easy:
+    least, low, iterations = np.inf, 0.0, 0
+    if unfold(nodes, weights)[0]:
+        descent, moves = Descent(nodes, weights), in_cells(still, start)
+        least, low, iterations = descent.run(moves, most, listener=listener_of(nodes))
+    if least <= easy:
         return nodes, iterations, low > 0
     repaired = start.copy(order="K")
     more, valid = descend(repaired, weights, still, most)
-    z, room = np.moveaxis(repaired, -1, 0), np.empty(variational_workspace(ni, nj))
-    if valid and variational_energy(z, *terms, 0.0, False, None, np.empty_like(z), room)[0] < value:
+    if valid and value(repaired, weights) < least:
         return repaired, more, True
     return nodes, iterations, low > 0
 
@@ -232,26 +227,3 @@ def _worst_at_kink(nodes: Floats) -> bool:
     at = widest_cell(nodes)
     ends = [at[axis] in {0, nodes.shape[axis] - 2} for axis in (0, 1)]
     return ends[0] != ends[1]
-
-
-def _inside(boundary: Boundary, initial: Grid) -> Floats:
-    """Return a copy of the nodes of `initial` with the edges of `boundary`."""
-    nodes = initial.nodes.copy(order="K")
-    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
-    if boundary.topology == "o":
-        nodes[-1] = nodes[0]
-    else:
-        nodes[0], nodes[-1] = boundary.west, boundary.east
-    return nodes
-
-
-def _check(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    if tol is not None and not 0 < tol < 1:
-        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5")
-    if max_cycles < 1:
-        raise InputError(f"{max_cycles} iterations are too few", "allow at least 1")
-    if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
-        had = f"{initial.ni}x{initial.nj}"
-        raise InputError(
-            f"the initial grid has {had} nodes, not {boundary.ni}x{boundary.nj}", "give equal counts"
-        )

@@ -1,4 +1,4 @@
-"""C grids for which nobody gave a first cell: marched with one that suits the nodes of the wall.
+"""C grids without a given height of first cells: marched with one that suits the nodes of the wall.
 
 Elliptic C grids hold the nodes of the wake, where small cells behind the edge face large ones of the far
 field, and so their first cells are as high as a tenth of the chord. Marched from wall and wake they are a
@@ -37,19 +37,19 @@ def first_cell(boundary: Boundary) -> float:
     return max(PART * smallest, min(gentle, MOST * smallest))
 
 
-def march_unasked(boundary: Boundary) -> Solution | None:
-    """Return the C grid marched from `boundary`, or None where another method is called for.
+def march_by_default(boundary: Boundary) -> Solution | None:
+    """Return the C grid marched from `boundary`, or None where another method suits better.
 
-    That is where the far field was given, node by node, since a march ends in its own; where rows are so few
+    That is where the far field is given node by node, since a march ends in its own; where rows are so few
     that cells would grow by more than `STEEPEST`; and where cells are folded.
     """
     if boundary.wall is None:
         return None
     try:
-        found = hyperbolic(boundary, wall_spacing=first_cell(boundary) / boundary.chord, growth=STEEPEST)
+        solution = hyperbolic(boundary, wall_spacing=first_cell(boundary) / boundary.chord, growth=STEEPEST)
     except (InputError, SolverError):
         return None
-    if count_folded(found.grid.nodes):
+    if count_folded(solution.grid.nodes):
         return None
     note = "no first cell was asked for: it follows from the smallest one along the wall"
-    return replace(found, notes=(*found.notes, note))
+    return replace(solution, notes=(*solution.notes, note))

@@ -46,7 +46,7 @@ class Front:
 
     def __init__(self, boundary: Boundary) -> None:
         self._south = boundary.south
-        self._closed = boundary.topology == "o"
+        self._closed = boundary.periodic
         self.ends = self.widening = None
         self.slender, self.edge = 0.0, None
         if self._closed:

@@ -1,4 +1,4 @@
-"""Grids for boundary layers: marched from the wall, the first cell exactly as high as asked.
+"""Grids for boundary layers, marched from the wall; the height of first cells is met exactly.
 
 ::
 
@@ -6,15 +6,15 @@
               ^                    |                                                     |
               +-- other distance --+<--------------- more dissipation ------------------+
 
-The equations stand in ``kernels/hyperbolic/march.c``. The far field is where the march ends, a circle or a C
-but for the shape of the body; its area is that of the far field asked for.
+The equations stand in ``kernels/hyperbolic/march.c``. The far field is where the march ends: nearly a circle
+or a C, with the area of the far field of the boundary.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -27,58 +27,27 @@ from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch, redistribute
 from meshonet.solvers.hyperbolic.front import Front
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
-from meshonet.solvers.hyperbolic.march_distance import RISING, distance_to_march
+from meshonet.solvers.hyperbolic.march_distance import distance_to_march
+from meshonet.solvers.hyperbolic.settings import (
+    ATTEMPTS,
+    OPEN_ATTEMPTS,
+    RISING,
+    SHARP_ATTEMPTS,
+    MarchSettings,
+)
 from meshonet.solvers.solution import Solution
 
-_FADE = 12.0
+FADE_ROWS = 12.0
 """Rows over which the correction of the first cell fades out."""
-_REACHED = 0.025
-"""How near, as a part, the far field must come to the distance asked for."""
-_MOST_GROWTH = 1.5
+
+REACHED = 0.025
+"""Relative error of the far field's distance up to which no other distance is tried."""
+
+MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
 
-
-@dataclass(frozen=True)
-class MarchSettings:
-    """Knobs of the march.
-
-    Parameters
-    ----------
-    dissipation : coefficient of the smoothing along a level.
-    theta : the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is robuster.
-    sweeps : smoothing steps of the cells' areas along a level.
-    even : how far that smoothing evens the spacing of nodes out: 1 is robuster, 0 keeps angles.
-    tolerated : relative difference of neighbouring lengths along a level beyond which it evens more.
-    bend : coefficient of the smoothing that grows with the height.
-    """
-
-    dissipation: float
-    theta: float
-    sweeps: int
-    even: float = 1.0
-    tolerated: float = math.inf
-    bend: float = 0.0
-
-
-ATTEMPTS = (
-    MarchSettings(0.6, 0.4, 20, 0.1, 0.11, 0.02),
-    MarchSettings(0.5, 0.5, 10),
-    MarchSettings(0.3, 0.0, 4),
-    MarchSettings(1.0, 0.5, 20),
-    MarchSettings(1.0, 1.0, 40),
-    MarchSettings(2.0, 2.0, 40),
-)
-"""Settings tried in turn while cells are folded; the third suits first cells nearly as high as long."""
-SHARP_ATTEMPTS = (replace(ATTEMPTS[0], tolerated=0.19), *ATTEMPTS[1:])
-"""The same around a sharp edge: with less tolerance, more of the lines beside it would lean."""
-OPEN_ATTEMPTS = (
-    MarchSettings(0.5, 0.5, 20, 0.02, 0.13, 0.02),
-    MarchSettings(0.5, 0.5, 4, 0.15, bend=0.05),
-    MarchSettings(0.5, 0.5, 10),
-    MarchSettings(1.0, 0.5, 20),
-    MarchSettings(2.0, 2.0, 40),
-)
-"""The same for C grids, whose lines spread less."""
+AREA_SMOOTHING = 0.16
+"""Coefficient of a smoothing step of the areas along a level."""
 
 
 def hyperbolic(
@@ -114,17 +83,22 @@ def hyperbolic(
         no attempt gave finite nodes.
     """
     begun = time.perf_counter()
-    first = _first_cell(boundary, wall_spacing, growth)
+    check_layers(wall_spacing, growth)
+    if boundary.topology == "quad":
+        raise InputError(
+            f"hyperbolic marching cannot make topology {boundary.topology}",
+            "use it around a body (topology o or c), or another method without a wall spacing",
+            parameter="method",
+        )
+    first = wall_spacing * boundary.chord
     front = Front(boundary)
     cells = _rows(boundary.nj - 1, first, front.outer - front.inner, growth, free_rows, constant)
-    best, least = None, 0
+    best, least = None, math.inf
     closed = SHARP_ATTEMPTS if front.edge else ATTEMPTS
     for settings in OPEN_ATTEMPTS if boundary.topology == "c" else closed:
         nodes = _marched(front, cells, first, settings, constant, even=growth is None)
-        if nodes is None:
-            continue
-        folded = count_folded(nodes)
-        if best is None or folded < least:
+        folded = math.inf if nodes is None else count_folded(nodes)
+        if folded < least:
             best, least = nodes, folded
         if folded == 0:
             break
@@ -133,37 +107,27 @@ def hyperbolic(
     return _solution(boundary, best, first, begun)
 
 
-def _first_cell(boundary: Boundary, wall_spacing: float, growth: float | None) -> float:
-    """Return the height of the first cell in the unit of the boundary, once all is checked."""
-    check_layers(wall_spacing, growth)
-    if boundary.topology == "quad":
-        raise InputError(
-            f"hyperbolic marching cannot make topology {boundary.topology}",
-            "use it around a body (topology o or c), or another method without a wall spacing",
-        )
-    return wall_spacing * boundary.chord
-
-
 def check_layers(wall_spacing: float, growth: float | None = None) -> None:
     """Raise InputError unless `wall_spacing` (chords) and `growth` are values that `hyperbolic` takes."""
     if not 1e-9 <= wall_spacing <= 0.1:
-        raise InputError(
-            f"a first cell of {wall_spacing:g} chords", "use 1e-9 to 0.1", parameter="first_cell"
-        )
-    if growth is not None and not 1.0 < growth <= _MOST_GROWTH:
+        problem = f"a first cell of {wall_spacing:g} chords"
+        raise InputError(problem, "use 1e-9 to 0.1", parameter="first_cell")
+    if growth is not None and not 1.0 < growth <= MOST_GROWTH:
         raise InputError(
             f"a growth of {growth:g}",
-            f"give the ratio of neighbouring cells, such as 1.15, at most {_MOST_GROWTH:g}",
+            f"give the ratio of neighbouring cells, such as 1.15, at most {MOST_GROWTH:g}",
             parameter="growth",
         )
 
 
 def _rows(cells: int, first: float, distance: float, growth: float | None, free: bool, constant: int) -> int:
     """Return the number of cells from the wall to the far field."""
-    allowed = growth or _MOST_GROWTH
+    allowed = growth or MOST_GROWTH
     equal = constant - 1
     if equal * first >= distance:
-        raise InputError(f"{constant} layers of {first:.3g} reach the far field", "use fewer constant layers")
+        raise InputError(
+            f"{constant} layers of {first:.3g} reach the far field", "use fewer", parameter="constant_layers"
+        )
     needed = equal + cells_for_growth(first, distance - equal * first, allowed)
     if free and growth:
         return needed
@@ -181,10 +145,9 @@ def _marched(
 ) -> Floats | None:
     """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
 
-    Cells grow evenly along all lines (`meshonet.solvers.hyperbolic.level_spacing`), or (not `even`) steps by one ratio.
-
-    Areas are kept, so levels come to lie closer where lines spread: the distance to march is that around a
-    circle of the body's size, and is corrected by marching again.
+    Steps grow as `level_steps` has it, or (not `even`) by one ratio. The march keeps areas, so that levels
+    come to lie closer where lines spread: the distance to march is that around a circle of the body's size,
+    and is corrected by marching again.
     """
     start = front.start()
     n = len(start)
@@ -197,7 +160,7 @@ def _marched(
         settings.tolerated,
         settings.bend,
         1.0 + settings.theta,
-        0.16,
+        AREA_SMOOTHING,
         settings.sweeps,
         round(RISING * cells),
     )
@@ -209,7 +172,7 @@ def _marched(
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
-        if abs(reached / front.outer - 1.0) < _REACHED:
+        if abs(reached / front.outer - 1.0) < REACHED:
             break
         distance *= front.outer / reached
     nodes = front.nodes(levels)
@@ -226,7 +189,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     """
     rows = nodes.shape[1]
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
-    fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(_FADE, 1.5 / max(rate, 1e-3)))
+    fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
     if rows > 2:
         redistribute(nodes[..., 0], nodes[..., 1], heights, fade, np.empty(5 * rows))
 
@@ -234,15 +197,15 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
     """Make the first `constant` cells of every line as high as its first one, in place; less along a wake.
 
-    The march keeps areas, so that heights change where lines spread: by a few per cent over some rows. Nodes
-    move along their lines, taken as straight between them, less and less beyond the equal cells.
+    The march keeps areas, so that heights change by a few per cent where lines spread. Nodes move along their
+    lines, taken as straight between them, less and less beyond the equal cells.
     """
     away = np.arange(nodes.shape[1])
-    fade = np.exp(-np.maximum(away - constant, 0.0) / _FADE)
+    fade = np.exp(-np.maximum(away - constant, 0.0) / FADE_ROWS)
     fade[-1] = 0.0
     share = widening[:, None] ** -2
     for _ in range(
-        0 if constant < 2 else 4
+        4 if constant > 1 else 0
     ):  # straight pieces: what is left falls by the part of a cell moved
         step = np.diff(nodes, axis=1)
         height = np.hypot(step[..., 0], step[..., 1])
@@ -257,6 +220,7 @@ def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
 
 
 def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> Solution:
+    """Return the solution of `nodes`, with the boundary that they have now."""
     parts = tuple(
         replace(part, stop=nodes.shape[1] - 1) if part.side in ("west", "east") else part
         for part in boundary.patches
@@ -269,14 +233,14 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
         Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts),
         "hyperbolic",
         seconds={"grid": time.perf_counter() - begun},
-        notes=(_told(boundary, nodes, first),),
+        notes=(_first_cell_note(boundary, nodes, first),),
         boundary=edges,
         first_cells={"south": first},
     )
 
 
-def _told(boundary: Boundary, nodes: Floats, first: float) -> str:
-    """Return what there is to say of the rows from the wall outwards."""
+def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:
+    """Return the heights of the first cells and the growth of rows, as a note."""
     behind = boundary.wake
     wall = nodes[behind : len(nodes) - behind]
     heights = np.hypot(*(wall[:, 1] - wall[:, 0]).T)

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from meshonet.solvers.hyperbolic.front import Front
 from meshonet.solvers.hyperbolic.level_spacing import Edge, level_steps
+from meshonet.solvers.hyperbolic.settings import RISING, MarchSettings
 
-if TYPE_CHECKING:
-    from meshonet.solvers.hyperbolic.march import MarchSettings
-
-RISING = 0.75
-"""Part of the levels over which the dissipation rises."""
 _CLOSED_AHEAD, _OPEN_BEHIND = 1.8, 0.26
 """By how much, as a part, levels around slender bodies come out farther than around a circle, over
 slenderness and the square of the rate at which steps grow; and levels of C grids less far than two straight

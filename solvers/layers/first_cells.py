@@ -1,4 +1,4 @@
-"""How high the first cells off each edge are to be, and the laws by which the others grow."""
+"""Heights of the first cells off each edge, and cells that grow from them by one ratio."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from meshonet.kernels._native import layer_steps
 
 @dataclass(frozen=True)
 class Heights:
-    """Heights of the first cells off the edges, 0 for edges that ask for none.
+    """Heights of the first cells off the edges, 0 for any height.
 
     Parameters
     ----------
     south, north, west, east : in the unit of the boundary.
-    constant : so many first cells have that height; beyond, they grow by one ratio.
+    constant : so many first cells have that height; those beyond grow by one ratio.
     growth : largest ratio of neighbouring cells allowed, None for any up to 10.
     free_rows : take as many rows off south and north as `growth` needs, instead of those of the boundary.
 
@@ -46,49 +46,51 @@ class Heights:
             if not (math.isfinite(height) and height >= 0):
                 raise InputError(f"a first cell of {height:g} off {side}", "give a positive height")
         if self.constant < 1:
-            raise InputError(f"{self.constant} constant layers", "give at least 1")
+            raise InputError(
+                f"{self.constant} constant layers", "give at least 1", parameter="constant_layers"
+            )
         if self.growth is not None and not 1.0 < self.growth <= LARGEST:
             raise InputError(
                 f"a growth of {self.growth:g}",
                 f"give the ratio of neighbouring cells, such as 1.15, at most {LARGEST:g}",
+                parameter="growth",
             )
 
     @property
-    def any(self) -> bool:
-        """Whether an edge asks for a height."""
-        return bool(self.south or self.north or self.west or self.east)
+    def by_side(self) -> dict[str, float]:
+        """The heights that are not 0, by side."""
+        return {side: height for side in SIDES if (height := getattr(self, side))}
 
-    def told(self) -> str:
-        """Return the heights for people."""
-        asked = {side: getattr(self, side) for side in SIDES if getattr(self, side)}
-        return ", ".join(f"{height:.6g} off {side}" for side, height in asked.items())
+    @property
+    def any(self) -> bool:
+        """Whether an edge has a height."""
+        return bool(self.by_side)
+
+    def __str__(self) -> str:
+        return ", ".join(f"{height:.6g} off {side}" for side, height in self.by_side.items())
 
 
 def check_fit(heights: Heights, boundary: Boundary) -> None:
     """Raise InputError when `boundary` cannot have the heights: wrong edges, cells too few or too high."""
-    if boundary.topology != "quad" and (heights.north or heights.west or heights.east):
+    if boundary.around_body and (heights.north or heights.west or heights.east):
         raise InputError(
             f"a spacing off north, west or east in topology {boundary.topology}",
             "give that of its wall, south",
         )
-    for one, other, sides, count in (
-        ("south", "north", ("west", "east"), boundary.nj),
-        ("west", "east", ("south", "north"), boundary.ni),
+    for walls, sides, count in (
+        (("south", "north"), ("west", "east"), boundary.nj),
+        (("west", "east"), ("south", "north"), boundary.ni),
     ):
-        heights_here = [height for side in (one, other) if (height := getattr(heights, side))]
-        if not heights_here:
-            continue
-        free = heights.free_rows and one == "south"
-        needed = heights.constant * len(heights_here) + 2
-        if count < needed and not free:
-            raise InputError(f"{count} nodes off {one} are too few for layers", f"use at least {needed}")
-        for side in sides:
-            edge = getattr(boundary, side)
-            length = float(np.hypot(*np.diff(edge, axis=0).T).sum())
-            if heights.constant * sum(heights_here) >= 0.9 * length:
-                told = " and ".join(f"{height:g}" for height in heights_here)
+        here = [height for side in walls if (height := getattr(heights, side))]
+        needed = heights.constant * len(here) + 2
+        if here and count < needed and not (heights.free_rows and "south" in walls):
+            raise InputError(f"{count} nodes off {walls[0]} are too few for layers", f"use at least {needed}")
+        for side in sides if here else ():
+            length = float(np.hypot(*np.diff(getattr(boundary, side), axis=0).T).sum())
+            if heights.constant * sum(here) >= 0.9 * length:
+                sizes = " and ".join(f"{height:g}" for height in here)
                 raise InputError(
-                    f"first cells of {told} fill {side}, which is {length:.3g} long",
+                    f"first cells of {sizes} fill {side}, which is {length:.3g} long",
                     "use smaller ones or fewer constant layers",
                 )
 
@@ -101,7 +103,8 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
     while layer_ratio(count, length, first, last, heights.constant) > allowed * (1 + 1e-9):
         count = max(count + 1, int(1.02 * count))
         if count > 100_000:
-            raise InputError(f"cells growing by {allowed:g} do not fill {length:.3g}", "allow more growth")
+            problem = f"cells growing by {allowed:g} do not fill {length:.3g}"
+            raise InputError(problem, "allow more", parameter="growth")
     return count
 
 
@@ -142,8 +145,8 @@ def _arc_at(curve: Curve, origin: float, distance: float) -> float:
     home = curve.points[0 if origin == 0.0 else -1]
     arc = distance
     for _ in range(30):
-        found = float(np.hypot(*(curve.at(np.array([origin + sign * arc]))[0] - home)))
-        if abs(found / distance - 1.0) < 1e-14:
+        reached = float(np.hypot(*(curve.at(np.array([origin + sign * arc]))[0] - home)))
+        if abs(reached / distance - 1.0) < 1e-14:
             break
-        arc *= distance / found
+        arc *= distance / reached
     return arc

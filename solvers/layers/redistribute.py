@@ -1,12 +1,12 @@
-"""Any grid, its lines kept, with layers of given heights at its walls.
+"""Layers of given heights at the walls of any grid, its lines kept.
 
 ::
 
     grid --rows along xi--> west, east --lines along eta--> south, north --first cells made exact--> grid
 
-The lines that leave a wall stay the curves they are and get their nodes anew (``kernels/layers/layers.c``),
-so that a valid grid with even rows becomes one with thin ones. Rows are moved along xi by one map of their
-index, which keeps kinks of the walls on their nodes.
+The lines that leave a wall stay the curves they are, and nodes are placed anew on them
+(``kernels/layers/layers.c``): a valid grid with even rows becomes one with thin ones. Rows are moved along xi
+by one map of their index, which keeps kinks of the walls on their nodes.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Floats, as_planar, planar_nodes
+from meshonet.geometry.arrays import Floats, as_planar, planar_nodes
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import default_patches
@@ -25,6 +25,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.growth import LARGEST
 from meshonet.kernels._native import layer_lines, redistribute
+from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
 from meshonet.solvers.layers.first_cells import (
     Heights,
     arcs_in_layers,
@@ -34,7 +35,7 @@ from meshonet.solvers.layers.first_cells import (
 )
 from meshonet.solvers.solution import Solution
 
-FADE = 12.0
+FADE_NODES = 12.0
 """Nodes over which the last correction of a first cell fades out."""
 
 EXACT = 1e-10
@@ -74,7 +75,7 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
     growth = 1.0
     if heights.south or heights.north:
         nodes, growth = _along_eta(nodes, boundary, heights)
-    _make_exact(nodes, grid.topology == "o", heights)
+    _make_exact(nodes, grid.periodic, heights)
     edges = replace(
         boundary,
         south=nodes[:, 0],
@@ -84,9 +85,9 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
     )
-    first_cells: dict[str, float] = {side: height for side in SIDES if (height := getattr(heights, side))}
+    first_cells = heights.by_side
     facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
-    note = f"first cells {heights.told()}, at every node there"
+    note = f"first cells {heights}, at every node there"
     note += f", growing by at most {growth:.3f} a row" if growth > 1.0 else ""
     return replace(
         solution,
@@ -112,13 +113,13 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
     if heights.free_rows:
         count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1
     out = planar_nodes(ni, count)
-    given = as_planar(nodes)
+    planar = as_planar(nodes)
     scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
-    planes = given[..., 0], given[..., 1], out[..., 0], out[..., 1]
+    planes = planar[..., 0], planar[..., 1], out[..., 0], out[..., 1]
     ratio = layer_lines(*planes, *ends, heights.constant, scratch)
     _check_ratio(ratio, count, longest, ends, heights)
-    if boundary.topology == "o":
+    if boundary.periodic:
         out[-1] = out[0]
     else:
         for i, edge in ((0, boundary.west), (-1, boundary.east)):
@@ -179,31 +180,30 @@ def _between_rows(nodes: Floats, at: Floats) -> Floats:
 
 def _make_exact(nodes: Floats, periodic: bool, heights: Heights) -> None:
     """Correct first cells in place, off one edge after the other until all are exact."""
-    asked = [
-        (side, height) for side in ("west", "east", "south", "north") if (height := getattr(heights, side))
-    ]
+    order = ("west", "east", "south", "north")
+    sides = [(side, height) for side in order if (height := getattr(heights, side))]
     for _ in range(PASSES):
-        wrong = [(side, height) for side, height in asked if first_cell_error(nodes, side, height) > EXACT]
-        for side, height in wrong:
+        inexact = [(side, height) for side, height in sides if first_cell_error(nodes, side, height) > EXACT]
+        for side, height in inexact:
             _correct(nodes, side, height)
         if periodic:
             nodes[-1] = nodes[0]
-        if not wrong:
+        if not inexact:
             return
 
 
 def _correct(nodes: Floats, side: str, height: float) -> None:
     """Make the first cells off one edge exact, moving nodes less and less away from it."""
-    view = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
-    ends = slice(None) if side in ("south", "north") else slice(1, -1)
-    view = view[ends, ::-1] if side in ("north", "east") else view[ends]
+    view = lines_off(nodes, side)
+    if side in ("west", "east"):
+        view = view[1:-1]
     planes = np.ascontiguousarray(view[..., 0]), np.ascontiguousarray(view[..., 1])
     count = view.shape[1]
     away = np.arange(count) - 1.0
     if first_cell_error(nodes, side, height) < SLIGHT:
         fade = (away == 0.0).astype(np.float64)
     else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
-        fade = np.exp(-np.maximum(away, 0.0) / FADE) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
+        fade = np.exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
     redistribute(*planes, np.full(len(view), height), fade, np.empty(5 * count))
     view[..., 0], view[..., 1] = planes
 
@@ -216,6 +216,4 @@ def worst_first_cell(solution: Solution) -> float:
 
 def first_cell_error(nodes: Floats, side: str, height: float) -> float:
     """Return the largest relative error of the first cells off one edge."""
-    view = nodes if side in ("south", "north") else np.swapaxes(nodes, 0, 1)
-    one, two = (view[:, -1], view[:, -2]) if side in ("north", "east") else (view[:, 0], view[:, 1])
-    return float(np.abs(np.hypot(*(two - one).T) / height - 1.0).max())
+    return float(np.abs(first_heights(lines_off(nodes, side)) / height - 1.0).max())

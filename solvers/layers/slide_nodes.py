@@ -21,32 +21,33 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
+from meshonet.solvers.elliptic.wall_lines import leaning, lines_off
 
 COUNTS = 129, 49
-"""Nodes to slide at the most: along and between the walls."""
+"""Nodes along and between the walls, at the most, on which places are sought."""
 
 ROUNDS = 60
 """Rounds at the most."""
 
-STRAIGHT = np.sin(np.radians(0.05))
+UPRIGHT = np.sin(np.radians(0.05))
 """Lean of a line at the wall that is left, as the sine of the angle to the normal."""
 
 RELAXATION = 0.7
-"""Part of the linear answer that a round moves by."""
+"""Part of the linearised displacement that a round moves by."""
 
 RAMP = 0.03
 """Part of a wall, next to its ends and kinks, over which sliding sets in."""
 
 ROOM = 0.4
-"""Part by which a round may change a step between wall nodes."""
+"""Relative change of a step between wall nodes, at the most, in a round."""
 
 
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     """Return `boundary` with the nodes of south and north moved, and the controls to solve with.
 
-    The lines of an elliptic grid of the result leave both walls at right angles, but next to west and east
-    where those do not, and at kinks of the walls, which stay nodes. Nodes that were not evenly spaced are not
-    so afterwards either: the control function φ(ξ) keeps what their spacing had of ξ alone; none, when even.
+    The lines of an elliptic grid inside it leave both walls at right angles, except next to west and east
+    where these do not, and at kinks of the walls, which stay nodes. The control function φ(ξ) keeps uneven
+    spacing of the walls, as far as it is common to both; None where it is even.
 
     Parameters
     ----------
@@ -57,24 +58,25 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     InputError
         a topology other than ``quad``.
     """
-    if boundary.topology != "quad":
-        raise InputError(f"walls of topology {boundary.topology} cannot slide", "slide those of channels")
+    if boundary.around_body:
+        problem = f"walls of topology {boundary.topology} cannot slide"
+        raise InputError(problem, "slide those of channels", parameter="slide")
     curves = Curve(boundary.south), Curve(boundary.north)
-    given = curves[0].knots, curves[1].knots
+    knots = curves[0].knots, curves[1].knots
     m, n = (min(count, most) for count, most in zip((boundary.ni, boundary.nj), COUNTS, strict=True))
     if m < 5 or n < 5:
-        return boundary, _controls(*given, boundary.nj)
+        return boundary, _controls(*knots, boundary.nj)
     few = np.linspace(0.0, boundary.ni - 1.0, m)
     index = np.arange(float(boundary.ni))
-    starts = np.interp(few, index, given[0]), np.interp(few, index, given[1])
+    starts = np.interp(few, index, knots[0]), np.interp(few, index, knots[1])
     ends = _slid(boundary, curves, starts, n)
     sides = []
-    for side, curve, old, start, end in zip(("south", "north"), curves, given, starts, ends, strict=True):
+    for side, curve, old, start, end in zip(("south", "north"), curves, knots, starts, ends, strict=True):
         new = on_corners(monotone_cubic(start, end, old), _inner_corners(curve))
         edge = curve.at(new)
         edge[[0, -1]] = getattr(boundary, side)[[0, -1]]
         sides.append(edge)
-    return replace(boundary, south=sides[0], north=sides[1], sensors=None), _controls(*given, boundary.nj)
+    return replace(boundary, south=sides[0], north=sides[1], sensors=None), _controls(*knots, boundary.nj)
 
 
 def _inner_corners(curve: Curve) -> Floats:
@@ -119,10 +121,10 @@ def _slid(
             best, least = (arcs[0].copy(), arcs[1].copy()), lean
         elif relaxation > 0.1:
             relaxation *= 0.8
-        if max(np.abs(one).max() for one in leans) < STRAIGHT:
+        if max(np.abs(sine).max() for sine in leans) < UPRIGHT:
             break
         apart = float(np.hypot(*(nodes[:, -1] - nodes[:, 0]).T).mean())
-        moves = _answer(leans, arcs, waves, apart)
+        moves = _displacements(leans, arcs, waves, apart)
         for k, curve in enumerate(curves):
             arcs[k] = _moved(arcs[k], relaxation * moves[k])
             edge = curve.at(arcs[k])
@@ -146,12 +148,8 @@ def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> li
     Less and less next to ends and kinks, where lines may not be able to stand upright.
     """
     leans = []
-    for curve, arc, rows in zip(curves, arcs, ((0, 1, 2), (-1, -2, -3)), strict=True):
-        a, b, c = (nodes[:, j] for j in rows)
-        first, second = np.hypot(*(b - a).T)[:, None], np.hypot(*(c - b).T)[:, None]
-        out = (b - a) / first
-        direction = out + (out - (c - b) / second) * first / (first + second)
-        lean = (direction * curve.tangent(arc)).sum(axis=1) / np.hypot(*direction.T)
+    for curve, arc, side in zip(curves, arcs, ("south", "north"), strict=True):
+        lean = leaning(lines_off(nodes, side), curve.tangent(arc))
         fixed = np.concatenate([[0.0], _inner_corners(curve), [curve.length]])
         away = np.abs(arc[:, None] - fixed).min(axis=1)
         leans.append(lean * np.clip(away / (RAMP * curve.length), 0.0, 1.0))
@@ -164,7 +162,9 @@ def _waves(m: int) -> Floats:
     return np.sin(np.pi * np.outer(k, k) / (m - 1))
 
 
-def _answer(leans: list[Floats], arcs: list[Floats], waves: Floats, apart: float) -> tuple[Floats, Floats]:
+def _displacements(
+    leans: list[Floats], arcs: list[Floats], waves: Floats, apart: float
+) -> tuple[Floats, Floats]:
     """Return the displacements (m,) along both walls that take the leans away, to first order."""
     m = len(arcs[0])
     k = 2.0 * np.pi * np.arange(1, m - 1) / (arcs[0][-1] + arcs[1][-1])

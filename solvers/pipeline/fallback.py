@@ -125,7 +125,7 @@ def _ways(
     from meshonet.solvers.energy.repair import MARGIN, repair
 
     margin = margin or MARGIN
-    periodic = grid.topology == "o"
+    periodic = grid.periodic
     repaired = grid.nodes.copy(order="K")
     repair(repaired, periodic, margin)
     yield ("repair",), repaired
@@ -143,7 +143,7 @@ def _ways(
 
 def _open_corner(grid: Grid) -> NoValidGridError | None:
     """Return the failure when a corner of a quad opens by 180 degrees or more: no grid is valid then."""
-    if grid.topology != "quad":
+    if grid.around_body:
         return None
     for i, di in ((0, 1), (grid.ni - 1, -1)):
         for j, dj in ((0, 1), (grid.nj - 1, -1)):

@@ -60,7 +60,7 @@ class FirstCells:
         """Return the heights in the unit of `boundary`."""
         walls: dict[str, float] = {}
         if self.height is not None:
-            quad = boundary.topology == "quad"
+            quad = not boundary.around_body
             height = self.height * (boundary.chord if self.in_chords or not quad else 1.0)
             walls = dict.fromkeys(("south", "north") if quad else ("south",), height)
         return Heights(
@@ -103,7 +103,7 @@ class Layered(Wrapper):
         InputError
             heights or settings that do not suit the boundary or the method.
         """
-        if boundary.topology != "quad" and self.cells.sides:
+        if boundary.around_body and self.cells.sides:
             raise InputError(
                 f"a height off a single side, around a body (topology {boundary.topology})",
                 "use {first_cell}",
@@ -144,7 +144,7 @@ class Layered(Wrapper):
 
     def _even(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
         """Return the grid of `boundary` with even rows, wall nodes slid or lines turned as they are to be."""
-        channel = self.channels and boundary.topology == "quad" and self.cells.height is not None
+        channel = self.channels and not boundary.around_body and self.cells.height is not None
         slide = channel and boundary.sampled if self.slide is None else self.slide
         if slide:
             solution = self._slid(boundary, start)

@@ -54,7 +54,7 @@ class GridRequest:
     refine : solve first, halve all cells and solve again, so many times.
     initial : grid to start from.
     repair : whether folded grids are repaired or made by another method; else they are refused. None: not
-        those of ``tfi`` and answers of networks that are asked for raw.
+        those of algebraic methods and answers of networks that are asked for raw.
     repair_margin : cells around folded ones that move with them.
     allow_invalid : whether a folded grid is a result.
     percentiles : whether the quality has them.
@@ -171,7 +171,7 @@ class GridRequest:
 
     def shape_sampling(self) -> Sampling:
         """Return the sampling of shapes: with thin first cells, wall nodes whose spacing changes slowly."""
-        if not self.at_walls or self.method == "tfi":
+        if not self.at_walls or self._algebraic:
             return self.sampling
         spacing = "curvature" if self.sampling.spacing == "auto" else self.sampling.spacing
         return replace(self.sampling, spacing=spacing, viscous=True)
@@ -180,7 +180,7 @@ class GridRequest:
         """Return whether folded grids are repaired."""
         if self.repair is not None:
             return self.repair
-        return self.method != "tfi" and self.settings.get("answer", "valid") == "valid"
+        return not self._algebraic and self.settings.get("answer", "valid") == "valid"
 
     def solver(self) -> Method:
         """Return the method that makes the grids, without the guard.
@@ -232,6 +232,10 @@ class GridRequest:
         if self.coarse is None or self.settings or self.initial is not None:
             return base
         return elliptic() if self.method == "auto" else fewer_on_quads(base)
+
+    @property
+    def _algebraic(self) -> bool:
+        return self.method in METHODS and METHODS[self.method].algebraic
 
     @property
     def _operator(self) -> bool:

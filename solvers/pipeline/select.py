@@ -71,9 +71,9 @@ class AroundWake(OneByOne):
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
         """Return the solution of a boundary; a march starts from the wall, and from no grid."""
-        from meshonet.solvers.hyperbolic.default_spacing import march_unasked
+        from meshonet.solvers.hyperbolic.default_spacing import march_by_default
 
-        solution = march_unasked(boundary) or Fewer(method_named("variational")).solve_one(boundary)
+        solution = march_by_default(boundary) or Fewer(method_named("variational")).solve_one(boundary)
         notes = (f"{self.note} {solution.method}", *solution.notes) if self.note else solution.notes
         return replace(solution, notes=notes)
 

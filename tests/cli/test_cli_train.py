@@ -300,6 +300,34 @@ def test_amp_multiplies_in_bfloat16(
 
 
 @pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_an_empty_dataset_is_refused(meshonet: Meshonet, arches_h5: str) -> None:
+    import h5py
+
+    with h5py.File(arches_h5) as full, h5py.File("empty.h5", "w") as empty:
+        empty.attrs.update(full.attrs)
+        for side in ("south", "north", "west", "east", "nodes"):
+            empty[side] = full[side][:0]
+    for words in ((), ("--model", "meshonet"), ("--model", "quad")):
+        done = meshonet("train", "empty.h5", *words, "-o", "m.safetensors")
+        assert done.code == 2
+        assert "internal error" not in done.err
+        assert done.err.count("\n") == 1, done.err
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
+def test_datasets_of_one_method_are_trained_on_together(meshonet: Meshonet) -> None:
+    for name, seed in (("a", 1), ("b", 2)):
+        words = ("--family", "four-sided", "--count", "8", "--seed", seed, "--res", "33", "--quiet")
+        assert meshonet("sample-boundary", *words, "-o", f"{name}.h5").code == 0
+        for method in ("winslow", "variational"):
+            words = ("--method", method, "--max-cycles", "20", "--allow-invalid", "-q")
+            assert meshonet("solve-pde", f"{name}.h5", *words, "-o", f"{name}-{method}.h5").code == 0
+    datasets = [f"{name}-{method}.h5" for name in "ab" for method in ("winslow", "variational")]
+    words = ("--model", "quad", "--epochs", "1", "--held-out", "4", "--batch", "4", "-o", "q.safetensors")
+    assert meshonet("train", *datasets, *words, "--json").only["shapes"] == 16
+
+
+@pytest.mark.skipif(not TORCH, reason="needs torch")
 def test_a_split_file_decides(meshonet: Meshonet, arches_h5: str) -> None:
     Path("words.txt").write_text("test train " * 4)
     told = meshonet("train", arches_h5, "-o", "m.safetensors", *BRIEF, "--split", "words.txt", "--json").only

@@ -19,7 +19,7 @@ from command_line import ROOT, Meshonet, dataset, ellipse
 
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.energy.functional import Weights, aspect_of, energy
+from meshonet.solvers.energy.functional import Weights, value
 from meshonet.solvers.progress import Cycle, cycle_ended, listening
 from meshonet_cli.convergence import COLUMNS, Live
 
@@ -74,7 +74,7 @@ def test_history_of_a_minimisation_has_every_iteration(
     assert slopes[0] == 1
     assert slopes[-1] < 0.2
     (grid,) = read_grids("g.vts")
-    terms = energy(grid.nodes, aspect_of(grid.nodes), Weights())
+    terms = value(grid.nodes, Weights())
     assert values[-1] == pytest.approx(terms, rel=1e-9)  # the last iteration's is that of the grid
     assert meshonet(*asked).code == 0  # and the grid is the same without
     (again,) = read_grids("g.vts")

@@ -1,15 +1,7 @@
 from __future__ import annotations
 
-from pathlib import Path
-
-from meshonet.formats.catalogue import page, plain, rows
+from meshonet.formats.catalogue import plain, rows
 from meshonet.formats.registry import TABLE
-
-DOCS = Path(__file__).parents[2] / "docs"
-
-
-def test_the_page_is_current() -> None:
-    assert (DOCS / "formats.md").read_text(encoding="utf-8") == page(), "run: make docs"
 
 
 def test_every_format_has_its_row() -> None:

@@ -31,8 +31,8 @@ def growth(line: np.ndarray) -> np.ndarray:
 
 
 def span(boundary: Boundary, name: str) -> tuple[int, int]:
-    part = next(part for part in boundary.patches if part.name == name)
-    return part.start, part.stop
+    patch = next(patch for patch in boundary.patches if patch.name == name)
+    return patch.start, patch.stop
 
 
 def test_south_is_wake_wall_wake_and_the_wakes_coincide_bitwise() -> None:
@@ -45,7 +45,7 @@ def test_south_is_wake_wall_wake_and_the_wakes_coincide_bitwise() -> None:
     wall = boundary.south[first : last + 1]
     np.testing.assert_array_equal(wall[[0, -1]], np.tile(SHARP.trailing_edge, (2, 1)))
     assert wall[1, 1] < 0 < wall[-2, 1]
-    names = [(part.name, part.side) for part in boundary.patches]
+    names = [(patch.name, patch.side) for patch in boundary.patches]
     sides = ("north", "east", "west")
     assert names == [(n, "south") for n in ("wake", "wall", "wake")] + [("farfield", s) for s in sides]
 

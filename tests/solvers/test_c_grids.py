@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from winslow_reference import residual
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
@@ -12,7 +13,6 @@ from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.elliptic.winslow import residual
 from meshonet.solvers.pipeline.coarse import solve_coarse
 
 METHODS: dict[str, Callable[[Boundary], Grid]] = {

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from solver_shapes import arch, bump, folded, hexagon, hole, naca, quad, seamount, segment
+from winslow_reference import metric_terms, residual
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
@@ -14,7 +15,6 @@ from meshonet.solvers.elliptic import solve as module
 from meshonet.solvers.elliptic.control import Controls, Factors, step_ratios, thomas_middlecoff
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
-from meshonet.solvers.elliptic.winslow import metric_terms, residual
 
 
 def edges_of(nodes: Floats, topology: str = "quad") -> Boundary:

@@ -5,13 +5,13 @@ import tracemalloc
 import numpy as np
 import pytest
 from solver_shapes import arch, hole, naca
+from winslow_reference import metric_terms, residual
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.multigrid import Multigrid, Settings
 from meshonet.solvers.elliptic.solve import solve, solve_thomas_middlecoff
-from meshonet.solvers.elliptic.winslow import metric_terms, residual
 
 
 def prepared(boundary: Boundary, noise: float = 0.002) -> tuple[Floats, Multigrid]:

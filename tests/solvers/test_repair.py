@@ -1,4 +1,4 @@
-"""The corner energy against finite differences and known angles; unfolding of what solvers fold."""
+"""Folded grids are unfolded: random tangles, what solvers fold, folds across a seam."""
 
 import numpy as np
 import pytest
@@ -7,12 +7,12 @@ from solver_shapes import arch, folded, hole, l_shape, meets, naca, spike, wrenc
 from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.families.family import family
-from meshonet.kernels._native import repair_energy, repair_minimise
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.energy import untangle as unfolding
-from meshonet.solvers.energy.repair import repair
-from meshonet.solvers.energy.untangle import FUTILE, Patience, reference_lengths, unfold
+from meshonet.solvers.energy import repair as module
+from meshonet.solvers.energy.functional import Weights
+from meshonet.solvers.energy.repair import FUTILE, Patience, repair, untangle
+from meshonet.solvers.energy.untangle import unfold
 
 
 def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
@@ -26,68 +26,13 @@ def tangled(boundary: Boundary, amount: float, seed: int = 0) -> Floats:
     return nodes
 
 
-@pytest.mark.parametrize(("shape", "epsilon"), [(0.0, 0.0), (0.0, 0.3), (0.5, 0.0), (1.0, 0.2)])
-@pytest.mark.parametrize("periodic", [False, True])
-def test_gradient_is_that_of_the_energy(shape: float, epsilon: float, periodic: bool) -> None:
-    nodes = tangled(naca(9, 6) if periodic else arch(7, 6), 0.004 if epsilon == 0 else 0.3)
-    lengths = reference_lengths(nodes, periodic)
-    x, y = nodes[..., 0], nodes[..., 1]
-    _, gx, gy, _ = repair_energy(x, y, *lengths, periodic, shape, epsilon)
-    rng = np.random.default_rng(1)
-    dx, dy = rng.normal(0, 1, x.shape), rng.normal(0, 1, x.shape)
-    dx[:, [0, -1]] = dy[:, [0, -1]] = 0
-    if periodic:
-        dx[-1], dy[-1] = dx[0], dy[0]
-    else:
-        dx[[0, -1]] = dy[[0, -1]] = 0
-    h = 1e-6
-    up = repair_energy(x + h * dx, y + h * dy, *lengths, periodic, shape, epsilon)[0]
-    down = repair_energy(x - h * dx, y - h * dy, *lengths, periodic, shape, epsilon)[0]
-    assert (gx * dx + gy * dy).sum() == pytest.approx((up - down) / (2 * h), rel=1e-5)
-    assert (gx[:, [0, -1]] == 0).all()
-    assert periodic or (gx[[0, -1]] == 0).all()
-
-
-def test_energy_of_a_parallelogram_is_known() -> None:
-    angle = np.radians(50.0)
-    u, v = np.array([2.0, 0.0]), 0.5 * np.array([np.cos(angle), np.sin(angle)])
-    nodes = as_planar(np.array([[[0, 0], v], [u, u + v]], dtype=float))
-    width, height = np.array([2.0]), np.array([0.5])
-    total, _, _, smallest = repair_energy(nodes[..., 0], nodes[..., 1], width, height, False, 1.0, 0.0)
-    assert total == pytest.approx(4 / np.sin(angle) ** 4)
-    assert smallest == pytest.approx(np.sin(angle))
-    harmonic = repair_energy(nodes[..., 0], nodes[..., 1], width, height, False, 0.0, 0.0)[0]
-    assert harmonic == pytest.approx(4 / np.sin(angle))
-
-
-def test_a_folded_patch_costs_infinitely_without_regularisation() -> None:
-    nodes = tangled(arch(9, 9), 0.3)
-    assert folded(nodes) > 0
-    assert (
-        repair_energy(nodes[..., 0], nodes[..., 1], *reference_lengths(nodes, False), False, 0.0, 0.0)[0]
-        == np.inf
-    )
-
-
-def test_a_minimum_is_found_to_the_tolerance_and_kept() -> None:
-    nodes = tangled(arch(17, 17), 0.005)
-    lengths = reference_lengths(nodes, False)
-    x, y = nodes[..., 0], nodes[..., 1]
-    first = repair_minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)
-    gx, gy = repair_energy(x, y, *lengths, False, 0.0, 0.0)[1:3]
-    assert np.hypot(gx, gy).max() < 1e-4
-    assert repair_minimise(x, y, *lengths, False, 0.0, 0.0, 500, 1e-9)[1] == pytest.approx(
-        first[1], rel=1e-12
-    )
-
-
 @pytest.mark.parametrize(
     "boundary", [arch(25, 20), l_shape(30, 15), hole(40, 12), naca(40, 15, far=2.0)], ids=lambda b: b.name
 )
 def test_random_tangles_unfold(boundary: Boundary) -> None:
     nodes = tangled(boundary, 0.05)
     assert folded(nodes) > 10
-    assert unfold(nodes, boundary.topology == "o", Patience()) == 0
+    assert untangle(nodes, boundary.topology == "o", Patience()) == 0
     assert folded(nodes) == 0
 
 
@@ -162,11 +107,12 @@ def test_what_cannot_be_unfolded_is_given_up_soon(monkeypatch: pytest.MonkeyPatc
         nodes[[i, i + 1], 0] = nodes[[i + 1, i], 0]
     spent = 0
 
-    def counted(x: Floats, *rest: object) -> tuple[int, float, float]:
+    def counted(patch: Floats, weights: Weights, *, periodic: bool, iterations: int) -> tuple[bool, int]:
         nonlocal spent
-        spent += x.size
-        return repair_minimise(x, *rest)  # type: ignore[no-any-return]
+        valid, done = unfold(patch, weights, periodic=periodic, iterations=iterations)
+        spent += done * patch[..., 0].size
+        return valid, done
 
-    monkeypatch.setattr(unfolding, "repair_minimise", counted)
+    monkeypatch.setattr(module, "unfold", counted)
     assert repair(nodes, False) > 0
-    assert 0 < spent < 4 * FUTILE
+    assert 0 < spent < 2 * FUTILE

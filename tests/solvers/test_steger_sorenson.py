@@ -16,7 +16,7 @@ from solver_shapes import (
     segment,
     wrench,
 )
-from test_slide import CHANNELS, channel, leans
+from test_slide_nodes import CHANNELS, channel, leans
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary

@@ -13,8 +13,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
-from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, Section, clean_section
+from meshonet.geometry.polygon.self_intersection import find_crossing
+from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
+from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc, moved_note, section_curve
 from meshonet.geometry.shapes.airfoil.te_fillet import rounded_base
 from meshonet.geometry.shapes.airfoil.te_wedge import wedged_base
 from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
@@ -24,14 +25,7 @@ from meshonet.geometry.spacing.sampling import DEFAULT_NI, DEFAULT_NJ, Sampling
 
 __all__ = ["SHARP_GAP", "Airfoil"]
 
-_CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
-"""Where an interval of the curve is cut into straight pieces to be searched for crossings."""
-
-
-_PARTS = 128
-"""Parts into which a stretch is cut to find the place farthest from the trailing edge."""
-_WIDEST_WEDGE = 50.0
-"""Largest angle in degrees between surfaces whose edge a C grid takes by itself."""
+_WIDEST_WEDGE = 50.0  # largest angle in degrees between surfaces whose edge a C grid takes by itself
 
 
 class CrossingError(InputError):
@@ -51,7 +45,7 @@ class Airfoil:
 
     Parameters
     ----------
-    points : (n, 2) around the section, any unit, either way, from any start (`meshonet.geometry.shapes.airfoil.clean`).
+    points : (n, 2) around the section, any unit, in either direction, from any start (`clean_section`).
     name : what the input called it.
     notes : what was changed of it before.
     places : (n,) where each point stands in its source, such as ``line 12``, for messages.
@@ -84,10 +78,10 @@ class Airfoil:
         self.name, self._round = name, False
         self._section = section = clean_section(points)
         self.gap, self.blunt = section.gap, section.blunt
-        self.curve, changes = _fitted(section, places)
+        self.curve, changes = section_curve(section, places)
         self.notes = tuple(dict.fromkeys((*notes, *changes)))
         self.trailing_edge = self.curve.points[0]
-        arc = _farthest(self.curve, self.trailing_edge)
+        arc = farthest_arc(self.curve, self.trailing_edge)
         self.leading_edge = self.curve.at(np.array([arc]))[0]
         self.chord = float(np.hypot(*(self.leading_edge - self.trailing_edge)))
         first, last = (self.curve.knots[1], self.curve.knots[-1]) if self.blunt else (0.0, self.curve.length)
@@ -132,20 +126,20 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def rounded(self) -> Airfoil:
-        """Return the same airfoil with the corners of its blunt base rounded off (`meshonet.geometry.shapes.airfoil.te_fillet`)."""
+        """Return the same airfoil with the corners of its blunt base rounded off (`te_fillet`)."""
         if not self.blunt:
             return self
         body = copy(self)
         body.__dict__.pop("wedge", None)
         body.curve, end = rounded_base(self.curve, self.chord)
-        arc = _farthest(body.curve, body.trailing_edge)
+        arc = farthest_arc(body.curve, body.trailing_edge)
         body.blunt, body._round, body._arcs = False, True, (end, arc, body.curve.length - end)
         return body
 
     def moved_apart(self) -> Airfoil:
         """Return the same airfoil with surfaces at least 9e-5 chords apart where they all but touch."""
         section = self._section.moved_apart()
-        return Airfoil(section.points, self.name, notes=(*self.notes, _moved(self._section, section)))
+        return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
         """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
@@ -161,13 +155,13 @@ class Airfoil:
         """Return what `wall` does, and a note where ``auto`` spacing is not the usual one."""
         if sampling.spacing != "auto":
             return self._nodes(ni, sampling), ()
-        tanh, notes = replace(sampling, spacing="tanh"), ()
+        notes: tuple[str, ...] = ()
         if sampling.le_spacing is None and sampling.te_spacing is None:
             try:
                 return self._nodes(ni, replace(sampling, spacing="conformal")), ()
             except InputError as error:
                 notes = (f"spacing tanh is used instead of conformal: {error.problem}",)
-        return self._nodes(ni, tanh), notes
+        return self._nodes(ni, replace(sampling, spacing="tanh")), notes
 
     def _nodes(self, ni: int, sampling: Sampling) -> Floats:
         stations = Stations(self.curve, *self._arcs, self.chord, self.nose_radius, self._round)
@@ -203,7 +197,7 @@ class Airfoil:
             return body.moved_apart()._around(sampling)
 
     def wedged(self) -> Airfoil:
-        """Return the same airfoil with its blunt base closed by a wedge (`meshonet.geometry.shapes.airfoil.te_wedge`)."""
+        """Return the same airfoil with its blunt base closed by a wedge (`te_wedge`)."""
         if not self.blunt:
             return self
         first, _, last = self._arcs
@@ -248,24 +242,24 @@ class Airfoil:
             notes=(*notes, *replaced),
         )
 
-    def _c_boundary(self, sampling: Sampling, given: Airfoil, notes: tuple[str, ...]) -> Boundary:
+    def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
         if self.blunt or self._round:
             raise InputError(
                 "a C grid needs a sharp trailing edge", "close it with {te} wedge, or use {topology} o"
             )
-        chord, ni = given.chord, sampling.ni or DEFAULT_NI
+        chord, ni = original.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord
         cells = cells_of_wake(ni, sampling.wake_nodes, step, length)
         law = "curvature" if sampling.spacing == "auto" else sampling.spacing
         te = sampling.te_spacing if law in ("uniform", "cosine", "conformal") else step / self.chord
         wall = self.wall(ni - 2 * cells, replace(sampling, spacing=law, te_spacing=te))
-        axis = wake_axis(given.leading_edge, given.trailing_edge)
+        axis = wake_axis(original.leading_edge, original.trailing_edge)
         line = Wake.behind(wall, axis, chord, length)
         first = 0.5 * float(np.hypot(*(wall[[1, -2]] - wall[0]).T).sum())
         wake = line.nodes(first, cells)
-        centre = 0.5 * (given.leading_edge + given.trailing_edge)
+        centre = 0.5 * (original.leading_edge + original.trailing_edge)
         return c_boundary(
             wall,
             sampling.nj or DEFAULT_NJ,
@@ -274,102 +268,7 @@ class Airfoil:
             sampling.radius * chord,
             axis=axis,
             curve=self.curve,
-            name=given.name,
-            chord=given.unit,
+            name=original.name,
+            chord=original.unit,
             notes=notes,
         )
-
-
-def _fitted(section: Section, places: Sequence[str]) -> tuple[Curve, list[str]]:
-    """Return the curve through a section's points, straight where it would otherwise cross itself, and notes.
-
-    Points whose surfaces touch or cross by rounding are moved apart first
-    (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
-    """
-    notes = []
-    if section.swapped:
-        points = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
-        more = ", ..." if len(section.swapped) > 6 else ""
-        notes.append(f"the outline is changed: points in the wrong order are swapped ({points}{more})")
-    crossing = find_crossing(section.points)
-    if crossing is not None:
-        given, section = section, section.moved_apart()
-        if find_crossing(section.points) is not None:
-            raise _crossed(section, crossing, places)
-        notes.append(_moved(given, section))
-    points, corners = section.points, section.corners
-    if section.blunt:  # node 0 is the middle of the base
-        points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
-    straight = np.zeros(len(points), dtype=bool)
-    for left in reversed(range(8)):
-        curve = Curve(points, closed=True, corners=corners, straight=straight)
-        crossings = find_crossings(curve.polyline(_CUTS), limit=4096)
-        where = np.array([k // len(_CUTS) for c in crossings for k in (c.first, c.second)], dtype=np.intp)
-        if straight[where].all():
-            break
-        straight[where if left > 1 else slice(None)] = True
-    if straight.any():
-        notes.append(
-            f"the outline follows straight lines between {straight.sum()} of its {len(points)} pairs of points, "
-            "where a smooth curve would cross itself"
-        )
-    return curve, notes
-
-
-def _moved(given: Section, section: Section) -> str:
-    """Return a note of how far the surfaces of `section` were moved apart."""
-    off = section.points - given.points
-    edge = given.points[0]
-    chord = float(np.hypot(*(given.points - edge).T).max())
-    most = float(np.hypot(*off.T).max()) / chord
-    k = int(np.argmax(np.hypot(*off.T)))
-    x, y = given.points[k]
-    return (
-        f"the outline is changed: its surfaces touch near ({x:.6g}, {y:.6g}) and are moved apart, by at most "
-        f"{most:.2g} chords"
-    )
-
-
-def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:
-    """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
-    n = len(section.points)
-    ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
-    a, b, c, d = (places[k] if places else f"point {k}" for k in ends)
-    return InputError(
-        f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
-        f"between {a} and {b} and between {c} and {d}",
-        "correct these points: no grid can be made around crossing surfaces",
-    )
-
-
-def _farthest(curve: Curve, point: Floats) -> float:
-    """Return the arc length of the place on the curve that is farthest from `point`.
-
-    Of several equally far places (a flat front) it is the middle one, so that a symmetric section keeps
-    its symmetry. Where the distance is smooth, its derivative is brought to zero.
-    """
-    s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
-    s = np.sort(s)
-    off = curve.at(s) - point
-    distance = np.hypot(off[:, 0], off[:, 1])
-    best = np.flatnonzero(distance >= distance.max() * (1 - 1e-12))
-    if best[-1] - best[0] > 1:
-        return float(0.5 * (s[best[0]] + s[best[-1]]))
-    low, high = float(s[best[0] - 1]), float(s[min(best[-1] + 1, len(s) - 1)])
-
-    slopes = _slopes(curve, point, arcs := np.array([low, high]))
-    if slopes[0] <= 0 or slopes[1] >= 0:
-        return float(s[best[0]])
-    for _ in range(2):  # parts of parts, all places at once: a call costs more than a place
-        arcs = np.linspace(low, high, _PARTS + 1)
-        slopes = _slopes(curve, point, arcs)
-        k = max(int(np.argmax(slopes <= 0)), 1)
-        low, high = float(arcs[k - 1]), float(arcs[k])
-    fall = float(slopes[k - 1] - slopes[k])
-    return low + (high - low) * float(slopes[k - 1]) / fall if fall > 0 else low
-
-
-def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
-    """Return by how much half the squared distance from `point` grows (m,) along the curve at `arcs` (m,)."""
-    points, ways = curve.at(arcs) - point, curve.tangent(arcs)
-    return np.asarray(points[:, 0] * ways[:, 0] + points[:, 1] * ways[:, 1])

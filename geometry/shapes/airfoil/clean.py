@@ -1,6 +1,6 @@
-"""From the points of an airfoil as somebody wrote them to a clean ring that starts at the trailing edge.
+"""From the points of an airfoil file to a clean ring that starts at the trailing edge.
 
-Nothing is moved here, except that the two ends of a trailing-edge gap too small to matter become their mean.
+No point is moved, except that the two ends of a negligible trailing-edge gap become their mean.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from meshonet.geometry.polygon.corners import Indices, find_corners, turning
 from meshonet.geometry.shapes.airfoil.separate_surfaces import moved_apart
 
 SHARP_GAP = 2e-4
-"""Trailing-edge gap, in chords, below which an edge counts as sharp: more real files fold without it."""
+"""Gap in chords below which a trailing edge counts as sharp: with less, grids of more real files fold."""
 SAME_POINT = 1e-5
-"""Points closer than this, in extents, are one: the direction between them is noise of the last digit."""
+"""Points closer than this, in extents, are one: their direction is noise of the last digit."""
 ON_BASE = 5e-5
 """How far, in chords, a point may lie off the straight base and still be dropped as a point of it."""
 MOST_CORNERS = 12
@@ -51,7 +51,7 @@ class Section:
     swapped: tuple[int, ...] = ()
 
     def moved_apart(self) -> Section:
-        """Return the section with its surfaces moved apart where they all but touch (`meshonet.geometry.shapes.airfoil.separate_surfaces`)."""
+        """Return the section with surfaces that nearly touch moved apart (`separate_surfaces`)."""
         edge = 0.5 * (self.points[0] + self.points[-1]) if self.blunt else self.points[0]
         return replace(self, points=moved_apart(self.points, int(np.argmax(_distance(self.points, edge)))))
 
@@ -59,22 +59,21 @@ class Section:
 def clean_section(points: Floats) -> Section:
     """Return the section that `points` (n, 2) describe, whichever way they run around it.
 
-    They may run either way and start anywhere; the usual start at the trailing edge is believed unless the
-    other end is clearly the sharper one. Repeated points are dropped, as are points on a straight base, and
-    neighbours that stand in the wrong order are swapped.
+    They are taken to start at the trailing edge unless the other end is clearly the sharper one. Repeated
+    points and points on a straight base are dropped, and neighbours in the wrong order are swapped.
 
     Raises
     ------
     InputError
         fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
     """
-    given = np.asarray(points, dtype=np.float64)
-    extent = float(np.hypot(*np.ptp(given, axis=0))) if len(given) else 0.0
+    raw = np.asarray(points, dtype=np.float64)
+    extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0
     check_extent(extent)
-    distinct_points = _distinct(given, SAME_POINT * extent)
-    index = _in_order(given, distinct_points)
+    distinct_points = _distinct(raw, SAME_POINT * extent)
+    index = _in_order(raw, distinct_points)
     swapped = tuple(sorted(index[index != distinct_points].tolist()))
-    ring = given[index]
+    ring = raw[index]
     open_gap = np.hypot(*(ring[0] - ring[-1])) > SAME_POINT * extent
     if not open_gap:
         ring, index = ring[:-1], index[:-1]
@@ -164,14 +163,14 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
     return _based(ring, index, open_gap, chord)
 
 
-def _starts_at_nose(ring: Floats, start: int, other: int, open_gap: bool) -> bool:
+def _starts_at_nose(ring: Floats, start: int, far_end: int, open_gap: bool) -> bool:
     """Say whether the place where the points start is round and the other end is clearly the edge."""
-    mine, his = _sharpness(ring, start, other), _sharpness(ring, other, start)
-    if mine[0] >= 0.6:
+    here, there = _sharpness(ring, start, far_end), _sharpness(ring, far_end, start)
+    if here[0] >= 0.6:
         return False
-    if his[0] > 0.7 and his[1] < 0.7 * mine[1]:
+    if there[0] > 0.7 and there[1] < 0.7 * here[1]:
         return True
-    return not open_gap and _has_base(ring, other) and not _has_base(ring, start)
+    return not open_gap and _has_base(ring, far_end) and not _has_base(ring, start)
 
 
 def _has_base(ring: Floats, k: int) -> bool:
@@ -179,21 +178,23 @@ def _has_base(ring: Floats, k: int) -> bool:
     n = len(ring)
     turn = -turning(ring, closed=True)
     near = np.arange(k - 3, k + 4) % n
-    one, next_one = turn[near], turn[(near + 1) % n]
+    turn_here, turn_next = turn[near], turn[(near + 1) % n]
     return bool(
         (
-            (one > np.radians(50.0)) & (next_one > np.radians(50.0)) & (one + next_one > np.radians(130.0))
+            (turn_here > np.radians(50.0))
+            & (turn_next > np.radians(50.0))
+            & (turn_here + turn_next > np.radians(130.0))
         ).any()
     )
 
 
-def _sharpness(ring: Floats, end: int, other: int) -> tuple[float, float]:
+def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
     """Return (p, t): from ring[end] on thickness grows like distance to the power p, and is t at 5 % chord.
 
     p is about 0.35 at a round leading edge, 0.85 at a wedge, 1.5 at a cusp, measured between 5 % and 20 %.
     """
     n = len(ring)
-    axis = ring[other] - ring[end]
+    axis = ring[far_end] - ring[end]
     chord = np.hypot(*axis)
     along, across = (
         (ring - ring[end]) @ axis / chord,
@@ -203,8 +204,8 @@ def _sharpness(ring: Floats, end: int, other: int) -> tuple[float, float]:
     for part in (0.05, 0.2):
         sides = []
         for arc in (
-            np.arange(end, end + (other - end) % n + 1) % n,
-            np.arange(other, other + (end - other) % n + 1) % n,
+            np.arange(end, end + (far_end - end) % n + 1) % n,
+            np.arange(far_end, far_end + (end - far_end) % n + 1) % n,
         ):
             order = np.argsort(along[arc], kind="stable")
             sides.append(float(np.interp(part * chord, along[arc][order], across[arc][order])))
@@ -256,10 +257,10 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
     n = len(ring)
     if blunt and nose in (0, n - 1):
         raise InputError("the base is wider than the section is long", "give both surfaces of an airfoil")
-    found = find_corners(ring, closed=True, few=0)
-    apart = np.minimum((found - nose) % n, (nose - found) % n)
-    near_nose = (apart <= 1) | (_distance(ring[found], ring[nose]) < 0.03 * distance[nose])
-    far = found[~near_nose]
+    candidates = find_corners(ring, closed=True, few=0)
+    apart = np.minimum((candidates - nose) % n, (nose - candidates) % n)
+    near_nose = (apart <= 1) | (_distance(ring[candidates], ring[nose]) < 0.03 * distance[nose])
+    far = candidates[~near_nose]
     corners = set(far.tolist() if len(far) <= MOST_CORNERS else [])
     if turn[nose] > np.radians(60.0) and _sharpness(ring, nose, 0)[0] > 0.7:
         corners.add(nose)
@@ -289,5 +290,5 @@ def _off_line(points: Floats) -> float:
     return float(np.abs(along[0] * off[:, 1] - along[1] * off[:, 0]).max() / length)
 
 
-def _distance(points: Floats, other: Floats) -> Floats:
-    return np.asarray(np.hypot(points[..., 0] - other[..., 0], points[..., 1] - other[..., 1]))
+def _distance(points: Floats, point: Floats) -> Floats:
+    return np.asarray(np.hypot(points[..., 0] - point[..., 0], points[..., 1] - point[..., 1]))

@@ -1,8 +1,8 @@
-"""Surfaces that touch or cross by the last digit of their coordinates, moved apart by less than that matters.
+"""Surfaces that touch or cross by rounding of their coordinates, moved apart.
 
-Where a section is thinner than its file's digits can say, as at a cusped trailing edge, the two surfaces
-come out as one line or cross. The points there are moved across the chord, half the missing thickness each,
-by at most `MOST` chords: the curve stays within 1e-4 chord of what the file says.
+Where a section is thinner than the digits of its file resolve, as at a cusped trailing edge, the two surfaces
+coincide or cross. Points there are moved across the chord, by half the missing thickness each and at most
+`MOST` chords.
 """
 
 from __future__ import annotations
@@ -13,8 +13,7 @@ from meshonet.geometry.arrays import Floats
 
 MOST = 4.5e-5
 """Chords by which a point may move."""
-_WEDGE = 0.02
-"""Near an edge the least thickness grows from nothing by this much of the distance."""
+_WEDGE = 0.02  # near an edge the least thickness grows from nothing by this much of the distance
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:

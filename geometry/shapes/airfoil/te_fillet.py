@@ -19,17 +19,13 @@ from meshonet.geometry.spacing.size_field import GROWTH, limited_size
 
 _ACROSS = 0.9
 _ALONG = 2.0
-_CAP = 5e-3
-"""Largest part of the base that a fillet takes, in chords."""
-_PULL = 0.6
-"""Where the control points of the fillet are between its ends (0) and the corner (1)."""
+_CAP = 5e-3  # largest part of the base that a fillet takes, in chords
+_PULL = 0.6  # where the control points of the fillet are between its ends (0) and the corner (1)
 _POINTS = 24
 _TURN = 0.5
 """Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
-_MORE = 1.3
-"""Factor up to which cells are added so that neither half has fewer than were asked for."""
-_NEAR = 0.1
-"""Chords from the corner within which the surface is given by points taken from the curve."""
+_MORE = 1.3  # factor up to which cells are added so that neither half has fewer than wanted
+_NEAR = 0.1  # chords from the corner within which the surface is given by points taken from the curve
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
@@ -66,9 +62,9 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
 def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
     """Return distances (n + 1,) from the middle of a rounded base to its lower end, and to its upper end.
 
-    Nodes are shared out by length and by turning together, the latter averaged over two cells to each side:
-    without it the cells where the base turns most are the skewest of the grid, by half of what they turn. A
-    slanted base turns more at one end than at the other, and has more cells there.
+    The density of nodes follows length and turning; turning is averaged over two cells to each side, as the
+    cells where the base turns most are the skewest of the grid. A slanted base turns more at one end, and has
+    more cells there.
 
     Parameters
     ----------

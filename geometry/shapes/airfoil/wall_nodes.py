@@ -29,22 +29,19 @@ from meshonet.geometry.spacing.size_field import arcs_by_curvature
 
 _EDGE_STEP = 20.0
 """Cell at a sharp trailing edge: this over the cells of a side, in mean cells. A compromise measured on O
-grids: smaller makes them less orthogonal on the whole, larger folds more of them at the edge."""
+grids: with smaller cells they are less orthogonal, with larger ones more of them fold at the edge."""
 _EDGE_PART = 0.24
-"""The same cell in mean cells where spacing follows curvature, the law of marched grids: lines beside smaller
-ones open within fewer rows."""
+"""The same cell, in mean cells, where spacing follows curvature, the law of marched grids."""
 _BASE_GROWTH = 1.15
 _BASE_JUMP = 4.0
 """Largest ratio of a fixed step beside a base to those on it: at 16 cells fold at its corners."""
-_ROUND_CELLS = 14
-"""Fewest cells on half a rounded base, when there are 16 times as many in all."""
-_BASE_SHARE = 0.35
-"""Largest part of all cells that goes to the base."""
+_ROUND_CELLS = 14  # fewest cells on half a rounded base, when there are 16 times as many in all
+_BASE_SHARE = 0.35  # largest part of all cells that goes to the base
 
 
 @dataclass(frozen=True)
 class Stations:
-    """What the distribution needs to know of an airfoil: arc lengths on its curve, and two lengths."""
+    """What the distribution of nodes depends on: arc lengths on the curve of an airfoil, and two lengths."""
 
     curve: Curve
     lower: float

@@ -1,8 +1,8 @@
-"""What a spline leaves out near acute corners, so that it does not fold the thin cells there.
+"""Splines made less curved near acute corners, so that they do not fold the thin cells there.
 
 Between the walls of an acute corner cells are much thinner than long, and lines turn within a cell or two of
 the walls. A cubic through their nodes swings by more than the thickness of a cell; straight lines between
-coarse nodes do not. So a share of the second derivatives is taken out: all of them at the corner itself, less
+coarse nodes do not. So a share of the second derivatives is left out: all of them at the corner itself, less
 with the distance from it and the wider it opens. With L the matrices of linear interpolation, C those of what
 second derivatives B add between, and K the share left at each node::
 

@@ -1,8 +1,8 @@
-"""How far inside what a grid on few nodes misses of its edges is felt.
+"""How far inside the mismatch between coarse edges and full ones is blended.
 
 Between the nodes of a coarse edge the full one has detail. A smooth grid forgets detail of the size of a
-coarse step within such a step, however thin the cells are along the edge; carried on, it would fold thin
-cells that are far away. So at coarse node (i, j), at a distance d along its line from the edge ::
+coarse step within such a step, however thin the cells are along the edge; blended along whole lines, it
+would fold thin cells far away. So at coarse node (i, j), at a distance d along its line from the edge ::
 
     share = max(0, 1 - d / r),    r = max(d_1, min(`REACH` h, length of the line))
 
@@ -15,7 +15,7 @@ from __future__ import annotations
 from typing import Any
 
 REACH = 2.0
-"""Steps of the edge along which what is missed of it is felt."""
+"""Steps of the edge over which its mismatch is blended."""
 
 
 def inwards(planes: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
@@ -26,7 +26,7 @@ def inwards(planes: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
     xp : numpy or torch.
     """
     south, north = _both(planes, xp)
-    west, east = (xp.swapaxes(one, -1, -2) for one in _both(xp.swapaxes(planes, -1, -2), xp))
+    west, east = (xp.swapaxes(share, -1, -2) for share in _both(xp.swapaxes(planes, -1, -2), xp))
     return south, north, west, east
 
 
@@ -38,7 +38,7 @@ def _both(planes: Any, xp: Any) -> tuple[Any, Any]:
     off = xp.cumsum(along, -1)
     off = xp.concatenate([xp.zeros_like(off[..., :1]), off], -1)
     whole = off[..., -1:]
-    found = []
+    shares = []
     for away, first, step in (
         (off, along[..., :1], beside[..., :1]),
         (whole - off, along[..., -1:], beside[..., -1:]),
@@ -48,5 +48,5 @@ def _both(planes: Any, xp: Any) -> tuple[Any, Any]:
             xp.concatenate([step, step[..., -1:, :]], -2),
         )
         way = xp.maximum(xp.minimum(0.5 * REACH * (before + after), whole), first)
-        found.append(xp.clip(1.0 - away / way, 0.0, 1.0))
-    return found[0], found[1]
+        shares.append(xp.clip(1.0 - away / way, 0.0, 1.0))
+    return shares[0], shares[1]

@@ -28,7 +28,7 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 
 def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
     """Return planar nodes inside `boundary` from a grid (m, n, 2) inside its thinned edges."""
-    if boundary.topology == "o":
+    if boundary.periodic:
         return evaluate_around(coarse, boundary)
     names = ("south", "north", "west", "east")
     south, north, west, east = (np.ascontiguousarray(getattr(boundary, side).T)[None] for side in names)

@@ -4,10 +4,11 @@ With X the planes of a grid's nodes::
 
     x = S X Tᵀ + shares * (edges - S X Tᵀ there)
 
-S and T are cubic splines, less curved near acute corners (`meshonet.solvers.algebraic.resample.corner_damping`); what they miss of the edges is
-felt near these (`meshonet.solvers.algebraic.resample.edge_blending`). A cubic swings between nodes, and where spacings differ much that may
-fold cells although the coarse ones are valid. Then lines are made straight around these, as far as it takes:
-cells inside a valid coarse cell are valid between straight lines.
+S and T are cubic splines, less curved near acute corners (`corner_damping`). They do not reproduce the edges
+exactly; the mismatch is blended into the interior over two coarse cells (`edge_blending`). A cubic swings
+between nodes, which may fold cells where spacings differ much, although the coarse ones are valid. Then lines
+are made straight around these, as far as it takes: between straight lines, cells inside a valid coarse cell
+are valid.
 """
 
 from __future__ import annotations

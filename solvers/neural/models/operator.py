@@ -98,7 +98,7 @@ class PaperOperator(Operator):
             answer += extend(boundary)
         nodes = as_planar(answer)
         edges = [(nodes[:, 0], boundary.south), (nodes[:, -1], boundary.north)]
-        if boundary.topology == "o":
+        if boundary.periodic:
             nodes[-1] = nodes[0]
         else:
             edges += [(nodes[0], boundary.west), (nodes[-1], boundary.east)]

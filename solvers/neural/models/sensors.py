@@ -17,7 +17,7 @@ def sensors(boundary: Boundary, count: int) -> Floats:
     of an O, the first half (the odd one included) is on the body and the rest on the far field. They are
     nodes where a node is there, as on 101 x 101 with 50; between nodes they lie on the straight line.
     """
-    if boundary.topology == "o":
+    if boundary.periodic:
         inner = count - count // 2
         return np.concatenate([_along(boundary.south, inner), _along(boundary.north, count - inner)])
     place = 4.0 * np.arange(count) / count

@@ -75,7 +75,7 @@ class Canonical:
 
 def canonical(boundary: Boundary) -> Canonical:
     """Return a quad or O boundary in its canonical frame; in its own if it cannot be rounded."""
-    return _of_body(boundary) if boundary.topology == "o" else _of_quad(boundary)
+    return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 
 
 def _of_body(boundary: Boundary) -> Canonical:

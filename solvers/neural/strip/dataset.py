@@ -54,7 +54,7 @@ def solve_strips(
     rows: list[tuple[Complexes, Complexes, Complexes]] = []
     left_out = 0
     for boundary in boundaries:
-        if boundary.topology != "o":
+        if not boundary.periodic:
             raise InputError(f"a {boundary.topology} boundary among the training shapes", "give O boundaries")
         row = _solved(boundary)
         if row is None:

@@ -25,8 +25,8 @@ def test_the_kept_nodes_are_bitwise_the_same() -> None:
 
 
 def test_parts_keep_their_places() -> None:
-    parts = (Patch("inlet", "west", 0, 6), Patch("step", "south", 4, 8), Patch("wall", "north", 0, 12))
-    coarse = coarser_grid(Grid.from_nodes(lattice(13, 7), patches=parts), 2)
+    patches = (Patch("inlet", "west", 0, 6), Patch("step", "south", 4, 8), Patch("wall", "north", 0, 12))
+    coarse = coarser_grid(Grid.from_nodes(lattice(13, 7), patches=patches), 2)
     assert coarse.patches == (
         Patch("inlet", "west", 0, 3),
         Patch("step", "south", 2, 4),
@@ -35,7 +35,7 @@ def test_parts_keep_their_places() -> None:
     with pytest.raises(
         InputError, match="patch 'step' ends at node 4 of south, which every 3-th leaves out; make"
     ):
-        coarser_grid(Grid.from_nodes(lattice(13, 7), patches=parts), 3)
+        coarser_grid(Grid.from_nodes(lattice(13, 7), patches=patches), 3)
 
 
 def test_rings_stay_closed() -> None:

@@ -11,23 +11,23 @@ from meshonet.geometry.errors import InputError
 
 
 def lattice(ni: int = 5, nj: int = 3) -> Grid:
-    """Node (i, j) at (i, j), with a part on a piece of every side."""
+    """Node (i, j) at (i, j), with a patch on a piece of every side."""
     nodes = np.stack(np.meshgrid(np.arange(ni), np.arange(nj), indexing="ij"), axis=-1).astype(float)
-    parts = (
+    patches = (
         Patch("s", "south", 1, 2),
         Patch("n", "north", 0, 3),
         Patch("w", "west", 0, 1),
         Patch("e", "east", 1, 2),
     )
-    return Grid.from_nodes(nodes, "quad", parts, "lattice")
+    return Grid.from_nodes(nodes, "quad", patches, "lattice")
 
 
-def ends(grid: Grid, part: Patch) -> set[tuple[float, ...]]:
-    """Return the two points where a part ends."""
+def ends(grid: Grid, patch: Patch) -> set[tuple[float, ...]]:
+    """Return the two points where a patch ends."""
     edges: dict[str, Floats] = {
         "south": grid.nodes[:, 0], "north": grid.nodes[:, -1], "west": grid.nodes[0], "east": grid.nodes[-1]
     }  # fmt: skip
-    return {tuple(edges[part.side][k].tolist()) for k in (part.start, part.stop)}
+    return {tuple(edges[patch.side][k].tolist()) for k in (patch.start, patch.stop)}
 
 
 def test_parts_stay_where_they_are_and_the_grid_stays_right_handed() -> None:

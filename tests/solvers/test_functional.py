@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from functional_reference import energy
 from random_quads import random_quad
 from solver_shapes import bump, hole, naca, wrench
 
@@ -9,7 +10,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import Modes, Stiffness, VariationalDescent, variational_workspace
 from meshonet.kernels._native import variational_energy as compiled
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.energy.functional import Weights, aspect_of, energy, relief_of
+from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
 from meshonet.solvers.energy.preconditioner import minimiser
 
 

@@ -1,11 +1,12 @@
 """Windows around skewed cells are minimised by themselves, and leave the rest of a grid alone."""
 
 import numpy as np
+from functional_reference import energy
 from solver_shapes import circle, folded, ring
 
 from meshonet.geometry.arrays import as_planar
 from meshonet.solvers.algebraic.tfi import tfi
-from meshonet.solvers.energy.functional import AROUND, aspect_of, energy, relief_of
+from meshonet.solvers.energy.functional import AROUND, aspect_of, relief_of
 from meshonet.solvers.energy.local_descent import SKEWED, descend_windows, skewness
 
 

@@ -83,7 +83,7 @@ CASES = [
 
 
 @pytest.mark.parametrize("make", [arch, hexagon, bump, seamount, l_shape, horseshoe])
-@pytest.mark.parametrize("heights", CASES, ids=Heights.told)
+@pytest.mark.parametrize("heights", CASES, ids=str)
 def test_every_first_cell_of_a_solved_grid_is_exact_and_none_folds(make, heights: Heights) -> None:  # type: ignore[no-untyped-def]
     boundary = make(101, 65)
     made = spread(solve(boundary), boundary, heights)
@@ -146,7 +146,7 @@ def test_folds_are_repaired_before_the_lines_are_used() -> None:
 
 
 @pytest.mark.parametrize(
-    ("heights", "told"),
+    ("heights", "message"),
     [
         ({"south": -1.0}, "a first cell of -1 off south; give a positive height"),
         ({"west": float("nan")}, "a first cell of nan off west"),
@@ -160,9 +160,9 @@ def test_folds_are_repaired_before_the_lines_are_used() -> None:
         ),
     ],
 )
-def test_heights_that_do_not_fit_are_refused(heights: dict[str, float], told: str) -> None:
+def test_heights_that_do_not_fit_are_refused(heights: dict[str, float], message: str) -> None:
     boundary = arch(41, 33)
-    with pytest.raises(InputError, match=told):
+    with pytest.raises(InputError, match=message):
         spread(solve(boundary), boundary, Heights(**heights))  # type: ignore[arg-type]
 
 

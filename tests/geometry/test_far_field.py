@@ -28,4 +28,4 @@ def test_o_boundary_joins_wall_and_far_field():
     np.testing.assert_array_equal(b.south, wall)
     np.testing.assert_allclose(np.hypot(*b.north.T), 20, rtol=1e-12)
     np.testing.assert_array_equal(b.west, b.east)
-    assert [part.name for part in b.patches] == ["wall", "farfield"]
+    assert [patch.name for patch in b.patches] == ["wall", "farfield"]

@@ -1,4 +1,4 @@
-"""Winslow's system in plain numpy: the reference that the compiled kernels are tested against.
+"""Winslow's system in plain numpy, against which the compiled kernels are tested.
 
 A grid is harmonic when its inverse map is: ∇²ξ = ∇²η = 0 in the plane. With the roles of the variables
 exchanged, both coordinates x = (x, y) satisfy

@@ -8,7 +8,7 @@ import pytest
 from meshonet.geometry.quality.measure import count_folded, measure
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_unasked
+from meshonet.solvers.hyperbolic.default_spacing import GROWTH, MOST, PART, first_cell, march_by_default
 from meshonet.solvers.method import method_named
 from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 
@@ -17,7 +17,7 @@ from meshonet.solvers.pipeline.select import elliptic, fewer_on_quads
 @pytest.mark.parametrize("res", [(100, 100), (160, 60), (200, 40)])
 def test_grids_are_valid_nearly_square_and_grow_slowly(section: str, te: str, res: tuple[int, int]) -> None:
     boundary = naca(section).boundary(Sampling(*res, "c", te=te))  # type: ignore[arg-type]
-    found = march_unasked(boundary)
+    found = march_by_default(boundary)
     assert found is not None
     nodes = found.grid.nodes
     assert count_folded(nodes) == 0
@@ -52,7 +52,7 @@ def test_given_far_fields_and_very_few_rows_are_left_to_the_variational_method()
     given = replace(boundary, wall=None)
     few = naca("0012").boundary(Sampling(100, 30, "c"))
     for one in given, few:
-        assert march_unasked(one) is None
+        assert march_by_default(one) is None
         found = elliptic().solve([one])[0]
         assert found.method == "variational"
         np.testing.assert_array_equal(found.grid.nodes[:, -1], one.north)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from test_seams import c_grid
+from test_grid import c_grid
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality import growth as steps

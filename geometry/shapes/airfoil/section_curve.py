@@ -1,0 +1,112 @@
+"""The smooth curve through the points of an airfoil, and the place on it farthest from the trailing edge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.self_intersection import Crossing, find_crossing, find_crossings
+from meshonet.geometry.shapes.airfoil.clean import Section
+
+_CUTS = np.array([0, 1 / 32, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 5 / 8, 3 / 4, 7 / 8, 31 / 32])
+"""Where an interval of the curve is cut into straight pieces to be searched for crossings."""
+_PARTS = 128  # parts into which a stretch is cut to find the place farthest from the trailing edge
+
+
+def section_curve(section: Section, places: Sequence[str]) -> tuple[Curve, list[str]]:
+    """Return the curve through a section's points, straight where it would otherwise cross itself, and notes.
+
+    Points whose surfaces touch or cross by rounding are moved apart first
+    (`meshonet.geometry.shapes.airfoil.separate_surfaces`).
+    """
+    notes = []
+    if section.swapped:
+        named = ", ".join(places[k] if places else f"point {k}" for k in section.swapped[:6])
+        more = ", ..." if len(section.swapped) > 6 else ""
+        notes.append(f"the outline is changed: points in the wrong order are swapped ({named}{more})")
+    crossing = find_crossing(section.points)
+    if crossing is not None:
+        before, section = section, section.moved_apart()
+        if find_crossing(section.points) is not None:
+            raise _crossed(section, crossing, places)
+        notes.append(moved_note(before, section))
+    points, corners = section.points, section.corners
+    if section.blunt:  # node 0 is the middle of the base
+        points, corners = np.concatenate([[0.5 * (points[0] + points[-1])], points]), corners + 1
+    straight = np.zeros(len(points), dtype=bool)
+    for left in reversed(range(8)):
+        curve = Curve(points, closed=True, corners=corners, straight=straight)
+        crossings = find_crossings(curve.polyline(_CUTS), limit=4096)
+        where = np.array([k // len(_CUTS) for c in crossings for k in (c.first, c.second)], dtype=np.intp)
+        if straight[where].all():
+            break
+        straight[where if left > 1 else slice(None)] = True
+    if straight.any():
+        notes.append(
+            f"the outline follows straight lines between {straight.sum()} of its {len(points)} pairs of "
+            "points, where a smooth curve would cross itself"
+        )
+    return curve, notes
+
+
+def moved_note(before: Section, section: Section) -> str:
+    """Return a note of how far the surfaces of `section` were moved apart."""
+    off = section.points - before.points
+    edge = before.points[0]
+    chord = float(np.hypot(*(before.points - edge).T).max())
+    most = float(np.hypot(*off.T).max()) / chord
+    k = int(np.argmax(np.hypot(*off.T)))
+    x, y = before.points[k]
+    return (
+        f"the outline is changed: its surfaces touch near ({x:.6g}, {y:.6g}) and are moved apart, by at most "
+        f"{most:.2g} chords"
+    )
+
+
+def _crossed(section: Section, crossing: Crossing, places: Sequence[str]) -> InputError:
+    """Return the error for surfaces that cross, naming the place and the points on both sides of it."""
+    n = len(section.points)
+    ends = [section.index[k % n] for c in (crossing.first, crossing.second) for k in (c, c + 1)]
+    a, b, c, d = (places[k] if places else f"point {k}" for k in ends)
+    return InputError(
+        f"the surface crosses itself at ({crossing.x:.6g}, {crossing.y:.6g}), "
+        f"between {a} and {b} and between {c} and {d}",
+        "correct these points: no grid can be made around crossing surfaces",
+    )
+
+
+def farthest_arc(curve: Curve, point: Floats) -> float:
+    """Return the arc length of the place on the curve that is farthest from `point`.
+
+    Of several equally far places (a flat front) it is the middle one, so that a symmetric section keeps
+    its symmetry. Where the distance is smooth, its derivative is brought to zero.
+    """
+    s = np.concatenate([curve.knots, 0.5 * (curve.knots + np.append(curve.knots[1:], curve.length))])
+    s = np.sort(s)
+    off = curve.at(s) - point
+    distance = np.hypot(off[:, 0], off[:, 1])
+    best = np.flatnonzero(distance >= distance.max() * (1 - 1e-12))
+    if best[-1] - best[0] > 1:
+        return float(0.5 * (s[best[0]] + s[best[-1]]))
+    low, high = float(s[best[0] - 1]), float(s[min(best[-1] + 1, len(s) - 1)])
+
+    slopes = _slopes(curve, point, arcs := np.array([low, high]))
+    if slopes[0] <= 0 or slopes[1] >= 0:
+        return float(s[best[0]])
+    for _ in range(2):  # parts of parts, all places at once: a call costs more than a place
+        arcs = np.linspace(low, high, _PARTS + 1)
+        slopes = _slopes(curve, point, arcs)
+        k = max(int(np.argmax(slopes <= 0)), 1)
+        low, high = float(arcs[k - 1]), float(arcs[k])
+    fall = float(slopes[k - 1] - slopes[k])
+    return low + (high - low) * float(slopes[k - 1]) / fall if fall > 0 else low
+
+
+def _slopes(curve: Curve, point: Floats, arcs: Floats) -> Floats:
+    """Return by how much half the squared distance from `point` grows (m,) along the curve at `arcs` (m,)."""
+    points, ways = curve.at(arcs) - point, curve.tangent(arcs)
+    return np.asarray(points[:, 0] * ways[:, 0] + points[:, 1] * ways[:, 1])

@@ -1,0 +1,222 @@
+"""`meshonet.train`: datasets to a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.families.split import WAYS, split
+from meshonet.geometry.spacing.sampling import Sampling
+
+if TYPE_CHECKING:
+    from meshonet.solvers.neural.fit.loop import Progress
+    from meshonet.solvers.neural.fit.plan import Plan
+    from meshonet.solvers.neural.samples import Samples
+
+REPORTS = 200
+"""Reports, evaluations and checkpoints of a long run."""
+
+
+def train(
+    datasets: str | Path | Sequence[str | Path],
+    output: str | Path,
+    *,
+    model: str | None = None,
+    settings: Mapping[str, Any] | None = None,
+    split: str | None = None,
+    held_out: int | None = None,
+    initial: str | None = None,
+    resume: bool = False,
+    threads: int = 1,
+    from_format: str | None = None,
+    report: Callable[[Progress], None] | None = None,
+    note: Callable[[str], None] | None = None,
+    **plan: Any,
+) -> dict[str, Any]:
+    """Fit a neural operator to datasets and write it to `output`.
+
+    Several processes under torchrun share each step; the first of them reports and writes.
+
+    Parameters
+    ----------
+    datasets : files of solved grids; for ``strip`` of O boundaries; for ``quad`` of grids of the same domains
+        by winslow and by variational.
+    output : model file, ``.safetensors``.
+    model : name in `meshonet.solvers.neural.registry.MODELS`; None goes by what the first dataset holds.
+    settings : of the model; for ``quad`` weights of its loss.
+    split : ``interpolation``, ``extrapolation``, ``random``, or a file with ``train`` or ``test`` for each
+        grid; None for what the dataset says.
+    held_out : shapes kept out to watch the loss; None for the model's own.
+    initial : quad model, by name or path, to start from.
+    resume : continue from the checkpoint beside the output, if there is one.
+    threads : of torch.
+    from_format : format of the datasets, when neither ending nor content says.
+    report, note : called with the progress of the run, and with what is worth a line beside it.
+    plan : settings of `meshonet.solvers.neural.fit.plan.Plan`; None stands for the model's own. `points` is
+        a number, or ``all``.
+
+    Returns
+    -------
+    dict
+        the ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in processes
+        of torchrun that do not lead.
+
+    Raises
+    ------
+    InputError
+        torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad settings
+        or datasets.
+    SolverError
+        the loss is not finite.
+    """
+    _check_output(str(output))
+    try:
+        import torch
+    except ImportError:
+        raise InputError("training needs torch", "install it: pip install 'meshonet[train]'") from None
+    from meshonet.solvers.neural.fit.team import team
+    from meshonet.solvers.neural.fit.train import standard
+    from meshonet.solvers.neural.fit.train import train as fit
+    from meshonet.solvers.neural.registry import load
+
+    torch.set_num_threads(threads)
+    sources = [str(d) for d in ([datasets] if isinstance(datasets, str | Path) else datasets)]
+    name = model or _suited(sources[0], from_format)
+    members = team(plan.get("device") or "auto")
+    say = note if note and members.leads else _silent
+    try:
+        if initial is not None and name != "quad":
+            raise InputError(f"{{initial}} is of no use to {name}", "leave it out, or use {model} quad")
+        full = _full_plan(standard(name), plan, long=name not in ("strip", "quad"))
+        if name == "strip" and settings:
+            problem = "the strip operator takes no {settings}"
+            raise InputError(problem, "leave it out, or choose another {model}")
+        if name in ("strip", "quad") and (split or plan.get("points")):
+            problem = f"the {name} operator takes no {{split}} or {{points}}"
+            raise InputError(problem, "leave them out, or choose another {model}")
+        choices: dict[str, Any] = {}
+        chosen = dict(settings or {})
+        if name == "strip":
+            data = _strips(sources, from_format, say)
+        elif name == "quad":
+            first = None if initial is None else load(initial)
+            data, choices = _quads(sources, from_format, say), {"initial": first, "weights": chosen}
+        else:
+            data, choices = _samples(sources, split, from_format), {"settings": chosen}
+        recipe = {"command": "meshonet train", "datasets": [Path(source).name for source in sources]}
+        figures = fit(
+            name, data, Path(output), full, members, recipe=recipe, held_out=held_out, resume=resume,
+            report=report if members.leads else None, **choices,
+        )  # fmt: skip
+    finally:
+        members.close()
+    return {"model": name, "shapes": len(data), "figures": figures} if members.leads else {}
+
+
+def _silent(_: str) -> None:
+    """Say nothing."""
+
+
+def _check_output(text: str) -> None:
+    path = Path(text)
+    if path.suffix != ".safetensors":
+        raise InputError("a model file ends in .safetensors", "rename the output", source=text)
+    if not path.parent.is_dir():
+        raise InputError(f"no folder {path.parent}", "make it first", source=text)
+
+
+def _suited(source: str, fmt: str | None) -> str:
+    """Return the model for what a dataset holds: boundaries are for the strip, grids for MeshONet."""
+    try:
+        first = next(read_grids(source, fmt), None)
+    except InputError as error:
+        if "not grids" in error.problem or "not a grid" in error.problem:
+            return "strip"
+        raise
+    if first is None:
+        raise InputError("holds nothing", "give a dataset of grids or boundaries", source=source)
+    return "meshonet"
+
+
+def _full_plan(standard: Plan, changes: Mapping[str, Any], *, long: bool) -> Plan:
+    """Return the model's plan with `changes`; a `long` one reports `REPORTS` times."""
+    words = {key: value for key, value in changes.items() if value is not None}
+    if "points" in words:
+        words["points"] = _points(str(words["points"]))
+    plan = replace(standard, **words)
+    if not long:
+        return plan
+    every = max(1, plan.epochs // REPORTS)
+    extra: dict[str, Any] = {"log_every": every, "validate_every": every}
+    extra["decay_every"] = max(1, plan.epochs // 15)
+    if "checkpoint_every" not in words:
+        extra["checkpoint_every"] = every
+    return replace(plan, **extra)
+
+
+def _points(text: str) -> tuple[int, int] | None:
+    """Return the points inside and on the boundary of ``N`` or ``all``."""
+    if text == "all":
+        return None
+    if not (text.isascii() and text.isdigit() and 6 <= int(text) <= 10**7):
+        problem = f"{text!r} is not a number of places"
+        raise InputError(problem, "use all or e.g. 1200", parameter="points")
+    boundary = int(text) // 6
+    return int(text) - boundary, boundary
+
+
+def _strips(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]) -> Any:
+    """Return the airfoils of the datasets, solved in their strips."""
+    from meshonet.solvers.neural.strip.dataset import solve_strips
+
+    def count(done: int, left_out: int) -> None:
+        if done and done % 500 == 0:
+            note(f"{done} shapes lifted and solved, {left_out} left out")
+
+    strips = solve_strips(_boundaries(sources, fmt), count)
+    note(f"{len(strips)} shapes lifted and solved")
+    return strips
+
+
+def _boundaries(sources: Iterable[str], fmt: str | None) -> Iterator[Boundary]:
+    for source in sources:
+        for shape in read_shapes(source, fmt):
+            yield shape.boundary(Sampling(topology="o"))
+
+
+def _quads(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]) -> Any:
+    """Return the domains that the datasets have by both methods."""
+    from meshonet.solvers.neural.fit.quad_grids import quads_of
+
+    domains = quads_of(read_grids(source, fmt) for source in sources)
+    note(f"{len(domains)} domains solved by both methods")
+    return domains
+
+
+def _samples(sources: Sequence[str], way: str | None, fmt: str | None) -> Samples:
+    """Return the grids of the datasets, split by `way`."""
+    from meshonet.solvers.neural.samples import gathered
+
+    samples = gathered(grid for source in sources for grid in read_grids(source, fmt))
+    if way is None:
+        return samples
+    if way in WAYS:
+        try:
+            return replace(samples, splits=split(samples.parameters.tolist(), way))
+        except InputError as error:
+            error.parameter = "split"
+            raise
+    try:
+        words = tuple(Path(way).read_text(encoding="utf-8").split())
+    except (OSError, ValueError):
+        problem = f"{way!r} is neither a way to split nor a file"
+        raise InputError(problem, "use a file or one of " + ", ".join(WAYS), parameter="split") from None
+    if len(words) != len(samples) or set(words) - {"train", "test"}:
+        problem = f"{way} has {len(words)} words for {len(samples)} grids"
+        raise InputError(problem, "write train or test for each", parameter="split")
+    return replace(samples, splits=words)

@@ -1,0 +1,37 @@
+"""What iterative solvers have in common: their settings are checked, and they may start from a grid."""
+
+from __future__ import annotations
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+
+def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
+    """Raise InputError unless an iterative solver can take the settings for `boundary`.
+
+    Parameters
+    ----------
+    tol : at which it stops, None for its own.
+    max_cycles : or iterations, on the finest level.
+    initial : grid to start from, None for none.
+    """
+    if tol is not None and not 0 < tol < 1:
+        raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
+    if max_cycles < 1:
+        raise InputError(f"{max_cycles} cycles are too few", "allow at least 1", parameter="max_cycles")
+    if initial is not None and initial.nodes.shape[:2] != (boundary.ni, boundary.nj):
+        problem = f"the initial grid has {initial.ni}x{initial.nj} nodes, not {boundary.ni}x{boundary.nj}"
+        raise InputError(problem, "give equal counts", parameter="initial")
+
+
+def initial_nodes(boundary: Boundary, initial: Grid) -> Floats:
+    """Return a planar copy of the nodes of `initial` with the edges of `boundary`, but the cut of an O."""
+    nodes = initial.nodes.copy(order="K")
+    nodes[:, 0], nodes[:, -1] = boundary.south, boundary.north
+    if boundary.topology == "o":
+        nodes[-1] = nodes[0]
+    else:
+        nodes[0], nodes[-1] = boundary.west, boundary.east
+    return nodes
