@@ -5,4 +5,4 @@
 #define AT(p) (*(Lanes *)(p))
 #define OF(p) (*(const Lanes *)(p))
 
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
+typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double))));

@@ -68,9 +68,10 @@ MESHONET_INLINE ptrdiff_t piece(const Line *line, ptrdiff_t k, double t, ptrdiff
 /* The point at arc length t; piece *k or a later one begins before it, and takes its number. */
 MESHONET_INLINE void point_at(const Line *line, ptrdiff_t *k, double t, ptrdiff_t nj, double *x, double *y)
 {
+    double dx, dy;
     *k = piece(line, *k, t, nj);
-    displacement(line, *k, t, x, y);
-    *x += line->px[*k], *y += line->py[*k];
+    displacement(line, *k, t, &dx, &dy);
+    *x = line->px[*k] + dx, *y = line->py[*k] + dy;
 }
 
 /* The arc length at which a line is `first` away from its first node, less than half of it. */

@@ -184,8 +184,7 @@ MESHONET_INLINE void extrapolate(const Places *p, int first)
     for (ptrdiff_t k = 0; k < 2 * p->field; k += LANES) {
         const Lanes f = OF(p->waves + k), change = f - OF(p->step + k);
         AT(p->step + k) = f;
-        const Lanes further = f - g * (change + OF(p->move + k));
-        AT(p->waves + k) = AT(p->move + k) = first ? f : further;
+        AT(p->waves + k) = AT(p->move + k) = first ? f : f - g * (change + OF(p->move + k));
     }
 }
 
