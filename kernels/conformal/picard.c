@@ -45,27 +45,20 @@ MESHONET_INLINE int wavenumber(int mode) { return mode <= PICARD_MODES ? mode : 
 /* The row of a transform that holds a mode. */
 MESHONET_INLINE int place(int mode) { return (int)reversed(wavenumber(mode) & (COLUMNS - 1), COLUMNS); }
 
-/* Modes, bit-reversed, to columns: the sum of c_k exp(i k theta). LANES levels at a time stay in the cache. */
-MESHONET_INLINE void to_columns(PicardField *f, double (*unit)[2])
+/* Modes, bit-reversed, to columns: the sum of c_k exp(i k theta); or `back` to modes times COLUMNS. LANES levels at a
+   time stay in the cache. */
+MESHONET_INLINE void transform(PicardField *f, double (*unit)[2], const int back)
 {
     for (int l = 0; l < LEVELS; l += LANES)
-        for (int size = 2; size <= COLUMNS; size *= 2)
+        for (int size = back ? COLUMNS : 2; 2 <= size && size <= COLUMNS; size = back ? size / 2 : 2 * size)
             for (int j = 0; j < size / 2; j++)
                 for (int a = j; a < COLUMNS; a += size) {
                     const int b = a + size / 2;
-                    pair_up(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, unit[j * (COLUMNS / size)]);
-                }
-}
-
-/* Columns to modes, bit-reversed, times COLUMNS. */
-MESHONET_INLINE void to_modes(PicardField *f, double (*unit)[2])
-{
-    for (int l = 0; l < LEVELS; l += LANES)
-        for (int size = COLUMNS; size >= 2; size /= 2)
-            for (int j = 0; j < size / 2; j++)
-                for (int a = j; a < COLUMNS; a += size) {
-                    const int b = a + size / 2;
-                    pair_down(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, unit[j * (COLUMNS / size)]);
+                    const double *u = unit[j * (COLUMNS / size)];
+                    if (back)
+                        pair_down(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, u);
+                    else
+                        pair_up(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, u);
                 }
 }
 
@@ -145,9 +138,9 @@ double picard_step(PicardRow *c, double height, const PicardMatrices *m, PicardS
     product(c, m->d2, one);
     place_modes(&s->ee, one, 0);
     PicardField *all[] = {&s->t, &s->tt, &s->e, &s->te, &s->ee};
-    for (int k = 0; k < 5; k++) to_columns(all[k], unit);
+    for (int k = 0; k < 5; k++) transform(all[k], unit, 0);
     residual(s, height);
-    to_modes(&s->residual, unit);
+    transform(&s->residual, unit, 1);
     for (int mode = 0; mode < COUNT; mode++)
         for (int l = 0; l < LEVELS; l++) {
             one[mode][l] = s->residual.re[place(mode)][l];
@@ -159,7 +152,7 @@ double picard_step(PicardRow *c, double height, const PicardMatrices *m, PicardS
     for (int r = 0; r < 2 * COUNT; r++)
         for (int l = 0; l < LEVELS; l++) c[r][l] -= one[r][l];
     place_modes(&s->t, one, 0);
-    to_columns(&s->t, unit);
+    transform(&s->t, unit, 0);
     double largest = 0.0, all_squares = 0.0;
     const double *re = s->t.re[0], *im = s->t.im[0];
     for (int l = 0; l < COLUMNS * LEVELS; l++) {

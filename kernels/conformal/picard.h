@@ -12,7 +12,8 @@ typedef double PicardRow[PICARD_LEVELS];
 /* Real and imaginary parts, a row of levels for each mode or column. */
 typedef struct { PicardRow re[PICARD_COLUMNS], im[PICARD_COLUMNS]; } PicardField;
 
-/* Matrices are transposed: a row of levels times one of them. The eigenvectors have zeros for the two walls. */
+/* Matrices are transposed, a row of levels times one of them: first and second derivative, the inverse of the
+   eigenvectors of the latter, and these, with zeros for the two walls. */
 typedef struct {
     const PicardRow *d1, *d2, *inverse, *vectors;
     const double *eigenvalues, *smooth; /* (PICARD_LEVELS,), (PICARD_COUNT,) */

@@ -1,6 +1,5 @@
 /* Zebra line relaxation along eta and along xi, both colours in one pass over memory. */
 #pragma once
-#include "control.h"
 #include "stencil.h"
 #include <string.h>
 

@@ -117,16 +117,15 @@ MESHONET_INLINE void mix(float *restrict a, float *restrict b, ptrdiff_t n)
 /* Rows times the modes of both halves, or back. */
 static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t rows, int back, float *packed)
 {
-    const Half *e = &t->even, *o = &t->odd;
     const ptrdiff_t nodes = values_of(t), modes = modes_of(t);
-    if (back) {
-        product(w, modes, e->q_t, padded(e->nodes), to, nodes, rows, e->modes, e->nodes, packed);
-        product(w + padded(e->modes), modes, o->q_t, padded(o->nodes), to + padded(e->nodes), nodes, rows, o->modes,
-                o->nodes, packed);
-    } else {
-        product(w, nodes, e->q, padded(e->modes), to, modes, rows, e->nodes, e->modes, packed);
-        product(w + padded(e->nodes), nodes, o->q, padded(o->modes), to + padded(e->modes), modes, rows, o->nodes,
-                o->modes, packed);
+    for (int odd = 0; odd < 2; odd++) {
+        const Half *h = odd ? &t->odd : &t->even;
+        const ptrdiff_t n = padded(h->nodes), m = padded(h->modes);
+        if (back)
+            product(w, modes, h->q_t, n, to, nodes, rows, h->modes, h->nodes, packed);
+        else
+            product(w, nodes, h->q, m, to, modes, rows, h->nodes, h->modes, packed);
+        w += back ? m : n, to += back ? n : m;
     }
 }
 

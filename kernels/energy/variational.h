@@ -39,7 +39,7 @@ typedef struct {
     float *column;
 } Band;
 
-/* Moves of inner nodes of a coarse grid, SPACE along a direction at the most; see coarse_space.h. */
+/* Moves of inner nodes of a coarse grid, SPACE along a direction at the most; see frame.h. */
 #define SPACE 16
 typedef struct {
     Band band;       /* the factor; no nodes: none of this */

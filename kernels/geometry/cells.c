@@ -70,25 +70,19 @@ static ptrdiff_t cells_folded_in_row(const double *restrict x, const double *res
     return cells - (ptrdiff_t)good;
 }
 
-/* Indices (i, j) of the folded cells into pairs, `room` pairs at most; returns how many there are. */
-ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
+ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
 {
-    ptrdiff_t found = 0;
-    for (ptrdiff_t i = 0; i + 1 < ni; ++i) {
-        const double *xi = x + i * nj, *yi = y + i * nj;
-        ptrdiff_t left = cells_folded_in_row(xi, yi, nj, nj - 1);
-        for (ptrdiff_t j = 0; left > 0 && j + 1 < nj; ++j) {
-            if (!cells_folded_in_row(xi + j, yi + j, nj, 1))
-                continue;
-            if (found < room) {
-                pairs[2 * found] = i;
-                pairs[2 * found + 1] = j;
+    ptrdiff_t folded = 0;
+    for (ptrdiff_t i = 0; i + 1 < ni; ++i, x += nj, y += nj) {
+        const ptrdiff_t all = folded + cells_folded_in_row(x, y, nj, nj - 1);
+        for (ptrdiff_t j = 0; folded < all && folded < room && j + 1 < nj; ++j)
+            if (cells_folded_in_row(x + j, y + j, nj, 1)) {
+                pairs[2 * folded] = i;
+                pairs[2 * folded++ + 1] = j;
             }
-            ++found;
-            --left;
-        }
+        folded = all;
     }
-    return found;
+    return folded;
 }
 
 /* Magnitudes of the areas of one row of cells into area[1 ... nj-1]; area[0] and area[nj] repeat their neighbours. */
@@ -314,12 +308,4 @@ void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, con
     }
     for (ptrdiff_t k = 0; k < METRICS; ++k)
         run->summary[3 * k + 1] /= (double)((ni - 1) * cells);
-}
-
-ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj)
-{
-    ptrdiff_t folded = 0;
-    for (ptrdiff_t i = 0; i + 1 < ni; ++i)
-        folded += cells_folded_in_row(x + i * nj, y + i * nj, nj, nj - 1);
-    return folded;
 }

@@ -5,11 +5,8 @@
 
 enum { MAX_ANGLE, MIN_ANGLE, SKEWNESS, SCALED_JACOBIAN, ASPECT_RATIO, ORTHOGONALITY, AREA_RATIO, METRICS };
 
-/* How many cells have a corner Jacobian that is not positive. */
-ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj);
-
-/* Their indices (i, j) in order, `room` pairs at the most; returns how many there are. */
-ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room);
+/* How many cells have a corner Jacobian that is not positive; the indices (i, j) of the first `room` go into pairs. */
+ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room);
 
 /* What one run over all cells takes and leaves. */
 typedef struct {

@@ -8,11 +8,7 @@
 #define MESHONET_CLONES
 #endif
 
-#if defined(__GNUC__)
 #define MESHONET_INLINE static inline __attribute__((always_inline))
-#else
-#define MESHONET_INLINE static inline
-#endif
 
 /* Before a loop whose rounds do not depend on each other: GCC loses `restrict` in inlined functions. */
 #if defined(__GNUC__) && !defined(__clang__)

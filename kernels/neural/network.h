@@ -10,8 +10,8 @@ typedef struct {
 
 /* One layer of a network on arrays of T, float when `single` and else double.
 
-   CONVOLVE: x (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or
-   as out (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs).
+   CONVOLVE: x (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), taps along xi slowest,
+   bias likewise, add NULL or as out (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs).
    ACTIVATE, REFINE: see layers_of_type.h; c.size is the padding. */
 enum { CONVOLVE, ACTIVATE, REFINE };
 typedef struct {

@@ -6,7 +6,7 @@
 
 On a straight line φ = -(ln |x_ξ|)_ξ. A control function is kept as the logarithm l of the ratio of
 neighbouring steps, and as a sum of products of a function of ξ and one of η: it takes no memory on the grid,
-coarser levels get it by leaving nodes out, and the scheme (φ = -(2/h) tanh(h l/2), see ``control.h``) is
+coarser levels get it by leaving nodes out, and the scheme (φ = -(2/h) tanh(h l/2), see ``stencil.h``) is
 exact for geometric growth on every level.
 """
 

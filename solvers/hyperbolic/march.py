@@ -24,7 +24,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
-from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch, redistribute
+from meshonet.kernels._native import hyperbolic_march, redistribute
 from meshonet.solvers.hyperbolic.front import Front
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
 from meshonet.solvers.hyperbolic.march_distance import distance_to_march
@@ -153,7 +153,6 @@ def _marched(
     n = len(start)
     levels = np.empty((2, cells + 1, n))
     levels[:, 0] = start.T
-    scratch = np.empty(hyperbolic_scratch(n))
     knobs = (
         settings.dissipation,
         settings.even,
@@ -168,7 +167,7 @@ def _marched(
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        hyperbolic_march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
+        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
@@ -191,7 +190,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
     if rows > 2:
-        redistribute(nodes[..., 0], nodes[..., 1], heights, fade, np.empty(5 * rows))
+        redistribute(nodes[..., 0], nodes[..., 1], heights, fade)
 
 
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:

@@ -114,10 +114,9 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
         count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1
     out = planar_nodes(ni, count)
     planar = as_planar(nodes)
-    scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
     planes = planar[..., 0], planar[..., 1], out[..., 0], out[..., 1]
-    ratio = layer_lines(*planes, *ends, heights.constant, scratch)
+    ratio = layer_lines(*planes, *ends, heights.constant)
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.periodic:
         out[-1] = out[0]
@@ -204,7 +203,7 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
         fade = (away == 0.0).astype(np.float64)
     else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
         fade = np.exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
-    redistribute(*planes, np.full(len(view), height), fade, np.empty(5 * count))
+    redistribute(*planes, np.full(len(view), height), fade)
     view[..., 0], view[..., 1] = planes
 
 
