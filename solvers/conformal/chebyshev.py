@@ -27,8 +27,6 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 
     Exact at the nodes themselves: a column there has one 1.
 
-    Examples
-    --------
     >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
     """

@@ -36,12 +36,8 @@ class Panel:
 def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> list[Panel]:
     """Return the panels that cover levels `first` to `last` of `eta`, where they save evaluations.
 
-    Parameters
-    ----------
-    eta : (nj,) rising from 0 at the wall to 1.
-    height : psi from wall to far field.
-    spread : how much psi varies along the wall.
-    first, last : levels outside ``[first, last)`` are left out.
+    `eta`: (nj,) rising from 0 at the wall to 1; `height`: psi from wall to far field; `spread`: how much psi
+    varies along the wall; `first`, `last`: levels outside ``[first, last)`` are left out.
 
     Returns
     -------

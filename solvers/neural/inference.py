@@ -41,6 +41,9 @@ def infer_many(
 ) -> list[Solution]:
     """Return a grid inside each boundary by a shipped model, or by one that `meshonet train` made.
 
+    Raises InputError: a model that does not exist, cannot be read or does not suit a boundary; no such
+    device.
+
     Parameters
     ----------
     model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for what measures
@@ -58,11 +61,6 @@ def infer_many(
         of a solution for each boundary. Polished until nothing changes, O grids are the same without the
         network, in less time. What the conformal solver cannot take goes to the operator for bodies if no
         model is named, else to the elliptic solver, and the solution says so.
-
-    Raises
-    ------
-    InputError
-        a model that does not exist, cannot be read or does not suit a boundary; no such device.
     """
     operator = None if model is None else load(model)
     plain = polish == "auto" and device is None

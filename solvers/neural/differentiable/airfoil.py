@@ -31,23 +31,15 @@ from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.strip.encoding import decode, encode
 from meshonet.solvers.neural.strip.operator import StripOperator
 
-CLOSED = 1e-2
-"""What is left of an angle's difference (radians) where a corner counts as halved."""
+CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
 
 
 class AirfoilGrids:
     """The airfoil operator as a differentiable function.
 
-    Parameters
-    ----------
-    model : a strip operator, its name or path, or ``base`` for the harmonic base with no network.
-    polish : Picard steps after it.
-    device : torch's name of where to compute; the lifts of the bodies are computed there too.
-
-    Raises
-    ------
-    InputError
-        no such model, or one that cannot be read or is of another kind.
+    `model`: a strip operator, its name or path, or ``base`` for the harmonic base with no network; `polish`:
+    Picard steps after it; `device`: torch's name of where to compute; the lifts of the bodies are computed
+    there too. Raises InputError: no such model, or one that cannot be read or is of another kind.
     """
 
     def __init__(self, model: str | Operator = "airfoil-o", polish: int = 2, device: str = "cpu") -> None:
@@ -61,16 +53,9 @@ class AirfoilGrids:
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
 
-        Parameters
-        ----------
-        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from the
-            trailing edge, the last one the first.
-        nj : nodes from wall to far field.
-
-        Raises
-        ------
-        InputError
-            a body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
+        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from
+        the trailing edge, the last one the first; `nj`: nodes from wall to far field. Raises InputError: a
+        body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
         """
         check_sides(torch.float64, 4, south=south, north=north)
         check_levels(nj)
@@ -110,10 +95,7 @@ class _Correction:
         self._scale = operator.scale
 
     def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
-        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative.
-
-        A body that is its own mirror image (0) has the mean of both, whose slopes are symmetric too.
-        """
+        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative."""
         flip, even = (hand < 0)[:, None], hand == 0
         answer = self._answer(*(torch.where(flip, side.conj(), side) for side in (wall, far)))
         answer = torch.where(flip[..., None], answer.conj(), answer)
@@ -169,10 +151,7 @@ def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
 
 
 def _nudge(body: TorchWalls, c: Tensor, first: Tensor, nj: int) -> Tensor:
-    """Return what is added to phi (n, nj), so that the first lines off the corners halve their angles.
-
-    The shifts are those that `bisector` finds; their slopes are those of the equations they solve.
-    """
+    """Return what is added to phi (n, nj), so that the first lines off the corners halve their angles."""
     n, corners = len(first), list(body.corners)
     eta = np.linspace(0.0, 1.0, nj)
     if not corners or nj < 4:

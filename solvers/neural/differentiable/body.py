@@ -37,17 +37,10 @@ class BodyGrids(NetworkGrids):
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
 
-        Parameters
-        ----------
-        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one the
-            first.
-        nj : nodes from wall to far field.
-
-        Raises
-        ------
-        InputError
-            tensors of other shapes, or of another dtype than the network's; fewer than 2 nodes away; walls
-            that do not go once round a middle of the body.
+        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one
+        the first; `nj`: nodes from wall to far field. Raises InputError: tensors of other shapes, or of
+        another dtype than the network's; fewer than 2 nodes away; walls that do not go once round a middle of
+        the body.
         """
         check_sides(self._dtype, 4, south=south, north=north)
         check_levels(nj)

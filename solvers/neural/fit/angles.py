@@ -7,14 +7,9 @@ import math
 import torch
 from torch import Tensor
 
-NARROW, WIDE = math.radians(2.0), math.radians(172.0)
-"""Angles beyond which a cell is taken to begin to fold."""
-
-SLIGHT = 0.05
-"""Radians beyond: with less, a cell counts in proportion, with more, by its logarithm."""
-
-TINY = 1e-20
-"""Area added where an edge is a point, so that its angle has a derivative."""
+NARROW, WIDE = math.radians(2.0), math.radians(172.0)  # angles beyond which a cell is taken to begin to fold
+SLIGHT = 0.05  # radians beyond: with less, a cell counts in proportion, with more, by its logarithm
+TINY = 1e-20  # area added where an edge is a point, so that its angle has a derivative
 
 
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:

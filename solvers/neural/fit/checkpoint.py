@@ -23,10 +23,7 @@ def beside(output: Path) -> Path:
 def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
     """Replace the checkpoint at `path`; a machine that stops in between leaves the last one.
 
-    Raises
-    ------
-    SolverError
-        a weight is not finite: the last checkpoint stays.
+    Raises SolverError: a weight is not finite: the last checkpoint stays.
     """
     for name, value in state["task"].items():
         if not torch.isfinite(value).all():
@@ -45,10 +42,7 @@ def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
 def load_checkpoint(path: Path, facts: Mapping[str, Any]) -> dict[str, Any] | None:
     """Return the state that was saved, None when there is no file.
 
-    Raises
-    ------
-    InputError
-        a file that is no checkpoint, or one of another model or of a run with other settings.
+    Raises InputError: a file that is no checkpoint, or one of another model or of a run with other settings.
     """
     if not path.exists():
         return None

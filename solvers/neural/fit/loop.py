@@ -65,19 +65,11 @@ def fit(
     """Train `task` in place and return the epoch whose weights it has.
 
     A checkpoint stands at `checkpoint` after every `plan.checkpoint_every` epochs; `resume` starts from it.
-    With `plan.patience` the weights are those of the least held-out loss.
-
-    Parameters
-    ----------
-    facts : what a checkpoint must have in common with this run; ``model`` among them.
-    report : told every `plan.log_every` epochs and at the end.
-
-    Raises
-    ------
-    InputError
-        a checkpoint of another model or of other settings; patience, and no shapes held out.
-    SolverError
-        a loss or a weight that is not finite, not enough memory; the last checkpoint stays.
+    With `plan.patience` the weights are those of the least held-out loss. `facts`: what a checkpoint must
+    have in common with this run; ``model`` among them; `report`: told every `plan.log_every` epochs and at
+    the end. Raises InputError: a checkpoint of another model or of other settings; patience, and no shapes
+    held out. Raises SolverError: a loss or a weight that is not finite, not enough memory; the last
+    checkpoint stays.
     """
     optimiser = _optimiser(task, plan)
     state = _State()

@@ -25,17 +25,10 @@ from meshonet.solvers.neural.samples import Samples
 class ModelTask(Task):
     """A model on solved grids.
 
-    Parameters
-    ----------
-    model : what is trained.
-    training : its shapes.
-    targets : (n, ni, nj, 2) what the network is to answer for them.
-    points : places drawn for a step, inside and on the boundary; None takes all.
-    seed : of the first weights and of the places.
-
-    Attributes
-    ----------
-    samples : on which `figures` judges the trained model, by their splits; at first those of training.
+    `model`: what is trained; `training`: its shapes; `targets`: (n, ni, nj, 2) what the network is to answer
+    for them; `points`: places drawn for a step, inside and on the boundary; None takes all; `seed`: of the
+    first weights and of the places. `samples`: on which `figures` judges the trained model, by their splits;
+    at first those of training.
     """
 
     def __init__(

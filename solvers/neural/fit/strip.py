@@ -44,11 +44,7 @@ class Sizes:
 class StripTask(Task):
     """The strip network on solved strips and their mirror images, small answers weighted up.
 
-    Parameters
-    ----------
-    training, held_out : strips.
-    sizes : of the network.
-    device : to compute on.
+    `training`, `held_out`: strips; `sizes`: of the network; `device`: to compute on.
     """
 
     parts: ClassVar[tuple[str, ...]] = ("difference",)
@@ -122,10 +118,7 @@ def run(
 ) -> Run:
     """Return what `train` needs; the last `held_out` strips are never trained on.
 
-    Raises
-    ------
-    InputError
-        fewer strips than one batch beside those held out.
+    Raises InputError: fewer strips than one batch beside those held out.
     """
     sizes, kept = sizes or Sizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)

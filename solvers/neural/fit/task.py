@@ -14,10 +14,7 @@ from torch import Tensor, nn
 class Task(nn.Module):
     """A model with its training set; parameters and data are on one device.
 
-    Attributes
-    ----------
-    count : training shapes.
-    parts : names of the parts of the loss.
+    `count`: training shapes; `parts`: names of the parts of the loss.
     """
 
     count: int

@@ -41,12 +41,9 @@ from meshonet.solvers.neural.samples import Samples
 class MeshONet(Architecture):
     """Dual branch, shared trunk.
 
-    Parameters
-    ----------
-    hidden : widths of a branch's hidden layers (Adjust Layer).
-    features : of branch and trunk, k in the paper.
-    depth : layers of the trunk, each `features` wide.
-    powers : of xi and eta in the Lift-Layer, q in the paper.
+    `hidden`: widths of a branch's hidden layers (Adjust Layer); `features`: of branch and trunk, k in the
+    paper; `depth`: layers of the trunk, each `features` wide; `powers`: of xi and eta in the Lift-Layer, q in
+    the paper.
     """
 
     interior: ClassVar[float] = 900.0
@@ -79,11 +76,8 @@ class MeshONet(Architecture):
 class DeepONet(Architecture):
     """One branch, one trunk, features in halves.
 
-    Parameters
-    ----------
-    hidden : widths of a branch's hidden layers.
-    features : of each coordinate.
-    width, depth : of the trunk's hidden layers.
+    `hidden`: widths of a branch's hidden layers; `features`: of each coordinate; `width`, `depth`: of the
+    trunk's hidden layers.
     """
 
     hidden: tuple[int, ...] = (64, 128, 64)
@@ -127,10 +121,8 @@ class MIONet(DeepONet):
 class PODDeepONet(Architecture):
     """A branch that answers coefficients of fixed modes.
 
-    Parameters
-    ----------
-    hidden : widths of the branch's hidden layers.
-    features : modes; fewer where the training set has fewer grids.
+    `hidden`: widths of the branch's hidden layers; `features`: modes; fewer where the training set has fewer
+    grids.
     """
 
     hidden: tuple[int, ...] = (64, 128, 64)

@@ -28,20 +28,16 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 
-SIDE = 5
-"""Nodes of west and of east that FNO1D sees."""
+SIDE = 5  # nodes of west and of east that FNO1D sees
 
 
 @dataclass(frozen=True)
 class Fourier(Architecture):
     """The settings and layers of both.
 
-    Parameters
-    ----------
-    width : channels of the hidden state.
-    modes : that are mixed, in each direction (of eta positive and negative ones).
-    layers : Fourier layers.
-    padding : nodes of zeros before the transform, in each direction.
+    `width`: channels of the hidden state; `modes`: that are mixed, in each direction (of eta positive and
+    negative ones); `layers`: Fourier layers; `padding`: nodes of zeros before the transform, in each
+    direction.
     """
 
     width: int = 48
@@ -117,10 +113,7 @@ class FNO2D(Fourier):
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of what is trained.
 
-        Raises
-        ------
-        InputError
-            more modes than the grids have.
+        Raises InputError: more modes than the grids have.
         """
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
@@ -161,10 +154,10 @@ class FNO2D(Fourier):
 
 @cache
 def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Floats, Floats]:
-    """Return the matrices of discrete Fourier transforms of n nodes and `padding` zeros, lowest modes only.
+    """Return the matrices of Fourier transforms of n nodes and `padding` zeros, lowest modes only.
 
-    Along xi (ni, 2 modes), complex, its modes from 0 up and from -`modes` up; across it (2 modes, nj), the
-    real and the imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
+    Along xi (ni, 2 modes), complex, from 0 up and from -`modes` up; across it (2 modes, nj), real and imaginary
+    part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
     """
     m, k = ni + padding, np.concatenate([np.arange(modes), np.arange(-modes, 0)])
     along = np.exp(-2j * np.pi / m * np.outer(np.arange(ni), k))

@@ -121,10 +121,7 @@ class MeshONetHard(Architecture):
 
 
 def _modes(targets: Floats, count: int) -> Floats:
-    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them.
-
-    The first is of mean square 1; those that n grids do not have are zero.
-    """
+    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them."""
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
     largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])

@@ -27,8 +27,7 @@ from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense
 from meshonet.solvers.neural.models.sensors import sensors
 from meshonet.solvers.neural.samples import Samples
 
-SAME = 1e-4
-"""Largest distance of a sensor, over the geometry's size, at which two geometries are one."""
+SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which two geometries are one
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,7 @@ GATE = 0.3
 class StripNetwork:
     """The network of one set of weights, its arrays laid out once for the products below.
 
-    Parameters
-    ----------
-    weights : arrays by torch's names.
+    `weights`: arrays by torch's names.
     """
 
     def __init__(self, weights: Mapping[str, Floats]) -> None:
