@@ -20,8 +20,8 @@ from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.kernels._native import strip_rows
+from meshonet.solvers.conformal.chebyshev import NODES, panels
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
-from meshonet.solvers.conformal.panels import NODES, panels
 from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)

@@ -53,13 +53,8 @@ def _rectangle(b: Boundary) -> Floats:
         n, rows = len(side), into.shape[1]
         k = np.arange(1, n - 1)
         sines = np.sin(np.pi * np.outer(np.arange(n), k) / (n - 1))
-        _add(
-            into,
-            sines,
-            2.0 / (n - 1) * (sines.T @ (side - start)),
-            np.asarray(np.pi * ratio * k, float),
-            rows,
-        )
+        b_k = 2.0 / (n - 1) * (sines.T @ (side - start))
+        _add(into, sines, b_k, np.asarray(np.pi * ratio * k, float), rows)
     return nodes
 
 

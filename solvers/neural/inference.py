@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal import solve as conformal
@@ -129,3 +131,27 @@ def _refuse(**parameters: object) -> None:
                 f"{{{name}}} {value} is of no use to a c grid: it is marched, no model makes it",
                 f"drop {{{name}}}",
             )
+
+
+@dataclass(frozen=True)
+class Operator:
+    """A neural operator; its settings are those of `infer_many`."""
+
+    model: str | None = None
+    polish: Polish = "auto"
+    answer: Answer = "valid"
+    device: Device | None = None
+    name = "operator"
+
+    @cached_property
+    def together(self) -> Topology | None:
+        """The topology of boundaries that go through the network in one pass; None if none do."""
+        return many_of(self.model, self.device, self.polish)
+
+    def solve(
+        self,
+        problems: Sequence[Boundary],
+        start: Sequence[Grid] | None = None,  # noqa: ARG002 - networks start from nothing
+    ) -> list[Solution]:
+        """Return a solution for each of the boundaries, by one pass of the network where it can."""
+        return infer_many(problems, self.model, self.polish, self.answer, self.device)

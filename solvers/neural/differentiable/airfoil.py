@@ -10,19 +10,10 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
-from meshonet.solvers.conformal.strip import (
-    MODES,
-    across,
-    from_columns,
-    harmonic,
-    interpolation,
-    modes,
-    smoothing,
-    to_columns,
-    wavenumbers,
-)
+from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
 from meshonet.solvers.neural.differentiable.sides import as_numpy, check_levels, check_sides
 from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
@@ -62,8 +53,8 @@ class AirfoilGrids:
         edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
         bodies = [torch_walls(z, far) for z, far in zip(*edges, strict=True)]
         wall, far = (torch.stack([getattr(body, name) for body in bodies]) for name in ("wall", "far"))
-        a, b = modes(wall, torch), modes(far, torch)
-        c = harmonic(a, b, across().eta, torch)
+        a, b = strip.modes(wall, torch), strip.modes(far, torch)
+        c = strip.harmonic(a, b, across().eta, torch)
         if self._correction is not None:
             c = c + self._correction(a, b, torch.tensor([body.hand for body in bodies], device=self._device))
         for _ in range(self._polish):
@@ -123,12 +114,12 @@ def _picard(c: Tensor) -> Tensor:
     smooth = torch.tensor(smoothing(), device=c.device) / stiffness
     ce = d1 @ levels
     parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
-    Wt, Wtt, We, Wte, Wee = (to_columns(part, torch)[:, 1:-1] for part in parts)
+    Wt, Wtt, We, Wte, Wee = (strip.to_columns(part, torch)[:, 1:-1] for part in parts)
     Wt = Wt + 1j
     alpha, gamma = torch.abs(We) ** 2, torch.abs(Wt) ** 2
     beta = (torch.conj(Wt) * We).real
     residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
-    update = vectors @ ((inverse @ from_columns(residual, torch)) * smooth)
+    update = vectors @ ((inverse @ strip.from_columns(residual, torch)) * smooth)
     return (levels - torch.nn.functional.pad(update, (0, 0, 1, 1))).mT
 
 
@@ -136,7 +127,7 @@ def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
     """Return F (batch, n, nj) at the nodes by all modes of the walls; those above `MODES` stay at theirs."""
     n, eta = wall.shape[1], np.linspace(0.0, 1.0, nj)
     theta = _theta(n, wall)[:, None]
-    low = c @ torch.as_tensor(interpolation(eta), device=c.device).to(c.dtype)
+    low = c @ torch.as_tensor(strip.interpolation(eta), device=c.device).to(c.dtype)
     F = torch.exp(1j * theta * wavenumbers(wall, torch)) @ low
     beyond = np.arange(MODES + 1, n // 2 + 1)
     if not len(beyond):

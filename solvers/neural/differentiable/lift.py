@@ -77,8 +77,7 @@ def _straightened(
     ends = [(i, 1.0 + turn[i] / PI) for i in base]
     if sharp:
         ends = [(0, 0.5 * (1.0 + turn[0] / PI))]
-    removed = []
-    pole = middles(zeta[None], torch)[0]
+    removed, pole = [], middles(zeta[None], torch)[0]
     for i, k in ends:
         if removable(float(k.detach())):
             p = zeta[i]

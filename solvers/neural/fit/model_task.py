@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.loop import Task
 from meshonet.solvers.neural.model_file import PAPER, write_model
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Arrays, initial

@@ -14,10 +14,10 @@ from torch.nn.functional import mse_loss
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.harmonic import extend
+from meshonet.solvers.neural.fit.loop import Run
 from meshonet.solvers.neural.fit.model_task import ModelTask, tensor, tensors
 from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.architecture import Architecture
 from meshonet.solvers.neural.models.mgnet import MGNet
@@ -118,7 +118,6 @@ def differences(model: Architecture, samples: Samples) -> Floats:
 
 
 def _by_place(nodes: Floats) -> Floats:
-    """Return nodes (n, ni, nj, 2) as (ni nj, n, 2)."""
     return nodes.reshape(len(nodes), -1, 2).swapaxes(0, 1)
 
 

@@ -15,11 +15,10 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes, Floats, Topology
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
-from meshonet.solvers.neural.fit.angles import excess
+from meshonet.solvers.neural.fit.loop import Run, Task
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.quad_figures import held_out_figures
+from meshonet.solvers.neural.fit.quad_figures import excess, held_out_figures
 from meshonet.solvers.neural.fit.quad_grids import Quads
-from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import QUAD, write_model
 from meshonet.solvers.neural.operator import Operator

@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.loop import Progress, Run, beside, fit
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.registry import ARCHITECTURES, MODELS
 

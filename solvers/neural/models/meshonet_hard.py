@@ -63,11 +63,9 @@ class MeshONetHard(Architecture):
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: modes do."""
         return self.modes > 0
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branch = dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * (self.modes or self.features)))
         if self.modes:
             return branch
@@ -95,7 +93,6 @@ class MeshONetHard(Architecture):
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) less the base."""
         seen = inputs["sensors"]
         if self.within:
             seen = xp.clip(seen, w["fixed/least"], w["fixed/most"])
