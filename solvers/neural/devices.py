@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 Device = Literal["cpu", "cuda"]
 
-STEPS = 3
-"""Picard steps of "auto" after the strip network."""
+STEPS = 3  # Picard steps of "auto" after the strip network
 
 
 def solve_on(
@@ -35,15 +34,9 @@ def solve_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary, those of equal size computed together.
 
-    Parameters
-    ----------
-    polish : Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take none.
-    instead : solves a boundary that cannot be solved on the device.
-
-    Raises
-    ------
-    InputError
-        torch or the device is not there; boundaries or polish that do not suit the operator.
+    `polish`: Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take none;
+    `instead`: solves a boundary that cannot be solved on the device. Raises InputError: torch or the device
+    is not there; boundaries or polish that do not suit the operator.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")

@@ -19,13 +19,9 @@ from meshonet.geometry.errors import InputError
 class Samples:
     """n solved grids.
 
-    Parameters
-    ----------
-    nodes : (n, ni, nj, 2), any unit of length.
-    topology : ``quad`` or ``o``.
-    names : (n,) of the shapes.
-    splits : (n,) ``train``, ``test`` or nothing.
-    parameters : (n,) of their family, NaN where there is none.
+    `nodes`: (n, ni, nj, 2), any unit of length; `topology`: ``quad`` or ``o``; `names`: (n,) of the shapes;
+    `splits`: (n,) ``train``, ``test`` or nothing; `parameters`: (n,) of their family, NaN where there is
+    none.
     """
 
     nodes: Floats
@@ -76,10 +72,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 def gathered(grids: Iterable[Grid]) -> Samples:
     """Return grids as samples.
 
-    Raises
-    ------
-    InputError
-        no grid, one of another size or topology than the first, a C grid.
+    Raises InputError: no grid, one of another size or topology than the first, a C grid.
     """
     rows: list[Floats] = []
     facts: list[tuple[str, str, float]] = []

@@ -23,10 +23,7 @@ from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 class GroupConvolution(nn.Module):
     """A convolution of `into` sets of channels to `out`, zero outside the grid.
 
-    Parameters
-    ----------
-    gain : of the random weights at the start, over He's.
-    around : the grid goes round along xi.
+    `gain`: of the random weights at the start, over He's; `around`: the grid goes round along xi.
     """
 
     places: Tensor

@@ -21,9 +21,7 @@ SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}
 def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:
     """Raise InputError unless opposite sides are (batch, n, 2) alike, of `dtype`, n at least `least`.
 
-    Parameters
-    ----------
-    sides : by name, each beside the one it is opposite to.
+    `sides`: by name, each beside the one it is opposite to.
     """
     names = list(sides)
     for name, side in sides.items():
@@ -50,16 +48,9 @@ def check_levels(nj: int) -> None:
 class NetworkGrids:
     """An operator of the quad network as a differentiable function.
 
-    Parameters
-    ----------
-    model : name of a shipped operator, the path of a file, or such an operator itself.
-    device : torch's name of where to compute.
-    dtype : torch's type of the arithmetic.
-
-    Raises
-    ------
-    InputError
-        no such model, or one that cannot be read or makes grids of another topology.
+    `model`: name of a shipped operator, the path of a file, or such an operator itself; `device`: torch's
+    name of where to compute; `dtype`: torch's type of the arithmetic. Raises InputError: no such model, or
+    one that cannot be read or makes grids of another topology.
     """
 
     topology: ClassVar[Topology]

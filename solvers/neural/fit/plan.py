@@ -57,10 +57,7 @@ class Plan:
     def kept(self, count: int, held_out: int, what: str) -> int:
         """Return how many of the `count` shapes, called `what`, are trained on beside those held out.
 
-        Raises
-        ------
-        InputError
-            none held out, or fewer than one batch to train on.
+        Raises InputError: none held out, or fewer than one batch to train on.
         """
         if held_out < 1 or count < held_out + self.batch:
             needed = max(held_out, 1) + self.batch

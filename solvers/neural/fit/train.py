@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.loop import Progress, Run, beside, fit
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.registry import ARCHITECTURES, MODELS
 
@@ -31,6 +29,9 @@ def train(
 ) -> dict[str, Any]:
     """Fit a model, write it to `output` with its recipe and held-out figures, and return the figures.
 
+    Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
+    that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
+
     Parameters
     ----------
     model : one of `registry.MODELS`.
@@ -41,14 +42,6 @@ def train(
     resume : go on from the checkpoint beside `output`, if there is one.
     report : called every `plan.log_every` epochs and at the end.
     choices : of the model: what the function ``run`` of its module in `fit` takes.
-
-    Raises
-    ------
-    InputError
-        no such model; too few shapes; a checkpoint of another model, data or settings; choices that do not
-        suit the model.
-    SolverError
-        as `meshonet.solvers.neural.fit.loop.fit`.
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out

@@ -29,9 +29,7 @@ class Frame:
 class Architecture:
     """An operator from boundaries to grids; its fields are its settings, kept in the header of its file.
 
-    Parameters
-    ----------
-    sensors : points of the boundary that the branches read, m in the paper.
+    `sensors`: points of the boundary that the branches read, m in the paper.
 
     Attributes
     ----------
@@ -80,12 +78,8 @@ class Architecture:
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) less the base.
 
-        Parameters
-        ----------
-        xp : numpy or torch.
-        w : trained and fixed arrays by name.
-        inputs : of `encode`.
-        places : what `seen` returned of p places (xi, eta).
-        index : (p,) their numbers among the nodes of the training grids; only native models use it.
+        `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: of `encode`; `places`: what
+        `seen` returned of p places (xi, eta); `index`: (p,) their numbers among the nodes of the training
+        grids; only native models use it.
         """
         raise NotImplementedError

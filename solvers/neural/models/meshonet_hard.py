@@ -63,11 +63,9 @@ class MeshONetHard(Architecture):
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: modes do."""
         return self.modes > 0
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branch = dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * (self.modes or self.features)))
         if self.modes:
             return branch
@@ -95,7 +93,6 @@ class MeshONetHard(Architecture):
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) less the base."""
         seen = inputs["sensors"]
         if self.within:
             seen = xp.clip(seen, w["fixed/least"], w["fixed/most"])
@@ -121,10 +118,7 @@ class MeshONetHard(Architecture):
 
 
 def _modes(targets: Floats, count: int) -> Floats:
-    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them.
-
-    The first is of mean square 1; those that n grids do not have are zero.
-    """
+    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them."""
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
     largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])

@@ -27,8 +27,7 @@ from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense
 from meshonet.solvers.neural.models.sensors import sensors
 from meshonet.solvers.neural.samples import Samples
 
-SAME = 1e-4
-"""Largest distance of a sensor, over the geometry's size, at which two geometries are one."""
+SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which two geometries are one
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,6 @@ class MGNet(Architecture):
     periodic: bool = False
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         sizes = (3 if self.periodic else 2, *[self.width] * self.depth, 2)
         return dense_shapes("net", sizes, stacked=frame.count)
 
@@ -72,7 +70,6 @@ class MGNet(Architecture):
         return {"fixed/sensors": seen, "fixed/centre": centre, "fixed/size": size[:, None]}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         which = self.which(w, inputs["sensors"])
         net = {key: value[which] for key, value in w.items()}
         scaled = dense(xp, net, "net", self.features(xp, places)[None])

@@ -24,8 +24,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 
-STEP = 2.0**-30
-"""Of the rounding, over the size of the edges up to the next power of two."""
+STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next power of two
 
 LEAST = 0.1
 """Mean side along xi, over the size, that is long enough to tell a direction; else a diagonal does."""
@@ -40,13 +39,9 @@ IDENTITY: Element = (False, False, False)
 class Canonical:
     """A boundary and what it is in its canonical frame.
 
-    Parameters
-    ----------
-    original : the boundary.
-    boundary : the same in the frame, its edges rounded and relabelled.
-    element : the relabelling.
-    origin, unit : a point u there is ``origin + unit u`` here, its conjugate if the element mirrors.
-    symmetric : an O boundary that is its own mirror image.
+    `original`: the boundary; `boundary`: the same in the frame, its edges rounded and relabelled; `element`:
+    the relabelling; `origin`, `unit`: a point u there is ``origin + unit u`` here, its conjugate if the
+    element mirrors; `symmetric`: an O boundary that is its own mirror image.
     """
 
     original: Boundary

@@ -31,11 +31,8 @@ SHARES = (0.95, 0.9, 0.8)
 def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
 
-    Winslow's have up to 65 along a direction, where the edges have as many.
-
-    Parameters
-    ----------
-    head : index into `encoding.HEADS`.
+    Winslow's have up to 65 along a direction, where the edges have as many. `head`: index into
+    `encoding.HEADS`.
     """
     base = _begun(edges)
     room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)

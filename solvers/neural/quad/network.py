@@ -32,24 +32,19 @@ from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 Reals: TypeAlias = NDArray[Any]
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
-CHUNK = 16
-"""Domains that go through a layer together: their fields stay in the cache, and so do its weights."""
+CHUNK = 16  # domains that go through a layer together: their fields stay in the cache, and so do its weights
 
 MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8
 """Of networks that are read; five levels are 33, 17, 9, 5 and 3 nodes."""
 
-LINE = 64
-"""Bytes that a row of weights is rounded up to."""
+LINE = 64  # bytes that a row of weights is rounded up to
 
 
 def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
     """Return the names and shapes of the weights of a network.
 
-    Parameters
-    ----------
-    widths : sets of eight channels on each level, the finest first.
-    blocks : residual blocks on each.
-    heads : displacement fields that it answers with.
+    `widths`: sets of eight channels on each level, the finest first; `blocks`: residual blocks on each;
+    `heads`: displacement fields that it answers with.
     """
     arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
 
@@ -70,10 +65,7 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return widths and blocks of the network that `tensors` are of, as their names and shapes tell them.
 
-    Raises
-    ------
-    ValueError
-        of no network.
+    Raises ValueError: of no network.
     """
     if not {"lift", "project"} <= set(tensors):
         raise ValueError("no lift, or no project")
@@ -218,10 +210,7 @@ class _Work:
 
 
 def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[Reals, Reals, int]:
-    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are.
-
-    `kernel` is (out, in) or (out, in, size, size), `bias` (out / 8,).
-    """
+    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are."""
     outputs = len(kernel)
     rows = np.moveaxis(kernel, (0, 1), (-1, -2)).reshape(-1, outputs)
     per = LINE // dtype.itemsize

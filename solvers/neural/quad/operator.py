@@ -29,11 +29,8 @@ AUTO = {WINSLOW: 2, 1: 5}
 class QuadOperator(Operator):
     """A network for four-sided domains, or for what is between a body and its far field.
 
-    Parameters
-    ----------
-    widths, blocks : of the network.
-    weights : its arrays, as `network.shapes` has them.
-    head : which of the network's answers is taken, an index into `encoding.HEADS`.
+    `widths`, `blocks`: of the network; `weights`: its arrays, as `network.shapes` has them; `head`: which of
+    the network's answers is taken, an index into `encoding.HEADS`.
     """
 
     widths: tuple[int, ...] = ()

@@ -16,11 +16,8 @@ from meshonet.solvers.neural.quad.edges import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 
-Counts: TypeAlias = tuple[int, int]
-"""Nodes along xi and eta."""
-
-MOST_SOLVED = 129
-"""Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
+Counts: TypeAlias = tuple[int, int]  # nodes along xi and eta
+MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
 
 MOST_DESCENDED, LARGER_DESCENDED = 513, 257
 """Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
@@ -33,8 +30,7 @@ domains have: where the network is far off, dozens of others would not do. The l
 the coarse grid's Hessian in smooth moves, remove folds and kinks between its nodes.
 """
 
-STILL = 1e-4
-"""Moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
+STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
 
 
 def polished(
