@@ -21,9 +21,7 @@ INTERVAL = 0.1
 class Live:
     """Shows cycles on the terminal, ten a second at the most.
 
-    Parameters
-    ----------
-    show : takes a line.
+    `show`: takes a line.
     """
 
     def __init__(self, show: Callable[[str], None]) -> None:

@@ -82,10 +82,7 @@ def request_of(
 ) -> GridRequest:
     """Return the request that options describe, `parameters` by the names of its fields.
 
-    Raises
-    ------
-    InputError
-        as `GridRequest`; a gate that is none.
+    Raises InputError: as `GridRequest`; a gate that is none.
     """
     for block in blocks:
         parameters |= vars(block)
@@ -113,10 +110,7 @@ def write_grids(
     history : file that the cycles go to.
     jobs : processes at work.
 
-    Raises
-    ------
-    InputError
-        several members and room for one.
+    Raises InputError: several members and room for one.
     """
     destination = Destination(output, files.to_format, "grids")
     prepare(sources, destination, session)

@@ -36,6 +36,19 @@ def prepare(sources: Sequence[str], destination: Destination, session: Session) 
     session.check_output(destination.text)
 
 
+def process(
+    sources: Sequence[str], members: Iterator[Item[T]], make: Callable[[Item[T]], tuple[S, R]],
+    destination: Destination, session: Session, *, skip_existing: bool = False, jobs: int = 1,
+) -> int:  # fmt: skip
+    """Make something of each of the `members` of `sources`, deliver it, and return the exit code."""
+    prepare(sources, destination, session)
+    deliver(
+        members, one_by_one(make), destination, session, session.written,
+        skip_existing=skip_existing, jobs=jobs,
+    )  # fmt: skip
+    return session.finish()
+
+
 @dataclass(frozen=True)
 class one_by_one(Generic[T, S, R]):  # noqa: N801 - used as a function, and a class so that processes can have it
     """Returns a `Make` of a function of one member."""

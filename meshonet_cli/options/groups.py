@@ -22,11 +22,7 @@ def option_of(group: str) -> Callable[..., Any]:
 def only_with(needed: str, given: bool, **others: object) -> None:
     """Raise InputError when an option that needs another one is there (not None) without it.
 
-    Parameters
-    ----------
-    needed : the other option, by its parameter.
-    given : whether it is there.
-    others : values by parameter.
+    `needed`: the other option, by its parameter. `given`: whether it is there. `others`: values by parameter.
     """
     from meshonet.geometry.errors import InputError
 

@@ -27,10 +27,7 @@ STEEPEST = 2.0
 class Factors:
     """Σ_t along[t, i] across[t, j].
 
-    Parameters
-    ----------
-    along : (terms, ni).
-    across : (terms, nj).
+    `along`: (terms, ni). `across`: (terms, nj).
     """
 
     along: Floats
@@ -64,9 +61,7 @@ class Factors:
 class Controls:
     """The control functions of a grid.
 
-    Parameters
-    ----------
-    phi, psi : logarithm of the ratio of neighbouring steps along ξ and along η.
+    `phi`, `psi`: logarithm of the ratio of neighbouring steps along ξ and along η.
     """
 
     phi: Factors
@@ -105,8 +100,6 @@ def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
 
     At the ends of an open edge that of the neighbours; at most `STEEPEST`: a corner may have any.
 
-    Examples
-    --------
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()
     [2.0, 2.0, 2.0, 2.0]

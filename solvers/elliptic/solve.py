@@ -62,18 +62,10 @@ def solve(
     controls : control functions (`meshonet.solvers.elliptic.control`), none when not given.
     method : what the solution is called.
 
-    Returns
-    -------
-    Solution
-        the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be folded
-        at re-entrant corners: see `meshonet.solvers.pipeline.fallback`.
-
-    Raises
-    ------
-    InputError
-        `initial` of other node counts; `tol` or `max_cycles` not positive.
-    SolverError
-        the iteration diverged from every start tried.
+    Returns the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be
+    folded at re-entrant corners: see `meshonet.solvers.pipeline.fallback`. Raises InputError: `initial` of
+    other node counts; `tol` or `max_cycles` not positive; SolverError: the iteration diverged from every
+    start tried.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()

@@ -75,18 +75,9 @@ def solve_steger_sorenson(
     tol, max_cycles : of the last cycles, as in `meshonet.solvers.elliptic.solve.solve`.
     initial : start from this grid instead of Winslow's solution.
 
-    Returns
-    -------
-    Solution
-        notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid
-        they are weakened, and a note says so.
-
-    Raises
-    ------
-    InputError
-        a side that cannot be controlled, an angle out of range, or as `solve`.
-    SolverError
-        as `solve`.
+    Notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid they
+    are weakened, and a note says so. Raises InputError: a side that cannot be controlled, an angle out of
+    range, or as `solve`; SolverError: as `solve`.
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)

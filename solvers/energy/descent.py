@@ -79,9 +79,7 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
     A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. From nodes
     that local repair leaves folded none is taken.
 
-    Parameters
-    ----------
-    most : steps at the most. They end after one that lowers the functional by less than `WON` of it.
+    `most`: steps at the most. They end after one that lowers the functional by less than `WON` of it.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0

@@ -31,9 +31,7 @@ ITERATIONS = 30
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
     """Unfold planar `nodes` (ni, nj, 2) of an O grid in windows, and minimise in these, in place.
 
-    Parameters
-    ----------
-    aspect, weights, relief : of the functional (`meshonet.solvers.energy.functional`).
+    `aspect`, `weights`, `relief`: of the functional (`meshonet.solvers.energy.functional`).
     """
     skewed = skewness(nodes)
     poor = np.argwhere(skewed > SKEWED)

@@ -74,10 +74,7 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
 
     with ∇ in units of the whole square in the last term. The coupling p_η q_ξ is left to the descent.
 
-    Parameters
-    ----------
-    periodic : around a body: the last row of nodes is the first.
-    aspect, weights : of the functional.
+    `periodic`: around a body: the last row of nodes is the first. `aspect`, `weights`: of the functional.
     """
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)

@@ -71,11 +71,8 @@ class Patience:
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     """Unfold planar `nodes` (ni, nj, 2) in place; return how many cells stay folded.
 
-    Parameters
-    ----------
-    nodes : the grid; its rim stays as it is.
-    periodic : an O grid: column ni-1 repeats column 0, and both move together.
-    margin : cells around a group of folded ones that move with them, at first.
+    `nodes`: the grid; its rim stays as it is. `periodic`: an O grid: column ni-1 repeats column 0, and both
+    move together. `margin`: cells around a group of folded ones that move with them, at first.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:

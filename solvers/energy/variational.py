@@ -90,16 +90,9 @@ def solve(
         nodes are replaced.
     weights : of the functional.
 
-    Returns
-    -------
-    Solution
-        the grid and the iterations on the finest level. It is valid wherever a start could be unfolded;
-        a note says when none could, and the grid is then folded.
-
-    Raises
-    ------
-    InputError
-        `initial` of other node counts; `tol` or `max_cycles` not positive.
+    Returns the grid and the iterations on the finest level. It is valid wherever a start could be unfolded; a
+    note says when none could, and the grid is then folded. Raises InputError: `initial` of other node counts;
+    `tol` or `max_cycles` not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()

@@ -55,8 +55,6 @@ def level_steps(first: float, distance: float, cells: int, constant: int, edge: 
     `_LESS` times the sharpness of `edge`, where that is given. The constants were found
     by trial on airfoils, so that cells grow alike along all lines.
 
-    Examples
-    --------
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
     """

@@ -69,18 +69,9 @@ def hyperbolic(
     constant : so many first rows are equally high.
     free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
 
-    Returns
-    -------
-    Solution
-        `boundary` of the solution is the one that the march ended at. The grid may be folded when
-        every attempt was.
-
-    Raises
-    ------
-    InputError
-        a four-sided boundary; a spacing or growth out of range; rows that do not suffice.
-    SolverError
-        no attempt gave finite nodes.
+    `boundary` of the solution is the one that the march ended at. The grid may be folded when every
+    attempt was. Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not
+    suffice; SolverError: no attempt gave finite nodes.
     """
     begun = time.perf_counter()
     check_layers(wall_spacing, growth)

@@ -51,21 +51,9 @@ PASSES = 100
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    Parameters
-    ----------
-    solution : a quad or O grid, valid and best with even rows.
-    boundary : what it was made for.
-    heights : of the first cells.
-
-    Returns
-    -------
-    Solution
-        with the boundary that its edges have now, and a note of heights and growth.
-
-    Raises
-    ------
-    InputError
-        heights that the boundary cannot have, or more growth than allowed.
+    `solution` is a quad or O grid made for `boundary`, valid and best with even rows. What is returned has
+    the boundary that its edges have now. Raises InputError: heights that the boundary cannot have, or more
+    growth than allowed.
     """
     check_fit(heights, boundary)
     grid = solution.grid

@@ -49,14 +49,8 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     where these do not, and at kinks of the walls, which stay nodes. The control function φ(ξ) keeps uneven
     spacing of the walls, as far as it is common to both; None where it is even.
 
-    Parameters
-    ----------
-    boundary : quad; its walls are the curves through its nodes.
-
-    Raises
-    ------
-    InputError
-        a topology other than ``quad``.
+    `boundary`: quad; its walls are the curves through its nodes. Raises InputError: a topology other than
+    ``quad``.
     """
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"

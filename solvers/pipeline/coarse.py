@@ -50,16 +50,8 @@ def solve_coarse(
     smooth : whether to end with sweeps of Winslow's equations at full resolution around kinks of the
         boundary: always where these were solved or the grid came out folded, else where angles gain by them.
 
-    Returns
-    -------
-    Solution
-        that of `solve`, with the fine grid; residual and cycles are those of the coarse solve. The edges
-        equal those of `boundary` bitwise.
-
-    Raises
-    ------
-    InputError
-        fewer than 9 coarse nodes.
+    The edges of the grid equal those of `boundary` bitwise; residual and cycles are those of the coarse
+    solve. Raises InputError: fewer than 9 coarse nodes.
     """
     if n < LEAST_NODES:
         raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")

@@ -21,9 +21,7 @@ REACH = 2.0
 def inwards(planes: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
     """Return shares (.., m, n) of south, north, west and east at the nodes of `planes` (.., 2, m, n).
 
-    Parameters
-    ----------
-    xp : numpy or torch.
+    `xp`: numpy or torch.
     """
     south, north = _both(planes, xp)
     west, east = (xp.swapaxes(share, -1, -2) for share in _both(xp.swapaxes(planes, -1, -2), xp))

@@ -55,9 +55,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
     """Return nj nodes on each of the lines `z` (..., n), complex, and their shares of its length.
 
-    Parameters
-    ----------
-    xp : the module, numpy or torch, that `z` is an array of.
+    `xp`: the module, numpy or torch, that `z` is an array of.
     """
     n = z.shape[-1]
     moves = z[..., 1:] - z[..., :-1]

@@ -49,10 +49,7 @@ def evaluate(coarse: Floats, sides: Sides) -> Floats:
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
     """Evaluate a valid grid `coarse` (2, m, n) again, in place, whose planes `nodes` (2, ni, nj) are folded.
 
-    Returns
-    -------
-    numpy.ndarray
-        (m, n), 1 at coarse nodes around which lines became straight; None where that is of no use.
+    Returns an array (m, n), 1 at coarse nodes around which lines became straight; None where that is no use.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None
