@@ -27,8 +27,7 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from meshonet_cli.options import CheckOptions, FileOptions, LayerOptions, SamplingOptions, SideOptions
 
-SHARED = 16
-"""Members that one of several processes gets at a time at the most, when they are solved together."""
+SHARED = 16  # members that one of several processes gets at a time at the most, when they are solved together
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.plan import Plan
     from meshonet.solvers.neural.samples import Samples
 
-REPORTS = 200
-"""Reports, evaluations and checkpoints of a long run."""
+REPORTS = 200  # reports, evaluations and checkpoints of a long run
 
 
 def train(

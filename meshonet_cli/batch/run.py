@@ -25,8 +25,7 @@ S = TypeVar("S", bound=Grid | Boundary)
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
-Todo = Iterable[tuple[Item[T], str]]
-"""Members and the paths of their files."""
+Todo = Iterable[tuple[Item[T], str]]  # members and the paths of their files
 Done = tuple[Item[Name], str, tuple[S | None, R] | Exception]
 
 

@@ -10,8 +10,7 @@ import typer
 
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
 METHOD, CHECKS = "Method", "Checks"
-GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, METHOD, CHECKS)
-"""In the order of the help text."""
+GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, METHOD, CHECKS)  # in the order of the help text
 
 
 def option_of(group: str) -> Callable[..., Any]:

@@ -12,8 +12,7 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.loop import Progress
 
-LINES = 25
-"""Lines about a run where there is no terminal."""
+LINES = 25  # lines about a run where there is no terminal
 
 
 def result_lines(result: Mapping[str, Any]) -> Iterator[str]:

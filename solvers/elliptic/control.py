@@ -19,8 +19,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 
-STEEPEST = 2.0
-"""Largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4."""
+STEEPEST = 2.0  # largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4
 
 
 @dataclass(frozen=True, eq=False)

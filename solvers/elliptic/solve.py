@@ -32,8 +32,7 @@ Around slits and spikes, one sweep leaves coarse levels with corrections that th
 CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Parts of the control functions, each solved from the solution before, when all at once diverge."""
 
-SOLVED = 1e-4
-"""Relative residual that counts as discretisation level when there is no better estimate."""
+SOLVED = 1e-4  # relative residual that counts as discretisation level when there is no better estimate
 
 
 class _DivergedError(Exception):

@@ -21,11 +21,8 @@ from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.progress import cycle_ended, listened_to
 
-HARD = 1.1
-"""Value of the functional around a body above which descents go on."""
-
-WON = 3e-2
-"""Relative decrease of the functional below which Newton's method ends."""
+HARD = 1.1  # value of the functional around a body above which descents go on
+WON = 3e-2  # relative decrease of the functional below which Newton's method ends
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""

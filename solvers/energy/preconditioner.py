@@ -17,11 +17,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import Modes, VariationalDescent
 from meshonet.solvers.energy.functional import Weights, aspect_of
 
-REACH_CELLS = 0.25
-"""How far a node moves at the most in the first iteration of a descent."""
-
-MODES = 512
-"""Modes along a direction that are kept; finer ones are all divided by the same."""
+REACH_CELLS = 0.25  # how far a node moves at the most in the first iteration of a descent
+MODES = 512  # modes along a direction that are kept; finer ones are all divided by the same
 
 
 class Descent:

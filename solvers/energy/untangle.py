@@ -9,15 +9,11 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.energy.functional import Weights
 from meshonet.solvers.energy.preconditioner import Descent
 
-STILL = 1e-3
-"""Move of a node, in its own cells, below which minimising with one regularisation stops."""
-
-ITERATIONS = 60
-"""With one regularisation, at the most."""
+STILL = 1e-3  # move of a node, in its own cells, below which minimising with one regularisation stops
+ITERATIONS = 60  # with one regularisation, at the most
 
 REGULARISATIONS = 30
-WITHOUT_GAIN = 3
-"""Regularisations at the most, and those without gain after which unfolding is given up."""
+WITHOUT_GAIN = 3  # regularisations at the most, and those without gain after which unfolding is given up
 
 
 def unfold(

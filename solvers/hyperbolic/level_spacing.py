@@ -17,14 +17,11 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.spacing.growth import growing_steps
 
-_LESS = 0.24
-"""Part of the growth that is left out where lines off an edge without a wedge begin to spread."""
+_LESS = 0.24  # part of the growth that is left out where lines off an edge without a wedge begin to spread
 _BEGIN, _FULL = 1.2, 3.0
 """Heights over the cell at the edge at which half of that is left out, and from which it fades."""
-_FADE = 0.45
-"""Power of the height with which it fades."""
-_BEFORE = 0.04
-"""Part of the growth left out nearer to the wall, where lines off a leading edge grow the most."""
+_FADE = 0.45  # power of the height with which it fades
+_BEFORE = 0.04  # part of the growth left out nearer to the wall, where lines off a leading edge grow the most
 _LEAST_TURN = math.radians(60.0)
 
 

@@ -37,17 +37,13 @@ from meshonet.solvers.hyperbolic.settings import (
 )
 from meshonet.solvers.solution import Solution
 
-FADE_ROWS = 12.0
-"""Rows over which the correction of the first cell fades out."""
-
-REACHED = 0.025
-"""Relative error of the far field's distance up to which no other distance is tried."""
+FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
+REACHED = 0.025  # relative error of the far field's distance up to which no other distance is tried
 
 MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
 
-AREA_SMOOTHING = 0.16
-"""Coefficient of a smoothing step of the areas along a level."""
+AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
 
 def hyperbolic(

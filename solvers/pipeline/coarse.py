@@ -18,8 +18,7 @@ from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.method import METHODS, Wrapper
 from meshonet.solvers.solution import Solution
 
-LEAST_NODES = 9
-"""Fewest coarse nodes along a direction that describe anything."""
+LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,7 @@ from meshonet.geometry.quality.measure import count_folded, worst_cells
 from meshonet.solvers.method import Method, method_named
 from meshonet.solvers.solution import Outcome, Solution
 
-ORDER = ("winslow", "tfi")
-"""Methods that follow where a grid cannot be repaired."""
+ORDER = ("winslow", "tfi")  # methods that follow where a grid cannot be repaired
 
 REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 

@@ -24,10 +24,8 @@ from meshonet.solvers.method import Each, Method, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
-UPRIGHT_DEGREES = 0.3
-"""By which lines may lean at walls whose nodes have slid."""
-LEANING_DEGREES = 1.0
-"""By which they may lean when sources have turned them."""
+UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
+LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
 
 MARCHED = "a grid marched from the wall"
 

@@ -20,11 +20,8 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import History, Row, listening
 from meshonet.solvers.solution import Outcome, Solution
 
-MOST_TOGETHER = 64
-"""Shapes that are solved together at the most."""
-
-MOST_NODES = 1 << 22
-"""Nodes of grids from which no more are solved together: some hundred MB."""
+MOST_TOGETHER = 64  # shapes that are solved together at the most
+MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,8 +20,7 @@ from meshonet.solvers.pipeline.sequence import Sequenced
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.layered import FirstCells
 
-OPERATOR_SETTINGS = ("model", "polish", "device")
-"""Settings any of which asks for a network."""
+OPERATOR_SETTINGS = ("model", "polish", "device")  # settings any of which asks for a network
 
 DEFAULTS = {"coarse": "auto", "refine": 0, "polish": "auto", "answer": "valid", "blending": "arclength"}
 """Values that say nothing; of other parameters None is one."""

@@ -14,8 +14,7 @@ from __future__ import annotations
 
 from typing import Any
 
-REACH = 2.0
-"""Steps of the edge over which its mismatch is blended."""
+REACH = 2.0  # steps of the edge over which its mismatch is blended
 
 
 def inwards(planes: Any, xp: Any) -> tuple[Any, Any, Any, Any]:

@@ -24,8 +24,7 @@ from meshonet.solvers.algebraic.resample.spline import bending, places, spline_m
 STEEP, FLAT = 1.15, 0.5
 """Slopes of the rising cubic in harmonic means of both steps, between which they are those of a spline."""
 
-SQUARINGS = 3
-"""Squarings that make the eighth power."""
+SQUARINGS = 3  # squarings that make the eighth power
 
 
 def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:

@@ -30,8 +30,7 @@ Sides = tuple[Floats, Floats, Floats, Floats]
 
 Straight = NDArray[np.uint8]
 
-CORNERS = [0, 1, -2, -1]
-"""Rows and columns of a grid that tell how wide its corners open."""
+CORNERS = [0, 1, -2, -1]  # rows and columns of a grid that tell how wide its corners open
 
 WIDER = (0, 1, 3)
 """Coarse cells beyond those with folds whose lines become straight, one try after another; at last all do."""
