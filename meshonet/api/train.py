@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.plan import Plan
     from meshonet.solvers.neural.samples import Samples
 
-REPORTS = 200
-"""Reports, evaluations and checkpoints of a long run."""
+REPORTS = 200  # reports, evaluations and checkpoints of a long run
 
 
 def train(
@@ -60,19 +59,10 @@ def train(
     plan : settings of `meshonet.solvers.neural.fit.plan.Plan`; None stands for the model's own. `points` is
         a number, or ``all``.
 
-    Returns
-    -------
-    dict
-        the ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in processes
-        of torchrun that do not lead.
-
-    Raises
-    ------
-    InputError
-        torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad settings
-        or datasets.
-    SolverError
-        the loss is not finite.
+    Returns the ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in
+    processes of torchrun that do not lead. Raises InputError: torch is not installed; the output is no
+    ``.safetensors`` file in a folder that exists; bad settings or datasets; SolverError: the loss is not
+    finite.
     """
     _check_output(str(output))
     try:
