@@ -35,8 +35,6 @@ class InputError(MeshonetError):
     Problem and remedy refer to parameters in braces, ``{far_field}``: in Python these read
     ``far_field``, on the command line ``--far-field`` (`spelled`).
 
-    Examples
-    --------
     >>> print(InputError("'abc' is not a number", "remove the line", source="a.dat", place="line 12"))
     a.dat: line 12: 'abc' is not a number; remove the line
     """
@@ -62,8 +60,6 @@ class InputError(MeshonetError):
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
     """Return `text`, its names of parameters in braces passed through `spelling`; double braces stay single.
 
-    Examples
-    --------
     >>> spelled("give {far_field} as 'a-{{index}}'", lambda name: "--" + name.replace("_", "-"))
     "give --far-field as 'a-{index}'"
     """

@@ -44,13 +44,8 @@ class Block:
         planar layout (see `meshonet.geometry.arrays`).
     finite : the nodes are known to be finite: the check, a tenth of the time of some methods, is left out.
 
-    Raises
-    ------
-    InputError
-        nodes of another shape, fewer than 2 along a direction, or not finite.
+    Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
 
-    Examples
-    --------
     >>> Block(np.zeros((4, 3, 2))).counts
     (4, 3)
     """
@@ -90,8 +85,6 @@ def face_of(values: AnyArray, side: Side) -> AnyArray:
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:
     """Return the nodes along each direction of a side of a block with `counts` nodes.
 
-    Examples
-    --------
     >>> face_counts((5, 4, 3), "south")
     (5, 3)
     """

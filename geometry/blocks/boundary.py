@@ -64,11 +64,8 @@ class Boundary(Connected):
     origin : the numbers that made it and what it is kept for, of a sample of a dataset.
     sampled : whether the nodes were chosen here, on curves, and may be chosen otherwise.
 
-    Raises
-    ------
-    InputError
-        an edge of the wrong shape, with a node that is not finite or repeated, edges that do not
-        meet, a left-handed outline, a ``c`` without a wake.
+    Raises InputError: an edge of the wrong shape, with a node that is not finite or repeated, edges that do
+    not meet, a left-handed outline, a ``c`` without a wake.
     """
 
     south: Floats
@@ -141,10 +138,7 @@ class Boundary(Connected):
         (the odd one included) is on the body and the rest on the far field. Fixed places of the computational
         domain, as an operator needs them: Xiao et al., arXiv 2501.11937, section III.
 
-        Raises
-        ------
-        InputError
-            fewer than 2 sensors, or more than there are nodes.
+        Raises InputError: fewer than 2 sensors, or more than there are nodes.
         """
         rings = [self.south[:-1], self.north[:-1]] if self.around_body else [self.outline()]
         most = len(rings) * len(rings[0])
@@ -160,10 +154,7 @@ class Boundary(Connected):
         Edges are used as they are when the counts are absent or equal; others resample the curves through
         the nodes, corners kept (`meshonet.geometry.blocks.resample`).
 
-        Raises
-        ------
-        InputError
-            `sampling` asks for anything else: another topology, a spacing, a far field ...
+        Raises InputError: `sampling` asks for anything else: another topology, a spacing, a far field ...
         """
         self._check_sampling(sampling)
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj

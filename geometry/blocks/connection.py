@@ -126,8 +126,6 @@ def c_wake(ni: int, cells: int) -> Connection:
 def topology_of(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> Topology:
     """Return what the connections make of blocks with `counts` nodes along their directions.
 
-    Examples
-    --------
     >>> topology_of([(9, 5)], ()), topology_of([(9, 5)], [o_seam(5)]), topology_of([(9, 5)], [c_wake(9, 2)])
     ('quad', 'o', 'c')
     """
@@ -160,10 +158,7 @@ def wake_nodes(south: Floats) -> int:
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
     """Return the connections of a block of `topology`, found in its south side (ni, 2), with nj rows.
 
-    Raises
-    ------
-    InputError
-        a topology of no single block; a C block without a wake.
+    Raises InputError: a topology of no single block; a C block without a wake.
     """
     if topology == "quad":
         return ()

@@ -45,10 +45,7 @@ class Grid(Connected):
     provenance : how the grid was made: method, settings, version.
     origin : that of its boundary.
 
-    Raises
-    ------
-    InputError
-        no block; a patch outside its side; connected sides whose nodes differ.
+    Raises InputError: no block; a patch outside its side; connected sides whose nodes differ.
     """
 
     blocks: tuple[Block, ...]
@@ -86,13 +83,8 @@ class Grid(Connected):
         patches : empty means those of `default_patches`.
         name, provenance, origin : see above.
 
-        Raises
-        ------
-        InputError
-            see `Block`; an O grid that is not closed, a C grid without a wake.
+        Raises InputError: see `Block`; an O grid that is not closed, a C grid without a wake.
 
-        Examples
-        --------
         >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
         >>> Grid.from_nodes(np.stack([x, y], axis=-1)).topology
         'quad'
@@ -185,10 +177,7 @@ class Grid(Connected):
     def to_pyvista(self) -> Any:
         """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
 
-        Raises
-        ------
-        InputError
-            pyvista is not installed.
+        Raises InputError: pyvista is not installed.
         """
         try:
             from pyvista import StructuredGrid

@@ -30,10 +30,7 @@ class GridMatcher:
     def match(self, name: str) -> Grid:
         """Return the grid that belongs to the one called `name`, or to the next one.
 
-        Raises
-        ------
-        InputError
-            there is none.
+        Raises InputError: there is none.
         """
         if self._pairing == "auto":
             self._pairing = self._decided(name)

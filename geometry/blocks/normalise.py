@@ -15,13 +15,8 @@ def normalised(grid: Grid) -> Grid:
     farthest from it, the leading edge, to (0, 0). Of a four-sided grid the lower left corner of its box
     comes to (0, 0) and the longer side of the box becomes 1.
 
-    Raises
-    ------
-    InputError
-        the body has no length.
+    Raises InputError: the body has no length.
 
-    Examples
-    --------
     >>> x, y = np.meshgrid([2.0, 4.0], [1.0, 2.0], indexing="ij")
     >>> normalised(Grid.from_nodes(np.stack([x, y], axis=-1))).nodes[1, 1].tolist()
     [1.0, 0.5]

@@ -26,8 +26,6 @@ _SIGNS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
 def kind_of(name: str) -> Kind:
     """Return the kind of boundary that the name of a patch tells of.
 
-    Examples
-    --------
     >>> kind_of("lower wall"), kind_of("slot 3")
     ('wall', 'other')
     """
@@ -78,8 +76,6 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
     ``quad`` has its four sides, ``o`` a wall and a far field (west and east are the seam), ``c`` a wake of
     `wake` cells on both sides of a wall, and a far field around them.
 
-    Examples
-    --------
     >>> [patch.name for patch in default_patches("o", 5, 4)]
     ['wall', 'farfield']
     """

@@ -30,8 +30,6 @@ def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
     m : at least 2.
     closed : the edge returns to its start.
 
-    Examples
-    --------
     >>> resample_edge(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0]
     """
@@ -61,10 +59,7 @@ def resample_edges(
     closed : south and north are closed.
     wake : cells at each end of south whose nodes are the same; they get their share of the cells.
 
-    Raises
-    ------
-    InputError
-        too few nodes for a closed edge, or for the wall between the two sides of a wake.
+    Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
     if closed and ni < 4:
         raise InputError(f"{ni} nodes around a body", "use at least 4")

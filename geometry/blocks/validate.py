@@ -64,8 +64,6 @@ class Edges(Protocol):
 def check_edges(boundary: Edges) -> None:
     """Raise InputError, with the place, when edges of `boundary` cross or touch, or a body lies outside.
 
-    Examples
-    --------
     >>> from meshonet.geometry.blocks.boundary import Boundary
     >>> t = np.linspace(0.0, 1.0, 5)
     >>> south, west = np.stack([t, 0.0 * t], axis=1), np.stack([0.0 * t, t], axis=1)

@@ -96,10 +96,7 @@ def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, 
     lift, w, corners : the map; the (n,) wall points psi + i phi, phi from 0 upwards; the nodes that are
         the sharp edge, or the corners of the blunt one.
 
-    Raises
-    ------
-    InputError
-        fewer than 8 nodes, or a wall that does not wind once around the pole.
+    Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
     if len(wall) < 8:
         raise InputError(f"the wall has {len(wall)} nodes", "use at least 8")

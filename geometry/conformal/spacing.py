@@ -40,10 +40,7 @@ def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
         angles between are shared out smoothly.
     count : nodes; the last is the curve's length, its first node again.
 
-    Raises
-    ------
-    InputError
-        the lifted wall is not star-shaped, or the iteration does not settle.
+    Raises InputError: the lifted wall is not star-shaped, or the iteration does not settle.
     """
     clockwise = _one_way(curve, marks, count, mirror=False)
     mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, mirror=True)

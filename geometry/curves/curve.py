@@ -31,13 +31,9 @@ class Curve:
         them (`meshonet.geometry.polygon.corners`).
     straight : (intervals,) true where the curve is to follow the chord instead of the spline.
 
-    Raises
-    ------
-    InputError
-        too few points, a point that is not finite or equals its neighbour, a corner out of range.
+    Raises InputError: too few points, a point that is not finite or equals its neighbour, a corner out of
+    range.
 
-    Examples
-    --------
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()
     (4.0, [0.0, 1.0, 2.0, 3.0])

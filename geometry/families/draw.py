@@ -77,10 +77,8 @@ def draws(
     seed : of all random numbers.
     way : how members are split into those to train on and those to test on, or None for neither.
 
-    Raises
-    ------
-    InputError
-        no such family, a range that is none or leaves the family's, members that cannot be split.
+    Raises InputError: no such family, a range that is none or leaves the family's, members that cannot be
+    split.
     """
     if name not in (*FAMILIES, *RANDOM):
         known = "use one of " + ", ".join((*FAMILIES, *RANDOM))

@@ -15,8 +15,6 @@ def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
 
     With `like`, as many corners, each lies on the node where that polyline has it.
 
-    Examples
-    --------
     >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
     [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
     """

@@ -42,10 +42,8 @@ class Family:
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
         """Return the member at `parameter` with ni by nj nodes, called after both.
 
-        Raises
-        ------
-        InputError
-            the parameter is out of `least` to `most`, or the nodes are too few for the corners.
+        Raises InputError: the parameter is out of `least` to `most`, or the nodes are too few for the
+        corners.
         """
         if not self.least <= parameter <= self.most:
             raise InputError(
@@ -57,13 +55,8 @@ class Family:
 def family(name: str) -> Family:
     """Return the family of a name.
 
-    Raises
-    ------
-    InputError
-        no such family.
+    Raises InputError: no such family.
 
-    Examples
-    --------
     >>> family("arch").boundary(0.25, 41, 21).north[20].tolist()
     [0.5, 1.25]
     """

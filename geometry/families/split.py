@@ -37,13 +37,8 @@ def split(
     share : of the members that are tested; at least one is, and at least two are trained on.
     low : extrapolate to low values of the parameter.
 
-    Raises
-    ------
-    InputError
-        an unknown way, fewer than three members, or all with the same parameter.
+    Raises InputError: an unknown way, fewer than three members, or all with the same parameter.
 
-    Examples
-    --------
     >>> split([0.3, 0.1, 0.2], "interpolation")
     ('train', 'train', 'test')
     >>> split([0.3, 0.1, 0.2], "extrapolation")

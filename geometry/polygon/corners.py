@@ -36,8 +36,6 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
 
     Left is positive; the ends of an open polygon turn by 0.
 
-    Examples
-    --------
     >>> np.degrees(turning(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))).tolist()
     [0.0, 90.0, 0.0]
     """
@@ -62,8 +60,6 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     closed : the last point is joined to the first.
     few : a closed polygon of at most so many points is taken for one, not for samples of a round body.
 
-    Examples
-    --------
     >>> find_corners(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).tolist()
     [1]
     """

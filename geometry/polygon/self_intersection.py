@@ -31,8 +31,6 @@ class Crossing:
 def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
     """Return the first place where a polygon (n, 2) crosses or touches itself, or None when it is simple.
 
-    Examples
-    --------
     >>> find_crossing(np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]))
     Crossing(first=0, second=2, x=0.5, y=0.5)
     """

@@ -53,10 +53,7 @@ def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -
     The nearest node of each corner is put on it; those between are shared out evenly in index. The first,
     the last and the `fixed` nodes stay.
 
-    Raises
-    ------
-    InputError
-        more corners than nodes to put on them.
+    Raises InputError: more corners than nodes to put on them.
     """
     if corners.size == 0:
         return distance

@@ -81,10 +81,8 @@ class TanhLaw:
         first, last : parts of the whole.
         last_part : how much of the last step lies before 1 (1 or 0.5).
 
-        Raises
-        ------
-        InputError
-            the steps do not fit: they are too large together, or too few nodes lie between them.
+        Raises InputError: the steps do not fit: they are too large together, or too few nodes lie between
+        them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):
@@ -135,8 +133,6 @@ def _inverse_sinc(b: float) -> float:
 def spacing_tanh(n: int, first: float, last: float) -> Floats:
     """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`).
 
-    Examples
-    --------
     >>> steps = np.diff(spacing_tanh(21, 0.01, 0.02))
     >>> [float(round(step, 6)) for step in (steps[0], steps[-1])]
     [0.01, 0.02]

@@ -41,10 +41,7 @@ class Sampling:
     viscous : the cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
-    Raises
-    ------
-    InputError
-        a value out of its range.
+    Raises InputError: a value out of its range.
     """
 
     ni: int | None = None

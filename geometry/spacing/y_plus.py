@@ -23,13 +23,9 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     reynolds : of the chord.
     chord_fraction : x in chords.
 
-    Raises
-    ------
-    InputError
-        a value out of its range, or so little of the chord that no boundary layer is turbulent there.
+    Raises InputError: a value out of its range, or so little of the chord that no boundary layer is turbulent
+    there.
 
-    Examples
-    --------
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'
     """
