@@ -21,17 +21,12 @@ Spacing: TypeAlias = str
 
 @dataclass(frozen=True)
 class Law:
-    """A spacing law.
-
-    Parameters
-    ----------
-    place : s(q), both 0 to 1, of a law that is the same along every stretch; None for those that depend on
-        the curve or on the cells at its ends.
-    sets_ends : the cells at the two ends of a stretch can be chosen.
-    """
+    """A spacing law."""
 
     place: Callable[[Floats], Floats] | None = None
+    """s(q), both 0 to 1; None for a law that depends on the curve or on the cells at its ends."""
     sets_ends: bool = False
+    """The cells at the two ends of a stretch can be chosen."""
 
 
 @dataclass(frozen=True)
@@ -75,11 +70,7 @@ class TanhLaw:
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
         """Return the law whose first step of `cells` is `first` and whose last is `last`, to 1e-6 of them.
 
-        Parameters
-        ----------
-        cells : steps from 0 to 1; need not be whole when the last one goes on beyond 1.
-        first, last : parts of the whole.
-        last_part : how much of the last step lies before 1 (1 or 0.5).
+        Cells need not be whole when the last one goes on beyond 1, with `last_part` (1 or 0.5) of it before.
 
         Raises InputError: the steps do not fit: they are too large together, or too few nodes lie between
         them.
