@@ -65,12 +65,8 @@ def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> 
     """Return the panels that cover levels `first` to `last` of `eta`, where they save evaluations.
 
     `eta`: (nj,) rising from 0 at the wall to 1; `height`: psi from wall to far field; `spread`: how much psi
-    varies along the wall; `first`, `last`: levels outside ``[first, last)`` are left out.
-
-    Returns
-    -------
-    list of Panel
-        without gaps, outwards, ending at `last`; empty when none is worth it.
+    varies along the wall; `first`, `last`: levels outside ``[first, last)`` are left out. Panels are without
+    gaps, outwards, and end at `last`; there are none when none is worth it.
     """
     chosen: list[Panel] = []
     distance = NEAREST

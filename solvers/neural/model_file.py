@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +19,7 @@ LARGEST_BYTES = 64 * 1024 * 1024  # a larger file is not one of ours
 OURS = "use a file made by meshonet train"
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """A kind of model: what its header says under ``kind``, and under `key` for its version."""
 
     text: str

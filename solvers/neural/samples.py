@@ -80,11 +80,9 @@ def gathered(grids: Iterable[Grid]) -> Samples:
     for grid in grids:
         first = first or grid
         if (grid.nodes.shape, grid.topology) != (first.nodes.shape, first.topology):
-            raise InputError(
-                f"{grid.name or 'a grid'} is {grid.ni}x{grid.nj} {grid.topology} and the first is "
-                f"{first.ni}x{first.nj} {first.topology}",
-                "train on grids of one size and topology",
-            )
+            sizes = [f"{g.ni}x{g.nj} {g.topology}" for g in (grid, first)]
+            problem = f"{grid.name or 'a grid'} is {sizes[0]} and the first is {sizes[1]}"
+            raise InputError(problem, "train on grids of one size and topology")
         if grid.topology == "c":
             raise InputError("a C grid among the training grids", "give quad or O grids")
         values = [value for _, value in grid.origin.parameters]

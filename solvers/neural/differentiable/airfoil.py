@@ -15,7 +15,7 @@ from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
 from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
-from meshonet.solvers.neural.differentiable.sides import as_numpy, check_levels, check_sides
+from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
 from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
@@ -48,8 +48,7 @@ class AirfoilGrids:
         the trailing edge, the last one the first; `nj`: nodes from wall to far field. Raises InputError: a
         body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
         """
-        check_sides(torch.float64, 4, south=south, north=north)
-        check_levels(nj)
+        check_sides(torch.float64, 4, nj, south=south, north=north)
         edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
         bodies = [torch_walls(z, far) for z, far in zip(*edges, strict=True)]
         wall, far = (torch.stack([getattr(body, name) for body in bodies]) for name in ("wall", "far"))

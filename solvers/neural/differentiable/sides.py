@@ -18,7 +18,7 @@ SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}
 """The operator of the quad network for a topology."""
 
 
-def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:
+def check_sides(dtype: torch.dtype, least: int, nj: int = 2, **sides: Tensor) -> None:
     """Raise InputError unless opposite sides are (batch, n, 2) alike, of `dtype`, n at least `least`.
 
     `sides`: by name, each beside the one it is opposite to.
@@ -37,10 +37,6 @@ def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:
             raise InputError(problem, "opposite sides need equal counts")
     if len({side.shape[0] for side in sides.values()}) > 1:
         raise InputError("the sides are of different batches", "give as many of every side")
-
-
-def check_levels(nj: int) -> None:
-    """Raise InputError unless there is a wall and a far field."""
     if nj < 2:
         raise InputError(f"nj is {nj} nodes", "use at least 2")
 

@@ -69,12 +69,9 @@ def _share(values: NDArray[np.bool_]) -> float:
 def excess(z: Tensor, goal: Tensor) -> tuple[Tensor, Tensor, Tensor]:
     """Return by how much grids `z` (batch, m, n) are worse than `goal`, of the same shape, both complex.
 
-    Returns
-    -------
-    tuple
-        of (batch,): the mean of the cells' largest included angles less the goal's, and the largest of them
-        less the goal's, in radians, 0 where they are smaller; and the logarithm of how far cells fold, or
-        nearly so, where the goal's do not.
+    For each the mean of the cells' largest included angles less the goal's, and the largest of them less the
+    goal's, in radians, 0 where they are smaller; and the logarithm of how far cells fold, or nearly so, where
+    the goal's do not.
     """
     least, most = extremes(z)
     with torch.no_grad():

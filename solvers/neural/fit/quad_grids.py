@@ -74,10 +74,8 @@ def quads(variational: Samples, winslow: Samples) -> Quads:
     wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)
     for samples in (variational, winslow):
         if (samples.topology, samples.ni, samples.nj) != wanted:
-            raise InputError(
-                f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
-                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}",
-            )
+            problem = f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on"
+            raise InputError(problem, f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}")
     sides = slice(2 if around else 4)  # the cut of an O grid is no boundary
     where = {_rim(nodes, sides): k for k, nodes in enumerate(winslow.nodes)}
     keys = [_rim(nodes, sides) for nodes in variational.nodes]

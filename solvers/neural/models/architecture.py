@@ -31,16 +31,11 @@ class Architecture:
 
     `sensors`: points of the boundary that the branches read, m in the paper.
 
-    Attributes
-    ----------
-    base : what the network's answer is added to: nothing, or the harmonic extension of the boundary.
-    physics : it learns from Winslow's equations, a network for each geometry.
-    interior, boundary : weights of the two parts of its loss.
     """
 
-    base: ClassVar[Literal["none", "harmonic"]] = "none"
-    physics: ClassVar[bool] = False
-    interior: ClassVar[float] = 1.0
+    base: ClassVar[Literal["none", "harmonic"]] = "none"  # what the answer is added to
+    physics: ClassVar[bool] = False  # it learns from Winslow's equations, a network for each geometry
+    interior: ClassVar[float] = 1.0  # weights of the two parts of its loss
     boundary: ClassVar[float] = 1.0
 
     sensors: int = 50

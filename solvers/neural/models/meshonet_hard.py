@@ -36,30 +36,19 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """One branch that sees everything, a trunk that vanishes on the boundary.
-
-    Parameters
-    ----------
-    hidden : widths of the branch's hidden layers.
-    features : functions of the trunk, shared by x and y.
-    width, depth : of the trunk's hidden layers.
-    waves : frequencies of xi and eta that the trunk sees.
-    modes : of the training grids' differences in place of a trained trunk; 0 for the trunk.
-    within : sensors are seen no further out than those of the training shapes.
-    periodic : in xi (an O grid).
-    """
+    """One branch that sees everything, a trunk that vanishes on the boundary."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
 
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    width: int = 64
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
+    features: int = 50  # functions of the trunk, shared by x and y
+    width: int = 64  # of the trunk's hidden layers
     depth: int = 3
-    waves: int = 6
-    modes: int = 0
-    within: bool = False
-    periodic: bool = False
+    waves: int = 6  # frequencies of xi and eta that the trunk sees
+    modes: int = 0  # of the training grids' differences in place of a trained trunk; 0 for the trunk
+    within: bool = False  # sensors are seen no further out than those of the training shapes
+    periodic: bool = False  # in xi (an O grid)
 
     @property
     def native(self) -> bool:

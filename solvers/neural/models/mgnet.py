@@ -32,29 +32,18 @@ SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which 
 
 @dataclass(frozen=True)
 class MGNet(Architecture):
-    """Dense networks with tanh, one a geometry.
-
-    Parameters
-    ----------
-    width, depth : of the hidden layers.
-    rim : weight of the boundary in the loss.
-    data : weight of known nodes in the loss, where there are any.
-    finite : step of central differences; 0 for exact derivatives.
-    lines : auxiliary lines of either direction whose nodes are known from the solved grids; 0 for none.
-    coarse : nodes a direction of a coarse grid whose nodes are known from the solved grids; 0 for none.
-    periodic : in xi (an O grid).
-    """
+    """Dense networks with tanh, one a geometry."""
 
     physics: ClassVar[bool] = True
 
-    width: int = 40
+    width: int = 40  # of the hidden layers
     depth: int = 4
-    rim: float = 1000.0
-    data: float = 1000.0
-    finite: float = 0.0
-    lines: int = 0
-    coarse: int = 0
-    periodic: bool = False
+    rim: float = 1000.0  # weight of the boundary in the loss
+    data: float = 1000.0  # weight of known nodes in the loss, where there are any
+    finite: float = 0.0  # step of central differences; 0 for exact derivatives
+    lines: int = 0  # auxiliary lines of either direction whose nodes are known from the solved grids
+    coarse: int = 0  # nodes a direction of a coarse grid whose nodes are known from the solved grids
+    periodic: bool = False  # in xi (an O grid)
 
     def shapes(self, frame: Frame) -> Shapes:
         sizes = (3 if self.periodic else 2, *[self.width] * self.depth, 2)
@@ -85,10 +74,8 @@ class MGNet(Architecture):
         k = self.which(w, seen)
         away = np.sqrt(((seen - w["fixed/sensors"][k]) ** 2).sum(-1)).max(axis=1) / w["fixed/size"][k, 0]
         if away.max() > SAME:
-            known = len(w["fixed/sensors"])
-            problem = (
-                f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
-            )
+            problem = f"the model knows {len(w['fixed/sensors'])} geometries"
+            problem += f", and this one is off the nearest by {away.max():.1e}"
             raise InputError(problem, "train it on this one too: it has a network for each geometry")
 
     def features(self, xp: Any, points: Any) -> Any:

@@ -78,9 +78,8 @@ class PaperOperator(Operator):
         grid = boundary.grid(nodes, facts)
         done = "replaced by the true one" if paste else "left so"
         notes = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
-        return Solution(
-            grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes if error > 0.0 else ()
-        )
+        notes = notes if error > 0.0 else ()
+        return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
         """Return the nodes (ni, nj, 2), and how far their edges were from `boundary` at most before pasting.

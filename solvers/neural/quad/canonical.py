@@ -1,9 +1,8 @@
 """Boundaries in a canonical frame, where the steps after the network are taken.
 
-Descents amplify rounding: thirty steps in a window around a corner turn 1e-16 into 1e-3, and those of
-Newton's method are led by single precision. So that a domain moved, turned, scaled, mirrored or with its
-sides named otherwise takes the same steps to the bit, its edges are taken to a frame of their own, rounded
-there to 1e-9 of their size, and relabelled as the first of their images is:
+Descents amplify rounding: thirty steps around a corner turn 1e-16 into 1e-3. So that a domain moved, turned,
+scaled, mirrored or with its sides named otherwise takes the same steps to the bit, its edges are taken to a
+frame of their own, rounded there to 1e-9 of their size, and relabelled as the first of their images is:
 
 ========  ==================================================  ============================================
 o         the cut runs from 0 to 1                            mirrored if the mirror image comes first
@@ -122,7 +121,6 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
 
 
 def _step(edges: Complexes) -> float:
-    """Return what coordinates of `edges` are rounded to multiples of."""
     return float(STEP * 2.0 ** np.ceil(np.log2(np.abs(edges).max())))
 
 
@@ -135,5 +133,4 @@ def _mirrors(element: Element) -> bool:
 
 
 def _complex(edge: Floats) -> Complexes:
-    """Return nodes (n, 2) as x + iy."""
     return np.asarray(edge[:, 0] + 1j * edge[:, 1])

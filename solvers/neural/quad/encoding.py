@@ -50,13 +50,9 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return (batch, n, n, FEATURES) of normalised grids `z` (batch, n, n), complex.
 
-    Parameters
-    ----------
-    step : of the shape of `z`, what last moved it (`picard.approach`).
-    around : `z` are O grids (batch, m + 1, n) unrolled (`unrolled`), whose last column is the first a turn
-        on: differences along xi go round, and places are those less even steps. Returns (batch, m, n, ...).
-
-    The order is that of `symmetry.SEEN`.
+    `step`, of the shape of `z`, is what last moved it (`picard.approach`). `around`: `z` are unrolled O grids
+    (batch, m + 1, n), whose last column is the first a turn on: differences along xi go round, places are
+    those less even steps, and the answer is (batch, m, n, ...). The order is that of `symmetry.SEEN`.
     """
     n = z.shape[-1]
     if around:

@@ -93,12 +93,8 @@ def rim_factor(m: int, n: int, around: bool) -> Floats:
 class Network:
     """The network of one set of weights, its kernels expanded and laid out once.
 
-    Parameters
-    ----------
-    weights : of the names and shapes of `shapes`, in any precision.
-    blocks : as there.
-    dtype : float32 or float64, of the arithmetic.
-    around : of O grids, unrolled: they go round along xi.
+    `weights` and `blocks` as in `shapes`, in any precision; `dtype` (float32 or float64) of the arithmetic;
+    `around`, unrolled O grids go round along xi.
     """
 
     def __init__(
@@ -123,10 +119,7 @@ class Network:
         self.heads = len(exact["project"])
 
     def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
-        """Return the fields (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
-
-        Of one `head` alone (batch, m, n).
-        """
+        """Return the fields (batch, heads, m, n), or one `head`'s, for features (batch, m, n, FEATURES)."""
         pairs = self.answers(seen)
         m, n = pairs.shape[1:3]
         pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
@@ -142,19 +135,15 @@ class Network:
         try:
             program = idle.pop()
         except IndexError:
-            program = self._program(m, n)
+            program = self._recorded(np.empty((CHUNK, m, n, FEATURES), self.dtype))
         for k in range(0, batch, CHUNK):
             program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
         idle.append(program)
         return answer.reshape(batch, m, n, self.heads, 2)
 
-    def _program(self, m: int, n: int) -> LayerProgram:
-        """Return the layers for `CHUNK` domains or fewer, on arrays that no other program has."""
+    def _recorded(self, h: Reals) -> LayerProgram:
+        """Return the layers for as many domains as `h` has or fewer, on arrays that no other program has."""
         work = _Work(self._layers, self.around)
-        self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
-        return work.program
-
-    def _record(self, work: _Work, h: Reals) -> None:
         h = work.layer("lift", h)
         skips: list[Reals] = []
         coarsest = len(self.blocks) - 1
@@ -167,6 +156,7 @@ class Network:
             h = work.finer(work.layer(f"up.{level}", h), skips[level])
             h = work.blocks(f"after.{level}", self.blocks[level], h)
         work.layer("project", work.silu(h, pad=0))
+        return work.program
 
 
 class _Work:

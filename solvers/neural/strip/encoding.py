@@ -27,11 +27,9 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 
     `wall`, `far`: (batch, 2 MODES + 1) modes of F on the two walls.
 
-    Returns
-    -------
-    channels : (batch, CHANNELS, COLUMNS) the harmonic base and its slope along theta at `DEPTHS`, unit size.
-    scalars : (batch, SCALARS) log size, strip height, shear, each shifted and scaled to about one.
-    size : (batch,) root mean square of the walls' deviation from straight.
+    Channels (batch, CHANNELS, COLUMNS) are the harmonic base and its slope along theta at `DEPTHS`, at unit
+    size; scalars (batch, SCALARS) log size, strip height and shear, about one; size (batch,) the root mean
+    square of the walls' deviation from straight.
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
