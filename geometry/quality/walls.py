@@ -28,22 +28,16 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """The row of cells at one named stretch of wall.
-
-    Parameters
-    ----------
-    name, side : of the stretch.
-    height : distance from each wall node to the next node of the line that leaves it, in the grid's unit.
-    off_square : deviation from 90 degrees of the two angles of every cell at the wall.
-    equal_cells : how many cells from the wall on are as high as the first, within 1 %, at the node where they
-        are fewest; 32 at the most.
-    """
+    """The row of cells at one named stretch of wall."""
 
     name: str
     side: str
     height: Spread
+    """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
     off_square: Spread
+    """Deviation from 90 degrees of the two angles of every cell at the wall."""
     equal_cells: int
+    """Cells from the wall on as high as the first, within 1 %, where they are fewest; 32 at the most."""
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:

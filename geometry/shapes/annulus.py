@@ -17,14 +17,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 
 class Annulus:
-    """A body and the closed curve around it.
-
-    Parameters
-    ----------
-    body : the inner curve.
-    outer : the outer one, clockwise.
-    name : what the input called it.
-    """
+    """A body and the closed, clockwise curve around it."""
 
     topology: Topology = "o"
 

@@ -31,16 +31,9 @@ _NEAR = 0.1  # chords from the corner within which the surface is given by point
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     """Return the curve of a blunt section with its trailing corners rounded, and where the rounding ends.
 
-    Parameters
-    ----------
-    curve : closed; its first point is the middle of the base, its second and its last are the corners.
-    chord : unit of the caps.
-
-    Returns
-    -------
-    tuple
-        the curve, from the middle of the base on as before, and the arc length at which it leaves the rounded
-        part; it comes back to it as far before its end.
+    The closed curve's first point is the middle of the base, its second and its last are the corners. The
+    new one begins there too, leaves the rounded part at the arc length returned and comes back to it as far
+    before its end.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
@@ -48,9 +41,8 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     near = along * 1.25 ** np.arange(1 + int(np.log(max(_NEAR * chord / along, 1.25)) / np.log(1.25)))
     inner = (curve.knots > half + 1.2 * near[-1]) & (curve.knots < length - half - 1.2 * near[-1])
     corner_arcs = curve.corners[(curve.corners > half + along) & (curve.corners < length - half - along)]
-    arcs = np.unique(
-        np.concatenate([half + near, curve.knots[inner], length - half - near[::-1], corner_arcs])
-    )
+    surface = half + near, curve.knots[inner], length - half - near[::-1], corner_arcs
+    arcs = np.unique(np.concatenate(surface))
     lower = _fillet(curve, half - across, half, half + along)
     upper = _fillet(curve, length - half + across, length - half, length - half - along)[::-1]
     points = np.concatenate([curve.points[:1], lower[:-1], curve.at(arcs), upper[1:]])
@@ -64,13 +56,8 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
 
     The density of nodes follows length and turning; turning is averaged over two cells to each side, as the
     cells where the base turns most are the skewest of the grid. A slanted base turns more at one end, and has
-    more cells there.
-
-    Parameters
-    ----------
-    curve : of `rounded_base`.
-    end : arc length at which the rounding ends.
-    cells : of a half that turns by a right angle, at least 3.
+    more cells there. `curve` and `end` are those of `rounded_base`, `cells`, at least 3, those of a half that
+    turns by a right angle.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; place n is the middle

@@ -24,10 +24,8 @@ _POINTS = 9
 def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
     """Return the ring (m, 2) of a blunt section, closed by a wedge; it starts at the tip.
 
-    Parameters
-    ----------
-    points : (n, 2) clockwise, from the lower corner of the base to the upper one.
-    tangents : unit directions (2,) in which the lower and the upper surface arrive at the base.
+    The points (n, 2) run clockwise from the lower corner of the base to the upper one; the `tangents` are the
+    unit directions (2,) in which the lower and the upper surface arrive there.
     """
     lower, upper = tangents
     gap = float(np.hypot(*(points[0] - points[-1])))
