@@ -24,8 +24,7 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Side, Topology, read_only
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
+from meshonet.geometry.blocks.grid import UNKNOWN, Grid, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.blocks.resample import resample_edges, resample_patches
 from meshonet.geometry.blocks.validate import check_edges

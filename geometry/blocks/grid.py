@@ -24,12 +24,23 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of, topology_of, wake_cells
-from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Names and values of the numbers that made a sample, and ``train``, ``test`` or nothing."""
+
+    parameters: tuple[tuple[str, float], ...] = ()
+    split: str = ""
+
+
+UNKNOWN = Origin()
+"""Of a sample that no dataset holds."""
 
 
 @dataclass(frozen=True, eq=False)

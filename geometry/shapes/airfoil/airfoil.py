@@ -16,8 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc, moved_note, section_curve
-from meshonet.geometry.shapes.airfoil.te_fillet import rounded_base
-from meshonet.geometry.shapes.airfoil.te_wedge import wedged_base
+from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base, wedged_base
 from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
@@ -119,7 +118,7 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def rounded(self) -> Airfoil:
-        """Return the same airfoil with the corners of its blunt base rounded off (`te_fillet`)."""
+        """Return the same airfoil with the corners of its blunt base rounded off."""
         if not self.blunt:
             return self
         body = copy(self)
@@ -181,7 +180,7 @@ class Airfoil:
             return body.moved_apart()._around(sampling)
 
     def wedged(self) -> Airfoil:
-        """Return the same airfoil with its blunt base closed by a wedge (`te_wedge`)."""
+        """Return the same airfoil with its blunt base closed by a wedge."""
         if not self.blunt:
             return self
         first, _, last = self._arcs

@@ -21,7 +21,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shapes.airfoil.te_fillet import half_rounds
+from meshonet.geometry.shapes.airfoil.trailing_edge import half_rounds
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.laws import LAWS, TanhLaw
 from meshonet.geometry.spacing.sampling import Sampling
