@@ -22,7 +22,7 @@ COMPARED = (
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far a grid is from a reference, and how its angles compare with that's."""
+    """How far a grid is from a reference, and how its angles compare with its."""
 
     difference: Difference
     folded: int
