@@ -162,10 +162,8 @@ def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connecti
     all_doubled = len(south) % 2 == 1 and np.array_equal(south[:half], south[: -half - 1 : -1])
     cells = (half if all_doubled else wake_nodes(south)) - 1  # all but the middle: a wall of two cells
     if cells < 1:
-        raise InputError(
-            "the south side of a C grid does not begin and end with the nodes of a wake",
-            "make both sides of the wake coincide, or call it quad",
-        )
+        remedy = "make both sides of the wake coincide, or call it quad"
+        raise InputError("the south side of a C grid does not begin and end with the nodes of a wake", remedy)
     return (c_wake(len(south), cells),)
 
 

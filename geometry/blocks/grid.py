@@ -89,10 +89,6 @@ class Grid(Connected):
 
         The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
         Raises InputError: see `Block`; an O grid that is not closed, a C grid without a wake.
-
-        >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
-        >>> Grid.from_nodes(np.stack([x, y], axis=-1)).topology
-        'quad'
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]

@@ -31,10 +31,6 @@ def coarser_grid(grid: Grid, k: int) -> Grid:
     """Return the grid of every `k`-th node along both directions, its patches along.
 
     Raises InputError: `k` does not divide the cells along a direction, or a patch would lose an end.
-
-    >>> x, y = np.meshgrid(np.arange(5.0), np.arange(3.0), indexing="ij")
-    >>> coarser_grid(Grid.from_nodes(np.stack([x, y], axis=-1)), 2).x[:, 0]
-    array([0., 2., 4.])
     """
     _check(grid.ni, grid.nj, k)
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
@@ -81,10 +77,6 @@ def normalised(grid: Grid) -> Grid:
     longer side of the box becomes 1.
 
     Raises InputError: the body has no length.
-
-    >>> x, y = np.meshgrid([2.0, 4.0], [1.0, 2.0], indexing="ij")
-    >>> normalised(Grid.from_nodes(np.stack([x, y], axis=-1))).nodes[1, 1].tolist()
-    [1.0, 0.5]
     """
     if not grid.around_body:
         corner = grid.nodes.min(axis=(0, 1))

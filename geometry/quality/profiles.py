@@ -165,11 +165,9 @@ class Figures:
 
     def _wall_growth(self) -> Extreme | None:
         sides = {patch.side for patch in self.walls}
-        along = [
-            self.growth.eta if sides & {"south", "north"} else None,
-            self.growth.xi if sides & {"west", "east"} else None,
-        ]
-        return max((extreme for extreme in along if extreme), key=lambda extreme: extreme.max, default=None)
+        families = (self.growth.eta, {"south", "north"}), (self.growth.xi, {"west", "east"})
+        leaving = [extreme for extreme, ends in families if extreme and sides & ends]
+        return max(leaving, key=lambda extreme: extreme.max, default=None)
 
     def _far_field(self) -> tuple[float, None] | None:
         if not self.grid.around_body or not self.walls:

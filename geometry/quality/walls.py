@@ -41,13 +41,7 @@ class WallRow:
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:
-    """Return the figures of the cells at `patch` of the boundary of `grid`.
-
-    >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 0.1, 0.2, 0.4], indexing="ij")
-    >>> row = wall_row(Grid.from_nodes(np.stack([x, y], axis=-1)), Patch("wall", "south", 0, 2))
-    >>> row.height.max, row.off_square.max, row.equal_cells
-    (0.1, 0.0, 2)
-    """
+    """Return the figures of the cells at `patch` of the boundary of `grid`."""
     lines = leaving(grid, patch)
     steps = np.diff(lines, axis=1)
     heights = np.hypot(steps[..., 0], steps[..., 1])

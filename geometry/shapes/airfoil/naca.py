@@ -67,9 +67,6 @@ def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
     """Return half the thickness in chords at places x (any shape, 0 to 1) of a section `ratio` thick.
 
     y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), or 0.1036 at the end when sharp.
-
-    >>> thickness(np.array([0.0, 0.3, 1.0]), 0.12).round(5).tolist()
-    [0.0, 0.06002, 0.00126]
     """
     last = -0.1036 if sharp else -0.1015
     inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))
