@@ -45,16 +45,10 @@ UNKNOWN = Origin()
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Grid(Connected):
-    """Blocks, patches and connections; validates itself.
+    """At least one block, named stretches of the sides, and where sides are the same nodes; validates itself.
 
-    Parameters
-    ----------
-    blocks : at least one.
-    patches : named stretches of the sides.
-    connections : where sides of blocks are the same nodes.
-    name : what the input called this shape.
-    provenance : how the grid was made: method, settings, version.
-    origin : that of its boundary.
+    `name` is what the input called the shape, `provenance` how the grid was made: method, settings, version;
+    `origin` is that of its boundary.
 
     Raises InputError: no block; a patch outside its side; connected sides whose nodes differ.
     """

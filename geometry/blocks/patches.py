@@ -38,14 +38,9 @@ def kind_of(name: str) -> Kind:
 class Patch:
     """Nodes ``start`` to ``stop``, both included, of one side of a block, under a name.
 
-    Parameters
-    ----------
-    name : what the patch is called in files.
-    side : of its block. South and north count nodes along i, west and east along j.
-    start, stop : first and last node along the side.
-    across : the same along the second direction of a side of a block of three; None is all of it.
-    block : number of the block.
-    kind : of boundary; derived from the name unless set.
+    South and north count nodes along i, west and east along j; `across` is the first and last node along the
+    second direction of a side of a block of three, None all of it. The kind of boundary is derived from the
+    name unless set.
     """
 
     name: str

@@ -114,11 +114,10 @@ def _sample(x: Floats, y: Floats) -> Floats:
 
 
 def _tiles(t: NDArray[np.floating[Any]], cells: int) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Return the nodes (tiles, size + 3) of tiles with a cell more to each side.
+    """Return the nodes (tiles, size + 3) of tiles with a cell more to each side, placed by t from 0 to 1.
 
-    They are placed by t (tiles,) from 0 to 1. Beyond the first and the last node the grid is mirrored, so
-    that cells there have neighbours of their own area. The second result (tiles, size + 2) says which cells
-    are in the tile and in the grid.
+    Beyond its ends the grid is mirrored, so that cells there have neighbours of their own area. The second
+    result (tiles, size + 2) says which cells are in the tile and in the grid.
     """
     size = min(TILE, cells)
     start = np.rint(t * (cells + size - 2)).astype(np.intp) - (size - 1)

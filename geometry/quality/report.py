@@ -13,6 +13,7 @@ from meshonet.geometry.quality.gates import Gate
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import Quality, measure, worst_cells
 from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
+from meshonet.geometry.quality.walls import WallRow
 
 COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
@@ -67,16 +68,7 @@ class QualityReport:
             "folded": self.quality.folded,
             "worst_cells": [vars(cell) for cell in self.worst],
             "quality": quality_dict(self.quality),
-            "walls": [
-                {
-                    "name": row.name,
-                    "side": row.side,
-                    "first_cell": vars(row.height),
-                    "off_square": vars(row.off_square),
-                    "equal_cells": row.equal_cells,
-                }
-                for row in self.figures.wall_rows
-            ],
+            "walls": [_wall(row) for row in self.figures.wall_rows],
         }
         if self.profile and growth:
             facts["growth"] = {"xi": _extreme(growth.xi), "eta": _extreme(growth.eta)}
@@ -121,6 +113,11 @@ def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
     own, other = quality["max_angle"], measure(reference)
     angle = other["max_angle"]
     return Comparison(difference, other.folded, own.max / angle.max, own.mean / angle.mean)
+
+
+def _wall(row: WallRow) -> dict[str, Any]:
+    sizes = {"first_cell": vars(row.height), "off_square": vars(row.off_square)}
+    return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells}
 
 
 def _check(result: CheckResult) -> dict[str, Any]:

@@ -163,10 +163,7 @@ def c_boundary(
 
 
 def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
-    """Return nodes of the far field (body + 2 wake + 1, 2), clockwise from below the outlet.
-
-    Equal steps around the front; behind it they grow or shrink evenly to the outlet.
-    """
+    """Return the far field (body + 2 wake + 1, 2), in equal steps in front, evenly changing ones behind."""
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
     front = centre + radius * (np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * normal)
