@@ -63,7 +63,7 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: indices of its lower-left node and the physical position of its centre."""
+    """A folded cell: the indices of its lower-left node and its centre."""
 
     i: int
     j: int

@@ -16,8 +16,7 @@ from meshonet.formats.mesh.metadata import plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.grid import Grid, Origin
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 

@@ -43,9 +43,6 @@ class Block:
     that, which takes a tenth of the time of some methods.
 
     Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
-
-    >>> Block(np.zeros((4, 3, 2))).counts
-    (4, 3)
     """
 
     nodes: Floats

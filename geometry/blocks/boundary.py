@@ -24,8 +24,7 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Side, Topology, read_only
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
+from meshonet.geometry.blocks.grid import UNKNOWN, Grid, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.blocks.resample import resample_edges, resample_patches
 from meshonet.geometry.blocks.validate import check_edges
@@ -89,9 +88,8 @@ class Boundary(Connected):
         for side, opposite in (("south", "north"), ("west", "east")):
             n, m = len(getattr(self, side)), len(getattr(self, opposite))
             if n != m:
-                raise InputError(
-                    f"{side} has {n} nodes and {opposite} has {m}", "opposite edges need equal counts"
-                )
+                counts = f"{side} has {n} nodes and {opposite} has {m}"
+                raise InputError(counts, "opposite edges need equal counts")
         self._check_corners()
         object.__setattr__(self, "connections", connections_of(self.topology, self.south, self.nj))
         if not self.chord:
@@ -231,7 +229,6 @@ def _edge(side: str, points: Floats) -> Floats:
     same = np.flatnonzero((np.diff(edge, axis=0) == 0).all(axis=1))
     if same.size:
         x, y = edge[same[0]]
-        raise InputError(
-            f"{side} nodes {same[0]} and {same[0] + 1} are the same point ({x:.6g}, {y:.6g})", "remove one"
-        )
+        nodes = f"{side} nodes {same[0]} and {same[0] + 1}"
+        raise InputError(f"{nodes} are the same point ({x:.6g}, {y:.6g})", "remove one")
     return edge

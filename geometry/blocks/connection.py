@@ -47,16 +47,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Connection:
-    """A part of one side and a part of another, the donor, whose nodes are the same.
-
-    Parameters
-    ----------
-    block, side, range : first and last node along each direction of that side.
-    donor, donor_side, donor_range : the same of the other side, ascending too.
-    orientation : for each direction of the side, the donor's that runs along it, counted from 1, negative
-        where it runs the other way.
-    transform : what carries the nodes of the side to the donor's, when they are periodic.
-    """
+    """A part of one side and a part of another, the donor, whose nodes are the same; both ranges ascend."""
 
     block: int
     side: Side
@@ -65,7 +56,9 @@ class Connection:
     donor_side: Side
     donor_range: Range
     orientation: tuple[int, ...]
+    """The donor's direction along each of the side's, counted from 1, negative where they are opposed."""
     transform: Motion | None = None
+    """What carries the nodes of the side to the donor's, when they are periodic."""
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the nodes of both sides in one order (n, d) or (n, m, d), the first moved by `transform`."""
@@ -162,10 +155,8 @@ def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connecti
     all_doubled = len(south) % 2 == 1 and np.array_equal(south[:half], south[: -half - 1 : -1])
     cells = (half if all_doubled else wake_nodes(south)) - 1  # all but the middle: a wall of two cells
     if cells < 1:
-        raise InputError(
-            "the south side of a C grid does not begin and end with the nodes of a wake",
-            "make both sides of the wake coincide, or call it quad",
-        )
+        remedy = "make both sides of the wake coincide, or call it quad"
+        raise InputError("the south side of a C grid does not begin and end with the nodes of a wake", remedy)
     return (c_wake(len(south), cells),)
 
 

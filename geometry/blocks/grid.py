@@ -24,7 +24,6 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of, topology_of, wake_cells
-from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
 
@@ -32,18 +31,24 @@ if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality
 
 
+@dataclass(frozen=True)
+class Origin:
+    """Names and values of the numbers that made a sample, and ``train``, ``test`` or nothing."""
+
+    parameters: tuple[tuple[str, float], ...] = ()
+    split: str = ""
+
+
+UNKNOWN = Origin()
+"""Of a sample that no dataset holds."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Grid(Connected):
-    """Blocks, patches and connections; validates itself.
+    """At least one block, named stretches of the sides, and where sides are the same nodes; validates itself.
 
-    Parameters
-    ----------
-    blocks : at least one.
-    patches : named stretches of the sides.
-    connections : where sides of blocks are the same nodes.
-    name : what the input called this shape.
-    provenance : how the grid was made: method, settings, version.
-    origin : that of its boundary.
+    `name` is what the input called the shape, `provenance` how the grid was made: method, settings, version;
+    `origin` is that of its boundary.
 
     Raises InputError: no block; a patch outside its side; connected sides whose nodes differ.
     """
@@ -78,10 +83,6 @@ class Grid(Connected):
 
         The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
         Raises InputError: see `Block`; an O grid that is not closed, a C grid without a wake.
-
-        >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
-        >>> Grid.from_nodes(np.stack([x, y], axis=-1)).topology
-        'quad'
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]

@@ -44,9 +44,8 @@ def check_edges(boundary: Boundary) -> None:
         raise InputError(_where(boundary, path, crossing), REMEDY)
     if len(lines) > 1 and boundary.around_body and not _inside(lines[0][0], lines[-1]):
         x, y = lines[0][0]
-        raise InputError(
-            f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field", "use a far field around the body"
-        )
+        outside = f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field"
+        raise InputError(outside, "use a far field around the body")
 
 
 def _lines(boundary: Boundary) -> list[Floats]:

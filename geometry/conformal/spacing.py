@@ -98,17 +98,11 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
 def _shared_out(marks: Floats, count: int) -> Floats:
     """Return rising angles (count,) from 0 to 2 pi, near equal steps, with every mark on a node."""
     cells = count - 1
-    nodes = np.clip(
-        np.round(marks / (2.0 * np.pi) * cells),
-        1 + np.arange(len(marks)),
-        cells - 1 - np.arange(len(marks))[::-1],
-    )
-    return _monotone(
-        np.concatenate([[0.0], nodes, [float(cells)]]),
-        np.concatenate([[0.0], marks, [2.0 * np.pi]]),
-        np.arange(count, dtype=np.float64),
-        periodic=True,
-    )
+    rank = np.arange(len(marks))
+    nodes = np.clip(np.round(marks / (2.0 * np.pi) * cells), 1 + rank, cells - 1 - rank[::-1])
+    knots = np.concatenate([[0.0], nodes, [float(cells)]])
+    angles = np.concatenate([[0.0], marks, [2.0 * np.pi]])
+    return _monotone(knots, angles, np.arange(count, dtype=np.float64), periodic=True)
 
 
 def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
@@ -124,18 +118,14 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
 
 
 def _monotone(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
-    """Return the piecewise cubic through rising (x, y) that rises everywhere, at points inside x.
-
-    As `meshonet.geometry.curves.monotone`, but the slopes at the ends are those of the end intervals;
-    `periodic` lets the two ends share one.
-    """
+    """Return the monotone cubic through rising (x, y) with its end intervals' slopes, one if `periodic`."""
     h = np.diff(x)
     rise = np.diff(y) / h
     if periodic:
-        h, rise = np.append(h, h[0]), np.append(rise, rise[0])
-    inner = inner_slopes(h, rise)
-    slope = np.concatenate([inner[-1:], inner]) if periodic else np.concatenate([rise[:1], inner, rise[-1:]])
-    h = np.diff(x)
+        inner = inner_slopes(np.append(h, h[0]), np.append(rise, rise[0]))
+        slope = np.concatenate([inner[-1:], inner])
+    else:
+        slope = np.concatenate([rise[:1], inner_slopes(h, rise), rise[-1:]])
     k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
     v = (at - x[k]) / h[k]
     value = (

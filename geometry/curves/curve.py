@@ -108,21 +108,10 @@ class Curve:
 
     def tangent(self, s: Floats) -> Floats:
         """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the side that leaves it."""
-        d = self._derivative(*self._locate(s))
-        return np.asarray(d / _norm(d)[..., None])
-
-    def _derivative(self, i: Indices, t: Floats) -> Floats:
+        i, t = self._locate(s)
         d = np.empty((len(t), 2))
         curve_slopes(self._cubic, i, t, d)
-        return d
-
-    def curvature(self, s: Floats) -> Floats:
-        """Return the curvature (m,), 1/length, at arc lengths `s` (m,), positive where it turns left."""
-        i, t = self._locate(s)
-        d = self._derivative(i, t)
-        _, _, c, e = self._cubic
-        bend = 2 * c[i] + 6 * t[..., None] * e[i]
-        return np.asarray((d[..., 0] * bend[..., 1] - d[..., 1] * bend[..., 0]) / _norm(d) ** 3)
+        return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
         """Return points on the curve at `places`, 0 to below 1, of each interval, and an open one's end."""
@@ -152,7 +141,3 @@ def _checked(points: Floats, closed: bool) -> Floats:
         x, y = nodes[same[0]]
         raise InputError(f"curve point {same[0]} and the next are the same, ({x:.6g}, {y:.6g})", "remove one")
     return nodes
-
-
-def _norm(d: Floats) -> Floats:
-    return np.asarray(np.hypot(d[..., 0], d[..., 1]))

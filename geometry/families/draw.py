@@ -10,7 +10,7 @@ from importlib import import_module
 import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.grid import Origin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.family import FAMILIES, Family, family
 from meshonet.geometry.families.split import split

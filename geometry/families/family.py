@@ -18,33 +18,25 @@ from meshonet.geometry.shapes.far_field import far_circle, straight
 from meshonet.geometry.spacing.along_curve import on_corners
 
 Corners = list[tuple[float, float]]
-Make = Callable[[float, int, int], Boundary]
 
 
 @dataclass(frozen=True)
 class Family:
-    """A shape that one number varies.
-
-    Parameters
-    ----------
-    name : of the family.
-    parameter : what the number is, with its unit.
-    low, high : the range it is drawn from when none is given.
-    least, most : outside these there is no such shape.
-    topology : of the boundaries.
-    make : parameter, ni, nj to a boundary.
-    to_low : extrapolation goes from high values of the parameter to low ones.
-    """
+    """A shape that one number varies, drawn from `low` to `high` unless said otherwise."""
 
     name: str
     parameter: str
+    """What the number is, with its unit."""
     low: float
     high: float
     least: float
     most: float
+    """Outside these two there is no such shape."""
     topology: Topology
-    make: Make
+    make: Callable[[float, int, int], Boundary]
+    """Parameter, ni, nj to a boundary."""
     to_low: bool = False
+    """Extrapolation goes from high values of the parameter to low ones."""
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
         """Return the member at `parameter` with ni by nj nodes, called after both.

@@ -34,8 +34,6 @@ def split(
 
     Raises InputError: an unknown way, fewer than three members, or all with the same parameter.
 
-    >>> split([0.3, 0.1, 0.2], "interpolation")
-    ('train', 'train', 'test')
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')
     """

@@ -35,9 +35,6 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
     """Return the angle (n,) in radians by which a polygon (n, 2) turns at each point.
 
     Left is positive; the ends of an open polygon turn by 0.
-
-    >>> np.degrees(turning(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))).tolist()
-    [0.0, 90.0, 0.0]
     """
     ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
     step = ring[1:] - ring[:-1]
@@ -54,9 +51,6 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     given by few points, which turns by up to 155 degrees at one of them: there the thickness grows like the
     square root of the distance, at an edge like the distance (`growth_exponent`). A closed polygon of at most
     `few` points (n, 2) is taken for one, not for samples of a round body.
-
-    >>> find_corners(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).tolist()
-    [1]
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:

@@ -17,14 +17,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 
 class Annulus:
-    """A body and the closed curve around it.
-
-    Parameters
-    ----------
-    body : the inner curve.
-    outer : the outer one, clockwise.
-    name : what the input called it.
-    """
+    """A body and the closed, clockwise curve around it."""
 
     topology: Topology = "o"
 
@@ -44,10 +37,7 @@ class Annulus:
         return replace(boundary, north=north, west=cut, east=cut)
 
     def _around(self, circle: Floats) -> Floats:
-        """Return nodes (n, 2) of the outer curve in about equal steps, its corners among them.
-
-        They begin where the circle does, seen from its middle.
-        """
+        """Return nodes (n, 2) of the outer curve in about equal steps, from where the circle begins."""
         middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
         arcs = np.linspace(0.0, self._outer.length, 2049)[:-1]

@@ -18,13 +18,9 @@ _BLOCK = 1 << 22  # distances worked out at a time
 
 
 class Labelled:
-    """A shape whose curve has names, which become patches of its boundaries.
+    """A shape whose curve consists of straight `edges` (n, 2, 2) with names (n,), which become patches.
 
-    Parameters
-    ----------
-    shape : what is sampled.
-    edges : (n, 2, 2) both ends of each straight edge of its curves.
-    names : (n,) name of each, empty for none.
+    Edges without one have an empty name.
     """
 
     def __init__(self, shape: Shape, edges: Floats, names: Sequence[str]) -> None:

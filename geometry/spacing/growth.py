@@ -24,18 +24,14 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
     2.0
     """
     if first * cells > length * (1 + 1e-12):
-        raise InputError(
-            f"{cells} cells, of which the first is {first:.3g} high, are longer than the far field is away "
-            f"({length:.3g})",
-            "use a smaller wall spacing or fewer rows",
+        problem = (
+            f"{cells} cells, of which the first is {first:.3g} high, are longer than the far field is away"
         )
+        raise InputError(f"{problem} ({length:.3g})", "use a smaller wall spacing or fewer rows")
     wanted, most = length / first, math.log(LARGEST)
     if _sum(most, cells) < wanted:
-        raise InputError(
-            f"{cells} cells from {first:.3g} to the far field at {length:.3g} would grow by more than "
-            f"{LARGEST:g} each",
-            "use more rows or a larger wall spacing",
-        )
+        problem = f"{cells} cells from {first:.3g} to the far field at {length:.3g} would grow by more than"
+        raise InputError(f"{problem} {LARGEST:g} each", "use more rows or a larger wall spacing")
     if cells == 1 or wanted <= cells:
         return 1.0
     rate = min(math.log(wanted) / (cells - 1), most)  # where the last cell alone is as long: above the root

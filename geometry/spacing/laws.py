@@ -122,12 +122,7 @@ def _inverse_sinc(b: float) -> float:
 
 
 def spacing_tanh(n: int, first: float, last: float) -> Floats:
-    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`).
-
-    >>> steps = np.diff(spacing_tanh(21, 0.01, 0.02))
-    >>> [float(round(step, 6)) for step in (steps[0], steps[-1])]
-    [0.01, 0.02]
-    """
+    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`)."""
     return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))
 
 

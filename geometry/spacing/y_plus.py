@@ -27,15 +27,11 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
         raise InputError(f"a y+ of {y_plus:g}", "use more than 0 and at most 1e4", parameter="y_plus")
     if not 1e3 <= reynolds <= 1e12:
         raise InputError(f"a Reynolds number of {reynolds:g}", "use 1e3 to 1e12", parameter="reynolds")
+    local, part = reynolds * chord_fraction, f"{chord_fraction:g} of the chord"
     if not 0 < chord_fraction <= 1:
-        raise InputError(
-            f"{chord_fraction:g} of the chord", "use more than 0 and at most 1", parameter="chord_fraction"
-        )
-    if reynolds * chord_fraction < 1e3:
-        raise InputError(
-            f"a Reynolds number of {reynolds * chord_fraction:g} at {chord_fraction:g} of the chord",
-            "use a larger part, so that it is 1e3 or more",
-            parameter="chord_fraction",
-        )
-    friction = (2.0 * math.log10(reynolds * chord_fraction) - 0.65) ** -2.3
+        raise InputError(part, "use more than 0 and at most 1", parameter="chord_fraction")
+    if local < 1e3:
+        remedy = "use a larger part, so that it is 1e3 or more"
+        raise InputError(f"a Reynolds number of {local:g} at {part}", remedy, parameter="chord_fraction")
+    friction = (2.0 * math.log10(local) - 0.65) ** -2.3
     return y_plus / (reynolds * math.sqrt(0.5 * friction))

@@ -15,8 +15,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.transform import coarser_boundary
 from meshonet.solvers.algebraic.resample.grids import evaluate
 from meshonet.solvers.method import Wrapper
 from meshonet.solvers.solution import Solution
