@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Grid(Connected):
     """Blocks, patches and connections; validates itself.
 
@@ -141,6 +141,11 @@ class Grid(Connected):
     def y(self) -> Floats:
         """(ni, nj) y coordinates, C-contiguous, a view."""
         return self.nodes[..., 1]
+
+    def __repr__(self) -> str:
+        sizes = ", ".join(" x ".join(map(str, block.nodes.shape[:-1])) for block in self.blocks)
+        name = f"{self.name!r}, " if self.name else ""
+        return f"Grid({name}{self.topology}, {sizes} nodes, patches {[p.name for p in self.patches]})"
 
     def face(self, block: int, side: Side) -> Floats:
         """Return the nodes of a side of a block."""

@@ -54,6 +54,11 @@ class Quality:
         """Return the summary of one metric."""
         return self.metrics[name]
 
+    def __str__(self) -> str:
+        rows = [f"{self.cells} cells, {self.folded} folded", f"{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"]
+        rows += [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
+        return "\n".join(rows)
+
 
 def count_folded(nodes: Floats) -> int:
     """Return how many cells of `nodes` (ni, nj, 2) are folded.
