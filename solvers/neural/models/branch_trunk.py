@@ -7,20 +7,14 @@ With s the coordinates of m sensors, [:k] and [k:] the halves of features for x 
     MIONet         x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b         y by [k:]
     POD-DeepONet   (x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)
 
-MeshONet is to the paper's letter: widths, powers and weights of the loss are the authors' published settings:
-branch 50-64-128-64-50, trunk 12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000
-boundary; 54,482 parameters. Xiao et al., arXiv 2501.11937.
-
-DeepONet's split features are how Lu et al. treat several outputs. Lu et al., Nature Machine Intelligence 3
-(2021) 218; Computer Methods in Applied Mechanics and Engineering 393 (2022) 114778, section 3.1.6.
-
-MIONet is the multi-input operator that the paper builds its theory on; either coordinate sees both. Jin, Meng
-& Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
-
+MeshONet is to the paper's letter, with the authors' published settings: branch 50-64-128-64-50, trunk
+12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000 boundary; 54,482 parameters.
 POD-DeepONet's trunk is the proper orthogonal decomposition of the training grids, x and y of a grid one
-vector. Modes are scaled by the root mean square of their coefficients over the training set, so that the
-branch answers numbers of the order of 1. It answers on the nodes of the training grids. Lu et al. (2022),
-section 3.1.4.
+vector, scaled so that the branch answers numbers of the order of 1; it answers on their nodes.
+
+Xiao et al., arXiv 2501.11937; Lu et al., Nature Machine Intelligence 3 (2021) 218; Computer Methods in
+Applied Mechanics and Engineering 393 (2022) 114778, sections 3.1.4 and 3.1.6; Jin, Meng & Lu, SIAM Journal on
+Scientific Computing 44 (2022) A3490.
 """
 
 from __future__ import annotations

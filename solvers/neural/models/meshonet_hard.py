@@ -5,19 +5,14 @@
     (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
 H is the harmonic extension of the boundary and B is zero there, so that the answer has the boundary's own
-nodes, whatever the weights. The branch sees both coordinates, since Winslow's equations couple them; the
-network learns the difference from H, whose size is s. Of an O grid the lift is periodic in xi, and so is the
-answer.
+nodes, whatever the weights. The network learns the difference from H, whose size is s. Of an O grid the lift
+is periodic in xi, and so is the answer.
 
-With `modes` the trunk is not trained: B trunk is replaced by modes of the training grids' differences from H
-(proper orthogonal decomposition, x and y together, so that they share them). At a sharp kink of the boundary
-the differences are not smooth, or the cells are small; a trained trunk, smooth and as wrong there as
-elsewhere, folds them. An error in the coefficient of a mode is small where the mode is. Lu et al., Computer
-Methods in Applied Mechanics and Engineering 393 (2022) 114778.
-
-Beyond the training shapes the branch has nothing to go by, and what it adds to H may fold cells. With
-`within` it sees sensors no further out than any training shape's: H follows the boundary, the difference
-stays that of the last shapes known.
+With `modes`, B trunk is replaced by modes of the training grids' differences from H (proper orthogonal
+decomposition of x and y together): where they are small, at sharp kinks of the boundary, so are errors, which
+of a smooth trained trunk fold cells there. Lu et al., Computer Methods in Applied Mechanics and Engineering
+393 (2022) 114778. With `within` the branch sees sensors no further out than any training shape's, since what
+it adds to H beyond them may fold cells.
 """
 
 from __future__ import annotations

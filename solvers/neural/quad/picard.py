@@ -6,12 +6,9 @@ Winslow's equations with the coefficients of the last grid::
     alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
 
 Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
-at their means over the domain. Differences are of nearly fourth order: three quarters of the leading error
-are taken out, which leaves that of a grid with half the steps.
-
-What is left is the network's: corners and tails, where this many nodes are too few. A few more steps after
-it, which alone converge slowly or not at all where coefficients vary much, are extrapolated: each goes to
-where the step would vanish if it were linear along the last move. `xp` is numpy or torch.
+at their means over the domain. Three quarters of the leading error of differences are taken out. Steps after
+the network, which alone converge slowly or not at all, are extrapolated to where they would vanish if they
+were linear along the last move. `xp` is numpy or torch.
 Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
 (1965) 547-560.
 """

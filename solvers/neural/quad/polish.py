@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
-from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 

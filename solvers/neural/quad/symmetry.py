@@ -1,14 +1,13 @@
 """The eight relabellings of a quad, and convolutions that commute with them.
 
-A quad stays the same domain when its index axes are turned by quarters or mirrored, and the plane with
-them. These eight signed permutations form the dihedral group D4. A layer's channels come in sets of eight,
-one for each element; a kernel of the layer is one small set of weights, seen from every element::
+A quad stays the same domain when its index axes, and the plane with them, are turned by quarters or mirrored:
+the dihedral group D4. A layer's channels come in sets of eight, one for each element; a kernel of the layer
+is one small set of weights, seen from every element::
 
     K[h, g](p) = w[h^-1 g](h^-1 p)
 
-so the network's answer to a relabelled domain is the relabelled answer, to rounding, and an ordinary
-convolution with the expanded kernels computes it. Channels lie as (set, element), the element fastest; arrays
-are of numpy or of torch where `xp` is the module they are of.
+so the network's answer to a relabelled domain is the relabelled answer, to rounding. Channels lie as (set,
+element), the element fastest; arrays are of numpy or of torch where `xp` is the module they are of.
 Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
 """
 
