@@ -103,7 +103,6 @@ class StripGrid:
 
 @lru_cache(maxsize=8)
 def _interpolation(eta: bytes) -> Floats:
-    """Return `interpolation`, cached for other bodies with the same levels."""
     return read_only(interpolation(np.frombuffer(eta)))
 
 

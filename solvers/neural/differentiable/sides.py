@@ -65,9 +65,7 @@ class NetworkGrids:
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
 
     def _answer(self, seen: Tensor) -> Tensor:
-        """Return the network's answer (batch, m, n) to features."""
-        answer: Tensor = self._network(seen)[:, self._head]
-        return answer
+        return self._network(seen)[:, self._head]
 
 
 def as_complex(planes: Tensor) -> Tensor:

@@ -112,7 +112,6 @@ def _single(z: Complexes) -> Tensor:
 
 
 def _rim(nodes: Floats, sides: slice) -> bytes:
-    """Return a key that identifies a domain."""
     return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])[sides])
 
 

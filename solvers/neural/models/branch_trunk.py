@@ -33,20 +33,15 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """Dual branch, shared trunk.
-
-    `hidden`: widths of a branch's hidden layers (Adjust Layer); `features`: of branch and trunk, k in the
-    paper; `depth`: layers of the trunk, each `features` wide; `powers`: of xi and eta in the Lift-Layer, q in
-    the paper.
-    """
+    """Dual branch, shared trunk."""
 
     interior: ClassVar[float] = 900.0
     boundary: ClassVar[float] = 1000.0
 
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    depth: int = 4
-    powers: int = 4
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers (Adjust Layer)
+    features: int = 50  # of branch and trunk, k in the paper
+    depth: int = 4  # layers of the trunk, each `features` wide
+    powers: int = 4  # of xi and eta in the Lift-Layer, q in the paper
 
     def shapes(self, frame: Frame) -> Shapes:
         trunk = (4 + 2 * self.powers, *[self.features] * self.depth)
@@ -66,15 +61,11 @@ class MeshONet(Architecture):
 
 @dataclass(frozen=True)
 class DeepONet(Architecture):
-    """One branch, one trunk, features in halves.
+    """One branch, one trunk, features in halves."""
 
-    `hidden`: widths of a branch's hidden layers; `features`: of each coordinate; `width`, `depth`: of the
-    trunk's hidden layers.
-    """
-
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    width: int = 50
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
+    features: int = 50  # of each coordinate
+    width: int = 50  # of the trunk's hidden layers
     depth: int = 3
 
     def shapes(self, frame: Frame) -> Shapes:
@@ -107,14 +98,10 @@ class MIONet(DeepONet):
 
 @dataclass(frozen=True)
 class PODDeepONet(Architecture):
-    """A branch that answers coefficients of fixed modes.
+    """A branch that answers coefficients of fixed modes."""
 
-    `hidden`: widths of the branch's hidden layers; `features`: modes; fewer where the training set has fewer
-    grids.
-    """
-
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 16
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
+    features: int = 16  # modes; fewer where the training set has fewer grids
 
     @property
     def native(self) -> bool:

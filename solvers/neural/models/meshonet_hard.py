@@ -91,7 +91,8 @@ class MeshONetHard(Architecture):
     def _lifted(self, xp: Any, points: Any) -> Any:
         turn = 2.0 if self.periodic else 1.0
         angles = [np.pi * k * points for k in range(1, self.waves + 1)]
-        waves = [f(xp, turn * a[:, :1], a[:, 1:]) for a in angles for f in (_sines, _cosines)]
+        pairs = [(f(turn * a[:, :1]), f(a[:, 1:])) for a in angles for f in (xp.sin, xp.cos)]
+        waves = [wave for pair in pairs for wave in pair]
         linear = points[:, 1:] if self.periodic else points
         return xp.concatenate([linear, *waves], -1)
 
@@ -109,11 +110,3 @@ def _modes(targets: Floats, count: int) -> Floats:
     modes: Floats = np.zeros((rows.shape[1], count))
     modes[:, : len(largest)] = largest.T
     return modes
-
-
-def _sines(xp: Any, a: Any, b: Any) -> Any:
-    return xp.concatenate([xp.sin(a), xp.sin(b)], -1)
-
-
-def _cosines(xp: Any, a: Any, b: Any) -> Any:
-    return xp.concatenate([xp.cos(a), xp.cos(b)], -1)

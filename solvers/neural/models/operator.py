@@ -32,16 +32,13 @@ CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
-    """A model of `registry.ARCHITECTURES` with its weights.
-
-    `model`, `frame`: what it is and what it was trained on; `weights`: trained and fixed arrays, float32.
-    """
+    """A model of `registry.ARCHITECTURES` with its weights."""
 
     batched: ClassVar[bool] = False
 
-    model: Architecture = field(default_factory=Architecture)
+    model: Architecture = field(default_factory=Architecture)  # what it is and what it was trained on
     frame: Frame = field(default_factory=lambda: Frame("quad", 2, 2))
-    weights: Weights = field(default_factory=dict)
+    weights: Weights = field(default_factory=dict)  # trained and fixed arrays, float32
 
     @classmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:

@@ -36,19 +36,14 @@ IDENTITY: Element = (False, False, False)
 
 @dataclass(frozen=True)
 class Canonical:
-    """A boundary and what it is in its canonical frame.
-
-    `original`: the boundary; `boundary`: the same in the frame, its edges rounded and relabelled; `element`:
-    the relabelling; `origin`, `unit`: a point u there is ``origin + unit u`` here, its conjugate if the
-    element mirrors; `symmetric`: an O boundary that is its own mirror image.
-    """
+    """A boundary and what it is in its canonical frame."""
 
     original: Boundary
-    boundary: Boundary
+    boundary: Boundary  # the same in the frame, its edges rounded and relabelled
     element: Element
-    origin: complex
+    origin: complex  # a point u there is ``origin + unit u`` here, its conjugate if the element mirrors
     unit: complex
-    symmetric: bool = False
+    symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
         """Return the planes (2, ni, nj) of a grid in the frame, inside the original boundary."""

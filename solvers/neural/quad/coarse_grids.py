@@ -132,7 +132,6 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
 
 
 def _nearer(coarse: Floats, edges: Edges) -> Floats:
-    """Return grids `coarse` on more nodes, nearer to Winslow's."""
     planes = evaluate(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
     unit, factors = _unit(planes)
     near = unit.copy()

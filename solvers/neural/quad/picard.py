@@ -83,7 +83,11 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
     """Move planes `near` (batch, 2, m, n) in place as `approach` does; return the last steps, likewise."""
     last, (m, n) = np.empty_like(near), near.shape[2:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
-    xi = _plain(m - 1) if around else _folded(m)
+    if around:
+        table, values = _transform(m - 1, around=True)
+        xi = table, table, values[None]
+    else:
+        xi = _folded(m)
     winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
     return last
 
@@ -98,13 +102,6 @@ def _extrapolated(correction: Any, step: Any, move: Any, xp: Any) -> Any:
 def nodes_after(n: int) -> int:
     """Return on how many nodes along a direction the steps after the network are taken, of `n` asked for."""
     return min(max(n, LATENT), FINER)
-
-
-@lru_cache(maxsize=8)
-def _plain(n: int) -> Tables:
-    """Return the tables of n nodes that go round."""
-    table, values = _transform(n, around=True)
-    return table, table, values[None]
 
 
 @lru_cache(maxsize=8)
@@ -182,7 +179,7 @@ def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:
 
 @lru_cache(maxsize=8)
 def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
-    """Return a symmetric matrix that is its own inverse and makes second differences of n nodes diagonal."""
+    """Return a matrix, its own inverse, to which second differences are diagonal: sines, or Hartley's."""
     if around:
         k = np.arange(n)
         angle = 2.0 * np.pi * (np.outer(k, k) % n) / n

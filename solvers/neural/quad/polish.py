@@ -44,7 +44,10 @@ def polished(
     last = steps if head == WINSLOW else min((steps + 1) // 2 if newton else steps, LAST)
     begin = _newton if newton else _descent
     taken = [begin(grid, steps - last, topology) for grid in coarse]
-    ni, nj = (_most_nodes(n, head) for n in counts)
+    if head == WINSLOW:
+        ni, nj = (min(n, MOST_SOLVED) for n in counts)
+    else:
+        ni, nj = (n if n <= MOST_DESCENDED else LARGER_DESCENDED for n in counts)
     planes = evaluated(coarse, (ni, nj))
     for k, grid in enumerate(planes):
         if head == WINSLOW:
@@ -68,12 +71,6 @@ def _coarse(
         return o_grids.evaluate(planes, boundaries if own else [thinned(b, *counts) for b in boundaries])
 
     return o_grids.coarse_grids(boundaries, network, head), around
-
-
-def _most_nodes(n: int, head: int) -> int:
-    if head == WINSLOW:
-        return min(n, MOST_SOLVED)
-    return n if n <= MOST_DESCENDED else LARGER_DESCENDED
 
 
 def _newton(planes: Floats, steps: int, topology: Topology) -> int:

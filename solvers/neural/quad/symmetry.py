@@ -62,7 +62,6 @@ RELATIVE: Integers = PRODUCT[INVERSE]  # (8, 8) number of h^-1 g
 
 
 def _sum(*blocks: Reals) -> Floats:
-    """Return a block diagonal matrix."""
     sizes = [len(block) for block in blocks]
     result, at = np.zeros((sum(sizes), sum(sizes))), 0
     for block, size in zip(blocks, sizes, strict=True):
