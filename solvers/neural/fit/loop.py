@@ -20,8 +20,7 @@ from meshonet.solvers.neural.fit.team import Team
 
 SLOWER = "resume from the last checkpoint with a smaller learning rate"
 
-FREE = ("rate",)
-"""Settings that may change when a run goes on: a smaller rate is the remedy of a loss that is not finite."""
+FREE = ("rate",)  # settings that may change when a run goes on: a smaller rate is that remedy
 
 
 class Task(nn.Module):

@@ -23,9 +23,7 @@ from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import architecture, name_of, settings_of
 from meshonet.solvers.solution import Solution
 
-DIRECT = 129 * 129
-"""Nodes up to which a network is evaluated at each; larger grids are interpolated where that is exact."""
-
+DIRECT = 129 * 129  # nodes up to which a network is evaluated at each; more are interpolated if exact
 TABLE = 65  # Chebyshev points along xi and eta that are interpolated between
 CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at places between its points
 

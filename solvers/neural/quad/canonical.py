@@ -24,12 +24,8 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 
 STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next power of two
-
-LEAST = 0.1
-"""Mean side along xi, over the size, that is long enough to tell a direction; else a diagonal does."""
-
-Element = tuple[bool, bool, bool]
-"""A relabelling: xi runs the other way, then eta does, then both change places."""
+LEAST = 0.1  # mean side along xi over the size that still tells a direction; else a diagonal does
+Element = tuple[bool, bool, bool]  # xi runs the other way, eta does, both change places
 
 IDENTITY: Element = (False, False, False)
 

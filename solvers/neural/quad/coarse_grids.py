@@ -34,9 +34,7 @@ from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSL
 from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
 from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
 
-SHARES = (0.95, 0.9, 0.8)
-"""Of the way from the grid that the network sees to its answer, the first of them without folds; else all."""
-
+SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
 Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
 
 

@@ -22,8 +22,7 @@ from meshonet.solvers.neural.quad.network import Network, Reals, sizes
 from meshonet.solvers.neural.quad.polish import polished
 from meshonet.solvers.solution import Solution
 
-AUTO = {WINSLOW: 2, 1: 5}
-"""Steps of "auto": cycles of multigrid for Winslow's answer, of descent for the variational one."""
+AUTO = {WINSLOW: 2, 1: 5}  # steps of "auto": multigrid cycles for Winslow's answer, else of descent
 
 
 @dataclass(frozen=True)

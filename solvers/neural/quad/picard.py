@@ -24,21 +24,15 @@ from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
 from meshonet.kernels._native import LINE, winslow_steps
 from meshonet.solvers.neural.quad.encoding import LATENT
 
-STEPS = 4
-"""After the harmonic grid. A fifth takes a tenth of what is left on average."""
-
+STEPS = 4  # after the harmonic grid; a fifth takes a tenth of what is left on average
 AFTER = 3  # once more, after the network's answer for Winslow's grid
-
-FINER = 65
-"""Nodes along a direction at the most that these are taken on: evaluating the solution from 33 costs 3e-4."""
-
+FINER = 65  # most nodes along a direction that these are taken on: splines from 33 err by 3e-4
 SHARE = 0.75  # of the leading error of differences that is taken out
 GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean, is not taken
 
 TINY = 1e-30
 
-Tables = tuple[Floats, Floats, Floats]
-"""A transform, its transpose, and minus the eigenvalues of second differences, as compiled code has them."""
+Tables = tuple[Floats, Floats, Floats]  # a transform, its transpose, minus the eigenvalues of differences
 
 
 def approach(

@@ -18,9 +18,7 @@ from meshonet.solvers.neural.quad.network import Network
 
 Counts: TypeAlias = tuple[int, int]  # nodes along xi and eta
 MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
-
-MOST_DESCENDED, LARGER_DESCENDED = 513, 257
-"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
+MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
 LAST = 2
 """Most steps that are taken at full resolution; those before are taken on the network's coarse grid.

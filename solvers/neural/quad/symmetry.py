@@ -33,8 +33,7 @@ def _elements() -> Integers:
     return np.stack([*turns, *(turn @ mirror for turn in turns)])
 
 
-ELEMENTS: Integers = _elements()
-"""(8, 2, 2) what an element does to index steps (along xi, along eta) and to vectors (x, y) of the plane."""
+ELEMENTS: Integers = _elements()  # (8, 2, 2) on index steps and on vectors of the plane
 
 
 def _number(element: Integers) -> int:
@@ -55,9 +54,7 @@ def _taps(size: int) -> Integers:
     return (moved[:, 0] * size + moved[:, 1]).reshape(ORDER, size, size)
 
 
-TAPS: dict[int, Integers] = {size: _taps(size) for size in (1, 3)}
-"""Of kernels with this many places along each axis."""
-
+TAPS: dict[int, Integers] = {size: _taps(size) for size in (1, 3)}  # by places along an axis
 RELATIVE: Integers = PRODUCT[INVERSE]  # (8, 8) number of h^-1 g
 
 
