@@ -72,8 +72,8 @@ class PaperOperator(Operator):
         facts = {"method": "operator", "model": self.name, "boundary_error": error}
         grid = boundary.grid(nodes, facts)
         done = "replaced by the true one" if paste else "left so"
-        notes = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
-        notes = notes if error > 0.0 else ()
+        off = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
+        notes = off if error > 0.0 else ()
         return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
