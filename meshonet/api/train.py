@@ -63,7 +63,11 @@ def train(
     ``.safetensors`` file in a folder that exists; bad settings or datasets. Raises SolverError: the loss is
     not finite.
     """
-    _check_output(str(output))
+    path = Path(output)
+    if path.suffix != ".safetensors":
+        raise InputError("a model file ends in .safetensors", "rename the output", source=str(path))
+    if not path.parent.is_dir():
+        raise InputError(f"no folder {path.parent}", "make it first", source=str(path))
     try:
         import torch
     except ImportError:
@@ -102,20 +106,12 @@ def train(
             data = _samples(sources, split, from_format)
         recipe = {"command": "meshonet train", "datasets": [Path(source).name for source in sources]}
         figures = fit(
-            name, data, Path(output), full, members, recipe=recipe, held_out=held_out, resume=resume,
+            name, data, path, full, members, recipe=recipe, held_out=held_out, resume=resume,
             report=report if members.leads else None, **choices,
         )  # fmt: skip
     finally:
         members.close()
     return {"model": name, "shapes": len(data), "figures": figures} if members.leads else {}
-
-
-def _check_output(text: str) -> None:
-    path = Path(text)
-    if path.suffix != ".safetensors":
-        raise InputError("a model file ends in .safetensors", "rename the output", source=text)
-    if not path.parent.is_dir():
-        raise InputError(f"no folder {path.parent}", "make it first", source=text)
 
 
 def _suited(source: str, fmt: str | None) -> str:
@@ -155,7 +151,6 @@ def _points(text: str) -> tuple[int, int] | None:
 
 
 def _strips(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]) -> Any:
-    """Return the airfoils of the datasets, solved in their strips."""
     from meshonet.solvers.neural.strip.dataset import solve_strips
 
     def count(done: int, left_out: int) -> None:
@@ -169,7 +164,6 @@ def _strips(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]
 
 
 def _samples(sources: Sequence[str], way: str | None, fmt: str | None) -> Samples:
-    """Return the grids of the datasets, split by `way`."""
     from meshonet.solvers.neural.samples import gathered
 
     samples = gathered(grid for source in sources for grid in read_grids(source, fmt))

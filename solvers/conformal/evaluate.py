@@ -1,9 +1,9 @@
 """A grid at any resolution from a strip solution, at the speed of memory.
 
 The strip solution is separable: Fourier modes along theta, Chebyshev points across. What the first `MODES`
-modes leave out of the walls dies within a few levels of them and is added there exactly. Levels near the
-walls go through the compiled maps one by one; all others are interpolated along eta in the plane, from the
-few Chebyshev points of each panel. The points of a row::
+modes leave out of the walls dies within a few levels and is added there exactly. Levels near the walls go
+through the compiled maps one by one; all others are interpolated along eta in the plane, from the few
+Chebyshev points of each panel. The points of a row::
 
     levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
 """
@@ -103,7 +103,6 @@ class StripGrid:
 
 @lru_cache(maxsize=8)
 def _interpolation(eta: bytes) -> Floats:
-    """Return `interpolation`, cached for other bodies with the same levels."""
     return read_only(interpolation(np.frombuffer(eta)))
 
 

@@ -7,8 +7,7 @@
 
 with eta measured from the side that has the coefficients. a is the height of the rectangle over its length,
 as the sides' lengths say; T = log(outer length / inner length), so that a ring between two circles comes out
-as Winslow's equations have it. Kinks of the boundary do not reach inside, as they do by transfinite
-interpolation, so what a network has to add is smooth.
+as Winslow's equations have it. Kinks of the boundary do not reach inside.
 """
 
 from __future__ import annotations
@@ -24,10 +23,8 @@ FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so 
 def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the extension; those on the boundary are the boundary's own.
 
-    >>> side = np.linspace(0.0, 1.0, 5)
-    >>> zero, one = np.zeros(5), np.ones(5)
-    >>> edges = [(side, zero), (side, one), (zero, side), (one, side)]
-    >>> square = Boundary(*(np.stack(edge, axis=1) for edge in edges))
+    >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
+    >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))
     >>> extend(square)[1, 2].tolist()
     [0.25, 0.5]
     """

@@ -28,8 +28,7 @@ from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
 from meshonet.solvers.conformal.walls import Walls, is_rough, sharp_turns, walls
 from meshonet.solvers.solution import Solution
 
-Polish = Literal["auto", "off"] | int
-"""Steps of improvement: a number, ``off`` for none, ``auto`` until they change nothing worth having."""
+Polish = Literal["auto", "off"] | int  # steps: a number, ``off`` for none, ``auto`` until they change little
 
 Correction: TypeAlias = Callable[[Complexes, Complexes, NDArray[np.intp]], Complexes]
 """Modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes, LEVELS)."""

@@ -18,22 +18,13 @@ BATCH = 64  # most boundaries that are solved together, for the memory that they
 
 @dataclass(frozen=True)
 class Operator(ABC):
-    """A trained operator; `meshonet.solvers.neural.registry.load` returns one by name or path.
+    """A trained operator; `meshonet.solvers.neural.registry.load` returns one by name or path."""
 
-    `batched`: many boundaries take less time together than one by one.
+    batched: ClassVar[bool] = True  # many boundaries take less time together than one by one
 
-    Parameters
-    ----------
-    name : of a shipped model, or what its file says.
-    topology : of the grids that it makes.
-    header : what its file says of itself: recipe and held-out figures.
-    """
-
-    batched: ClassVar[bool] = True
-
-    name: str
-    topology: Topology
-    header: Mapping[str, Any]
+    name: str  # of a shipped model, or what its file says
+    topology: Topology  # of the grids that it makes
+    header: Mapping[str, Any]  # what its file says of itself: recipe and held-out figures
 
     @classmethod
     @abstractmethod

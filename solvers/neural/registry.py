@@ -20,9 +20,7 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).parent / "pretrained"
 
 BASE = "base"  # the harmonic base with no network, where a strip operator can be named
-
-DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}
-"""The network for a topology when a network is wanted and none is named."""
+DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}  # where none is named
 
 HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
 """Models that are another answer of a network: the name of its file, and the number of the answer."""

@@ -17,18 +17,13 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """n solved grids.
+    """n solved grids."""
 
-    `nodes`: (n, ni, nj, 2), any unit of length; `topology`: ``quad`` or ``o``; `names`: (n,) of the shapes;
-    `splits`: (n,) ``train``, ``test`` or nothing; `parameters`: (n,) of their family, NaN where there is
-    none.
-    """
-
-    nodes: Floats
-    topology: Topology
-    names: tuple[str, ...]
-    splits: tuple[str, ...]
-    parameters: Floats
+    nodes: Floats  # (n, ni, nj, 2), any unit of length
+    topology: Topology  # ``quad`` or ``o``
+    names: tuple[str, ...]  # (n,) of the shapes
+    splits: tuple[str, ...]  # (n,) ``train``, ``test`` or nothing
+    parameters: Floats  # (n,) of their family, NaN where there is none
 
     def __len__(self) -> int:
         return len(self.nodes)

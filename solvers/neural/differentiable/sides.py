@@ -14,8 +14,7 @@ from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.registry import load
 
-SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}
-"""The operator of the quad network for a topology."""
+SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}  # by topology
 
 
 def check_sides(dtype: torch.dtype, least: int, nj: int = 2, **sides: Tensor) -> None:
@@ -65,9 +64,7 @@ class NetworkGrids:
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
 
     def _answer(self, seen: Tensor) -> Tensor:
-        """Return the network's answer (batch, m, n) to features."""
-        answer: Tensor = self._network(seen)[:, self._head]
-        return answer
+        return self._network(seen)[:, self._head]
 
 
 def as_complex(planes: Tensor) -> Tensor:

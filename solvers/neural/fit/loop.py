@@ -20,8 +20,7 @@ from meshonet.solvers.neural.fit.team import Team
 
 SLOWER = "resume from the last checkpoint with a smaller learning rate"
 
-FREE = ("rate",)
-"""Settings that may change when a run goes on: a smaller rate is the remedy of a loss that is not finite."""
+FREE = ("rate",)  # settings that may change when a run goes on: a smaller rate is that remedy
 
 
 class Task(nn.Module):
@@ -114,7 +113,10 @@ def fit(
     held out. Raises SolverError: a loss or a weight that is not finite, not enough memory; the last
     checkpoint stays.
     """
-    optimiser = _optimiser(task, plan)
+    trained = list(task.parameters())
+    optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)
+    if plan.weight_decay:
+        optimiser = torch.optim.AdamW(trained, plan.rate, weight_decay=plan.weight_decay)
     state = _State()
     saved = load_checkpoint(checkpoint, facts) if resume else None
     if saved is not None:
@@ -136,21 +138,14 @@ def fit(
             state.summed, state.steps = 0.0, 0
         if team.leads and (stop or last or state.epoch % plan.checkpoint_every == 0):
             kept = {"facts": dict(facts), "epoch": state.epoch, "state": vars(state)}
-            trained = {name: value.detach().cpu() for name, value in task.named_parameters()}
-            save_checkpoint(checkpoint, {"task": trained, "optimiser": optimiser.state_dict(), **kept})
+            weights = {name: value.detach().cpu() for name, value in task.named_parameters()}
+            save_checkpoint(checkpoint, {"task": weights, "optimiser": optimiser.state_dict(), **kept})
         if stop:
             break
     if state.kept is None:
         return state.epoch
     task.load_state_dict({**task.state_dict(), **state.kept})
     return state.best_epoch
-
-
-def _optimiser(task: Task, plan: Plan) -> torch.optim.Optimizer:
-    parameters = list(task.parameters())
-    if plan.weight_decay:
-        return torch.optim.AdamW(parameters, plan.rate, weight_decay=plan.weight_decay)
-    return torch.optim.Adam(parameters, plan.rate, fused=True)
 
 
 def _wrapped(task: Task, plan: Plan, team: Team) -> Callable[[Tensor, int], Tensor]:

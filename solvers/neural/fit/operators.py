@@ -24,8 +24,7 @@ from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.registry import architecture, settings_of
 from meshonet.solvers.neural.samples import Samples
 
-PLAN = Plan(epochs=15_000, points=(1000, 200))
-"""The authors' published settings, with their thirty shapes in one step and places drawn at random."""
+PLAN = Plan(epochs=15_000, points=(1000, 200))  # the authors' published settings
 
 HELD_OUT = 0
 

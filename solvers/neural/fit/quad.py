@@ -69,21 +69,19 @@ class QuadTask(Task):
         steps: int,
         device: torch.device,
         weights: Mapping[str, float] = PARTS,
+        initial: Mapping[str, Floats] | None = None,
     ) -> None:
         super().__init__()
         self.weights = [weights[part] for part in PARTS]
         self.training_set, self.held_out, self.steps = training, held_out, steps
         self.around = training.around
         self.net = QuadUNet(sizes.widths, sizes.blocks, self.around)
+        if initial is not None:
+            self.net.load_state_dict({key: torch.from_numpy(array) for key, array in initial.items()})
         self.mean = copy.deepcopy(self.net).requires_grad_(requires_grad=False)
         self.count = len(training)
         self.to(device)
         self.device = device
-
-    def begin(self, weights: Mapping[str, Floats]) -> None:
-        """Start from `weights`."""
-        for net in (self.net, self.mean):
-            net.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the parts of the loss over the domains `rows`."""
@@ -193,9 +191,8 @@ def run(
     torch.manual_seed(plan.seed)
     steps = plan.epochs * -(-kept // plan.batch)
     parts = _weights(weights or {})
-    task = QuadTask(data[:kept], data[kept:], sizes, steps, team.device, parts)
-    if initial is not None:
-        task.begin(initial.weights)
+    begun = None if initial is None else initial.weights
+    task = QuadTask(data[:kept], data[kept:], sizes, steps, team.device, parts, begun)
     names = ("epochs", "batch", "rate", "warm_up", "weight_decay", "clip", "seed")
     facts = {key: getattr(plan, key) for key in names}
     facts |= {key: list(value) for key, value in asdict(sizes).items()}
@@ -205,7 +202,6 @@ def run(
 
 
 def _weights(changed: Mapping[str, float]) -> dict[str, float]:
-    """Return the weights of all parts of the loss, some of them changed."""
     for part, weight in changed.items():
         if part not in PARTS:
             problem = f"the quad operator's loss has no part {part!r}"

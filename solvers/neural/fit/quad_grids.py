@@ -13,7 +13,7 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quad.edges import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
 from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame
 from meshonet.solvers.neural.quad.picard import approached
 from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
@@ -112,7 +112,6 @@ def _single(z: Complexes) -> Tensor:
 
 
 def _rim(nodes: Floats, sides: slice) -> bytes:
-    """Return a key that identifies a domain."""
     return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])[sides])
 
 

@@ -15,13 +15,10 @@ from meshonet.solvers.neural.fit.plan import Device
 
 @dataclass(frozen=True)
 class Team:
-    """A process among those that train together.
+    """A process among those that train together."""
 
-    `device`: of this process; `rank`, `size`: its number, and how many there are.
-    """
-
-    device: torch.device
-    rank: int = 0
+    device: torch.device  # of this process
+    rank: int = 0  # its number, and how many there are
     size: int = 1
 
     @property

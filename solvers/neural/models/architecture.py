@@ -27,18 +27,14 @@ class Frame:
 
 @dataclass(frozen=True)
 class Architecture:
-    """An operator from boundaries to grids; its fields are its settings, kept in the header of its file.
-
-    `sensors`: points of the boundary that the branches read, m in the paper.
-
-    """
+    """An operator from boundaries to grids; its fields are its settings, kept in the header of its file."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "none"  # what the answer is added to
     physics: ClassVar[bool] = False  # it learns from Winslow's equations, a network for each geometry
     interior: ClassVar[float] = 1.0  # weights of the two parts of its loss
     boundary: ClassVar[float] = 1.0
 
-    sensors: int = 50
+    sensors: int = 50  # points of the boundary that the branches read, m in the paper
 
     @property
     def native(self) -> bool:

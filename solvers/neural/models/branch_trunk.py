@@ -7,20 +7,14 @@ With s the coordinates of m sensors, [:k] and [k:] the halves of features for x 
     MIONet         x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b         y by [k:]
     POD-DeepONet   (x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)
 
-MeshONet is to the paper's letter: widths, powers and weights of the loss are the authors' published settings:
-branch 50-64-128-64-50, trunk 12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000
-boundary; 54,482 parameters. Xiao et al., arXiv 2501.11937.
-
-DeepONet's split features are how Lu et al. treat several outputs. Lu et al., Nature Machine Intelligence 3
-(2021) 218; Computer Methods in Applied Mechanics and Engineering 393 (2022) 114778, section 3.1.6.
-
-MIONet is the multi-input operator that the paper builds its theory on; either coordinate sees both. Jin, Meng
-& Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
-
+MeshONet is to the paper's letter, with the authors' published settings: branch 50-64-128-64-50, trunk
+12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000 boundary; 54,482 parameters.
 POD-DeepONet's trunk is the proper orthogonal decomposition of the training grids, x and y of a grid one
-vector. Modes are scaled by the root mean square of their coefficients over the training set, so that the
-branch answers numbers of the order of 1. It answers on the nodes of the training grids. Lu et al. (2022),
-section 3.1.4.
+vector, scaled so that the branch answers numbers of the order of 1; it answers on their nodes.
+
+Xiao et al., arXiv 2501.11937; Lu et al., Nature Machine Intelligence 3 (2021) 218; Computer Methods in
+Applied Mechanics and Engineering 393 (2022) 114778, sections 3.1.4 and 3.1.6; Jin, Meng & Lu, SIAM Journal on
+Scientific Computing 44 (2022) A3490.
 """
 
 from __future__ import annotations
@@ -39,20 +33,15 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """Dual branch, shared trunk.
-
-    `hidden`: widths of a branch's hidden layers (Adjust Layer); `features`: of branch and trunk, k in the
-    paper; `depth`: layers of the trunk, each `features` wide; `powers`: of xi and eta in the Lift-Layer, q in
-    the paper.
-    """
+    """Dual branch, shared trunk."""
 
     interior: ClassVar[float] = 900.0
     boundary: ClassVar[float] = 1000.0
 
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    depth: int = 4
-    powers: int = 4
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers (Adjust Layer)
+    features: int = 50  # of branch and trunk, k in the paper
+    depth: int = 4  # layers of the trunk, each `features` wide
+    powers: int = 4  # of xi and eta in the Lift-Layer, q in the paper
 
     def shapes(self, frame: Frame) -> Shapes:
         trunk = (4 + 2 * self.powers, *[self.features] * self.depth)
@@ -72,15 +61,11 @@ class MeshONet(Architecture):
 
 @dataclass(frozen=True)
 class DeepONet(Architecture):
-    """One branch, one trunk, features in halves.
+    """One branch, one trunk, features in halves."""
 
-    `hidden`: widths of a branch's hidden layers; `features`: of each coordinate; `width`, `depth`: of the
-    trunk's hidden layers.
-    """
-
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    width: int = 50
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
+    features: int = 50  # of each coordinate
+    width: int = 50  # of the trunk's hidden layers
     depth: int = 3
 
     def shapes(self, frame: Frame) -> Shapes:
@@ -113,14 +98,10 @@ class MIONet(DeepONet):
 
 @dataclass(frozen=True)
 class PODDeepONet(Architecture):
-    """A branch that answers coefficients of fixed modes.
+    """A branch that answers coefficients of fixed modes."""
 
-    `hidden`: widths of the branch's hidden layers; `features`: modes; fewer where the training set has fewer
-    grids.
-    """
-
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 16
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
+    features: int = 16  # modes; fewer where the training set has fewer grids
 
     @property
     def native(self) -> bool:

@@ -33,17 +33,12 @@ SIDE = 5  # nodes of west and of east that FNO1D sees
 
 @dataclass(frozen=True)
 class Fourier(Architecture):
-    """The settings and layers of both.
+    """The settings and layers of both."""
 
-    `width`: channels of the hidden state; `modes`: that are mixed, in each direction (of eta positive and
-    negative ones); `layers`: Fourier layers; `padding`: nodes of zeros before the transform, in each
-    direction.
-    """
-
-    width: int = 48
-    modes: int = 16
-    layers: int = 4
-    padding: int = 9
+    width: int = 48  # channels of the hidden state
+    modes: int = 16  # that are mixed, in each direction (of eta positive and negative ones)
+    layers: int = 4  # Fourier layers
+    padding: int = 9  # nodes of zeros before the transform, in each direction
 
     @property
     def native(self) -> bool:
@@ -57,7 +52,6 @@ class Fourier(Architecture):
         return {**shapes, **dense_shapes("project", (self.width, *project))}
 
     def _layered(self, xp: Any, w: Weights, h: Any) -> Any:
-        """Return the hidden state after all layers."""
         for k in range(self.layers):
             local = dense(xp, w, f"local{k}", h)
             h = gelu(xp, self._mixed(xp, w[f"mix{k}/spectral"], h) + local)
@@ -91,7 +85,6 @@ class FNO1D(Fourier):
         return out.reshape(len(out), -1, 2)[:, index]
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        """Return h (batch, n, width) with its lowest modes mixed."""
         n = h.shape[1]
         spectrum = xp.fft.rfft(h, n + self.padding, 1)
         m = min(self.modes, spectrum.shape[1])
@@ -108,10 +101,7 @@ class FNO2D(Fourier):
     modes: int = 8
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained.
-
-        Raises InputError: more modes than the grids have.
-        """
+        """Return the shapes of what is trained. Raises InputError: more modes than the grids have."""
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
             problem = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
@@ -135,7 +125,6 @@ class FNO2D(Fourier):
         return dense(xp, w, "project", h.reshape(batch, ni * nj, self.width)[:, index])
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        """Return h (batch, ni, nj, width) with its lowest modes mixed."""
         batch, ni, nj, width = h.shape
         m = self.modes
         along, across, back = (array_like(table, h, xp) for table in _waves(ni, nj, m, self.padding))

@@ -5,19 +5,14 @@
     (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
 H is the harmonic extension of the boundary and B is zero there, so that the answer has the boundary's own
-nodes, whatever the weights. The branch sees both coordinates, since Winslow's equations couple them; the
-network learns the difference from H, whose size is s. Of an O grid the lift is periodic in xi, and so is the
-answer.
+nodes, whatever the weights. The network learns the difference from H, whose size is s. Of an O grid the lift
+is periodic in xi, and so is the answer.
 
-With `modes` the trunk is not trained: B trunk is replaced by modes of the training grids' differences from H
-(proper orthogonal decomposition, x and y together, so that they share them). At a sharp kink of the boundary
-the differences are not smooth, or the cells are small; a trained trunk, smooth and as wrong there as
-elsewhere, folds them. An error in the coefficient of a mode is small where the mode is. Lu et al., Computer
-Methods in Applied Mechanics and Engineering 393 (2022) 114778.
-
-Beyond the training shapes the branch has nothing to go by, and what it adds to H may fold cells. With
-`within` it sees sensors no further out than any training shape's: H follows the boundary, the difference
-stays that of the last shapes known.
+With `modes`, B trunk is replaced by modes of the training grids' differences from H (proper orthogonal
+decomposition of x and y together): where they are small, at sharp kinks of the boundary, so are errors, which
+of a smooth trained trunk fold cells there. Lu et al., Computer Methods in Applied Mechanics and Engineering
+393 (2022) 114778. With `within` the branch sees sensors no further out than any training shape's, since what
+it adds to H beyond them may fold cells.
 """
 
 from __future__ import annotations
@@ -96,7 +91,8 @@ class MeshONetHard(Architecture):
     def _lifted(self, xp: Any, points: Any) -> Any:
         turn = 2.0 if self.periodic else 1.0
         angles = [np.pi * k * points for k in range(1, self.waves + 1)]
-        waves = [f(xp, turn * a[:, :1], a[:, 1:]) for a in angles for f in (_sines, _cosines)]
+        pairs = [(f(turn * a[:, :1]), f(a[:, 1:])) for a in angles for f in (xp.sin, xp.cos)]
+        waves = [wave for pair in pairs for wave in pair]
         linear = points[:, 1:] if self.periodic else points
         return xp.concatenate([linear, *waves], -1)
 
@@ -114,11 +110,3 @@ def _modes(targets: Floats, count: int) -> Floats:
     modes: Floats = np.zeros((rows.shape[1], count))
     modes[:, : len(largest)] = largest.T
     return modes
-
-
-def _sines(xp: Any, a: Any, b: Any) -> Any:
-    return xp.concatenate([xp.sin(a), xp.sin(b)], -1)
-
-
-def _cosines(xp: Any, a: Any, b: Any) -> Any:
-    return xp.concatenate([xp.cos(a), xp.cos(b)], -1)

@@ -5,11 +5,9 @@
     (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta - 1)
     loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
 
-in units of each geometry's own size. The networks of all geometries of a dataset are stacked and trained
-together. A trained file answers the geometries it was trained on, at any resolution, and no others: that is
-what operators are for. Derivatives are carried through the layers exactly, or taken by central differences.
-Chen et al., MGNet, Engineering with Computers 38 (2022) 4409; an improved method, arXiv 2210.09546
-(auxiliary lines).
+in units of each geometry's own size. The networks of all geometries are stacked and trained together. A
+trained file answers these geometries, at any resolution, and no others. Chen et al., MGNet, Engineering with
+Computers 38 (2022) 4409; an improved method, arXiv 2210.09546 (auxiliary lines).
 """
 
 from __future__ import annotations

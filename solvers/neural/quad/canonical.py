@@ -24,31 +24,22 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 
 STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next power of two
-
-LEAST = 0.1
-"""Mean side along xi, over the size, that is long enough to tell a direction; else a diagonal does."""
-
-Element = tuple[bool, bool, bool]
-"""A relabelling: xi runs the other way, then eta does, then both change places."""
+LEAST = 0.1  # mean side along xi over the size that still tells a direction; else a diagonal does
+Element = tuple[bool, bool, bool]  # xi runs the other way, eta does, both change places
 
 IDENTITY: Element = (False, False, False)
 
 
 @dataclass(frozen=True)
 class Canonical:
-    """A boundary and what it is in its canonical frame.
-
-    `original`: the boundary; `boundary`: the same in the frame, its edges rounded and relabelled; `element`:
-    the relabelling; `origin`, `unit`: a point u there is ``origin + unit u`` here, its conjugate if the
-    element mirrors; `symmetric`: an O boundary that is its own mirror image.
-    """
+    """A boundary and what it is in its canonical frame."""
 
     original: Boundary
-    boundary: Boundary
+    boundary: Boundary  # the same in the frame, its edges rounded and relabelled
     element: Element
-    origin: complex
+    origin: complex  # a point u there is ``origin + unit u`` here, its conjugate if the element mirrors
     unit: complex
-    symmetric: bool = False
+    symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
         """Return the planes (2, ni, nj) of a grid in the frame, inside the original boundary."""

@@ -11,9 +11,7 @@ from typing import Any
 LATENT = 33  # nodes along xi and eta of the grid the network sees
 SCALE = 0.1  # what an answer of 1 means, in the normalised domain's unit
 HEADS = ("winslow", "variational")  # the grids a network answers with, in order
-
-WINSLOW = 0
-"""The number of the first of these, which takes a few steps of `picard.approach` after the network."""
+WINSLOW = 0  # the first of these, which takes a few steps of `picard.approach` after the network
 
 FEATURES = 20
 """Channels a node: first differences (4), second differences (4), log lengths of both steps (2), place (2),

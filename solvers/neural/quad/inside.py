@@ -4,9 +4,8 @@
 
     V(p) = ∮ |p - x|⁻⁴ ds
 
-rises without bound towards the wall, so its least value inside is in the middle of where the body is
-thickest. It moves, turns and grows with the body; of equal places that nearest to the wall's first node is
-taken.
+rises without bound towards the wall, so it is least where the body is thickest. The point moves, turns and
+grows with the body; of equal places that nearest to the wall's first node is taken.
 """
 
 from __future__ import annotations

@@ -33,10 +33,7 @@ Reals: TypeAlias = NDArray[Any]
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
 CHUNK = 16  # domains that go through a layer together: their fields stay in the cache, and so do its weights
-
-MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8
-"""Of networks that are read; five levels are 33, 17, 9, 5 and 3 nodes."""
-
+MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8  # that are read; five levels have 33 to 3 nodes
 LINE = 64  # bytes that a row of weights is rounded up to
 
 

@@ -32,8 +32,7 @@ from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, 
 
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
 
-COMPACT = 0.15
-"""Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""
+COMPACT = 0.15  # least over largest distance of the wall from the middle, of bodies to train on
 
 
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:

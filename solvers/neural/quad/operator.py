@@ -22,22 +22,17 @@ from meshonet.solvers.neural.quad.network import Network, Reals, sizes
 from meshonet.solvers.neural.quad.polish import polished
 from meshonet.solvers.solution import Solution
 
-AUTO = {WINSLOW: 2, 1: 5}
-"""Steps of "auto": cycles of multigrid for Winslow's answer, of descent for the variational one."""
+AUTO = {WINSLOW: 2, 1: 5}  # steps of "auto": multigrid cycles for Winslow's answer, else of descent
 
 
 @dataclass(frozen=True)
 class QuadOperator(Operator):
-    """A network for four-sided domains, or for what is between a body and its far field.
+    """A network for four-sided domains, or for what is between a body and its far field."""
 
-    `widths`, `blocks`: of the network; `weights`: its arrays, as `network.shapes` has them; `head`: which of
-    the network's answers is taken, an index into `encoding.HEADS`.
-    """
-
-    widths: tuple[int, ...] = ()
+    widths: tuple[int, ...] = ()  # of the network
     blocks: tuple[int, ...] = ()
-    weights: Mapping[str, Reals] = field(default_factory=dict)
-    head: int = len(HEADS) - 1
+    weights: Mapping[str, Reals] = field(default_factory=dict)  # its arrays, as `network.shapes` has them
+    head: int = len(HEADS) - 1  # which of the network's answers is taken, an index into `encoding.HEADS`
     _networks: dict[str, Network] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod

@@ -12,15 +12,13 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
-from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 
 Counts: TypeAlias = tuple[int, int]  # nodes along xi and eta
 MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
-
-MOST_DESCENDED, LARGER_DESCENDED = 513, 257
-"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
+MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
 LAST = 2
 """Most steps that are taken at full resolution; those before are taken on the network's coarse grid.
@@ -44,7 +42,10 @@ def polished(
     last = steps if head == WINSLOW else min((steps + 1) // 2 if newton else steps, LAST)
     begin = _newton if newton else _descent
     taken = [begin(grid, steps - last, topology) for grid in coarse]
-    ni, nj = (_most_nodes(n, head) for n in counts)
+    if head == WINSLOW:
+        ni, nj = (min(n, MOST_SOLVED) for n in counts)
+    else:
+        ni, nj = (n if n <= MOST_DESCENDED else LARGER_DESCENDED for n in counts)
     planes = evaluated(coarse, (ni, nj))
     for k, grid in enumerate(planes):
         if head == WINSLOW:
@@ -68,12 +69,6 @@ def _coarse(
         return o_grids.evaluate(planes, boundaries if own else [thinned(b, *counts) for b in boundaries])
 
     return o_grids.coarse_grids(boundaries, network, head), around
-
-
-def _most_nodes(n: int, head: int) -> int:
-    if head == WINSLOW:
-        return min(n, MOST_SOLVED)
-    return n if n <= MOST_DESCENDED else LARGER_DESCENDED
 
 
 def _newton(planes: Floats, steps: int, topology: Topology) -> int:

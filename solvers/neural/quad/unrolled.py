@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-AROUND = 65
-"""Nodes along xi, the last a turn after the first, of the grid that the network sees around a body."""
+AROUND = 65  # nodes along xi, the last a turn after the first, that the network sees around a body
 
 TURN = 2.0 * np.pi
 
