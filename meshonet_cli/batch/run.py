@@ -76,16 +76,10 @@ def deliver(
 ) -> None:
     """Make something of every member of `members`, write it to `destination`, and report it.
 
-    A member that fails is reported and left out. Memory holds what `make` does, or some members for a job.
-
-    Parameters
-    ----------
-    make : makes of members what to write, and reports, whose stage ``write`` is timed here; with several jobs
-        it must be something that can be pickled.
-    written : is called with the report and the path when a member is written.
-    skip_existing : pass over members whose own file is there.
-    together : members that one of several jobs gets at a time.
-    jobs : processes that make, and write when every member has its own file.
+    A member that fails is reported and left out. `make` yields what to write, and reports whose stage
+    ``write`` is timed here; with several `jobs` (processes), which get so many members `together`, it must be
+    something that can be pickled. `written` is called with the report and the path of each; with
+    `skip_existing` members whose own file is there are passed over.
     """
     leading = next(members, None)
     if leading is None:

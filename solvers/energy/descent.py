@@ -14,11 +14,11 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.kernels._native import Stiffness
 from meshonet.kernels._native import newton as newton_steps
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.energy.clusters import windows
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
-from meshonet.solvers.energy.local_descent import descend_windows
 from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.repair import repair
-from meshonet.solvers.energy.untangle import unfold
+from meshonet.solvers.energy.untangle import STILL, unfold
 from meshonet.solvers.progress import cycle_ended, listened_to
 
 HARD = 1.1  # value of the functional around a body above which descents go on
@@ -26,6 +26,10 @@ WON = 3e-2  # relative decrease of the functional below which Newton's method en
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
+SKEWED = 1.5  # 1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it
+MARGIN_CELLS = 6  # cells around a group of skewed ones that move with them
+LARGEST_CELLS = 1500  # cells of a window at the most
+ITERATIONS = 30  # in a window at the most
 
 
 def descend(
@@ -117,3 +121,42 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
         return True
     small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
     return small and unfold(nodes, weights)[0]
+
+
+def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
+    """Unfold planar `nodes` (ni, nj, 2) of an O grid in windows around poor cells, and minimise there.
+
+    Splines smear what corners of a wall do to the lines that leave them. There the functional is far from a
+    parabola, and descents of whole grids spend most of their iterations on a few cells.
+    """
+    skewed = skewness(nodes)
+    poor = np.argwhere(skewed > SKEWED)
+    if 2 * len(poor) > skewed.size:
+        poor = np.argwhere(skewed == np.inf)
+    if len(poor) == 0:
+        return
+    for window in windows(poor, MARGIN_CELLS, nodes.shape[:2], True, LARGEST_CELLS):
+        patch = window.cut(nodes, True)
+        m, n = patch.shape[:2]
+        if min(m, n) < 3:
+            continue
+        if count_folded(patch) and not unfold(patch, weights, aspect=aspect)[0]:
+            continue
+        eased = relief[window.rows(len(nodes), True)] if window.j0 == 0 else None
+        still = STILL * float(np.sqrt((m - 1) * (n - 1)))
+        Descent(patch, weights, aspect=aspect).run(still, ITERATIONS, relief=eased)
+        window.put(nodes, True, patch)
+
+
+def skewness(nodes: Floats) -> Floats:
+    """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite where folded."""
+    z = nodes[..., 0] + 1j * nodes[..., 1]
+    along, across = np.diff(z, axis=0), np.diff(z, axis=1)
+    g, h = np.abs(along), np.abs(across)
+    least = np.full((len(z) - 1, z.shape[1] - 1), np.inf)
+    for south in (slice(None, -1), slice(1, None)):
+        for west in (slice(None, -1), slice(1, None)):
+            area = (np.conj(along[:, south]) * across[west]).imag
+            np.minimum(least, area / np.maximum(g[:, south] * h[west], 1e-300), out=least)
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.where(least > 0.0, least, 0.0) ** -4.0)

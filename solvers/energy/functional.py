@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import turning
 from meshonet.kernels._native import variational_energy, variational_workspace
 
 
@@ -59,10 +60,7 @@ def relief_of(wall: Floats) -> Floats:
     Where the domain takes up more than 320 degrees around a node, as at a trailing edge, the two corners
     there cannot both be good; they keep sin⁴ of half that angle: like a right one at best.
     """
-    edges = np.diff(wall, axis=0)
-    before = np.roll(edges, 1, axis=0)
-    turn = np.arctan2(_cross(before, edges), (before * edges).sum(axis=-1))
-    half = 0.5 * (np.pi - turn)
+    half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, np.maximum(np.sin(half), 1e-3) ** 4, 1.0)
     return np.append(share, share[0])
 

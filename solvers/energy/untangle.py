@@ -12,8 +12,8 @@ from meshonet.solvers.energy.preconditioner import Descent
 STILL = 1e-3  # move of a node, in its own cells, below which minimising with one regularisation stops
 ITERATIONS = 60  # with one regularisation, at the most
 
-REGULARISATIONS = 30
-WITHOUT_GAIN = 3  # regularisations at the most, and those without gain after which unfolding is given up
+REGULARISATIONS = 30  # at the most
+WITHOUT_GAIN = 3  # regularisations without gain after which unfolding is given up
 
 
 def unfold(

@@ -15,13 +15,15 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
 from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.kinks import sweep_kinks
+from meshonet.solvers.elliptic.multigrid import relax
 from meshonet.solvers.energy.descent import descend, in_cells, listener_of, stiffness_of
 from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, value
 from meshonet.solvers.energy.preconditioner import Descent
-from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.solution import Solution
@@ -57,6 +59,9 @@ MOST = 1000  # iterations on a coarser level at the most
 WEAKER = 3  # how often the edge length term may be made weaker, to a fourth each time
 EASY = 1.7  # value of the functional, 1 on squares, up to which a minimum is the only one
 WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}  # of the functional, by topology
+
+RELAXED = 400  # cells up to which line relaxation alone is the quickest way to Winslow's solution
+SWEEPS = 30  # sweeps there; they leave some thousandths of the change from the transfinite interpolation
 
 
 def solve(
@@ -172,6 +177,24 @@ def _coarsest(
         more, valid = descend(nodes, weights, still, most, periodic=periodic, first=first)
         iterations += more
     return best
+
+
+def winslow_start(boundary: Boundary) -> Floats:
+    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2).
+
+    Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
+    """
+    if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
+        nodes = tfi(boundary).nodes
+        relax(nodes, SWEEPS)
+        if np.isfinite(nodes).all():
+            return nodes
+    from meshonet.solvers.elliptic.solve import solve as winslow
+
+    try:
+        return winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
+    except SolverError:
+        return tfi(boundary).nodes
 
 
 def _descended(

@@ -25,9 +25,8 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch, redistribute
-from meshonet.solvers.hyperbolic.front import Front
+from meshonet.solvers.hyperbolic.front import Front, distance_to_march
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
-from meshonet.solvers.hyperbolic.march_distance import distance_to_march
 from meshonet.solvers.hyperbolic.settings import (
     ATTEMPTS,
     OPEN_ATTEMPTS,

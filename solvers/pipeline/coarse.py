@@ -27,11 +27,8 @@ class Coarse(Wrapper):
 
     n: int
 
-    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; raise InputError for a grid to start from."""
-        if start is not None:
-            problem = "a coarse solve has no use for a grid to start from"
-            raise InputError(problem, "drop {initial} or {coarse}")
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
+        """Return the solution of a boundary; a grid to start from is of no use, as a `GridRequest` says."""
         smooth = self.name not in METHODS or METHODS[self.name].sweeps
         return solve_coarse(boundary, self.inner, self.n, smooth=smooth)
 

@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
@@ -112,9 +112,7 @@ class Layered(Wrapper):
         return self._in_layers(boundary, heights, start)
 
     def _march(self, boundary: Boundary, height: float) -> Solution:
-        self._refuse(self.chosen, MARCHED)
-        if self.slide:
-            self._refuse(("slide",), MARCHED, chosen=("slide",))
+        _refuse((*self.chosen, *["slide"] * bool(self.slide)), MARCHED)
         cells = self.cells
         settings = {"growth": cells.growth, "free_rows": cells.free_rows, "constant": cells.constant}
         solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
@@ -145,7 +143,8 @@ class Layered(Wrapper):
                 return self._upright(solution, boundary, heights, start)
             return solution
         if channel:
-            self._refuse(("model", "polish", "answer"), "a channel with given wall nodes")
+            networks = [each for each in ("model", "polish", "answer") if each in self.chosen]
+            _refuse(networks, "a channel with given wall nodes")
         if self.full is not None and (channel or self.name == "steger-sorenson"):
             return self._turned(boundary, heights, start)
         return self.inner(boundary, start)
@@ -186,8 +185,8 @@ class Layered(Wrapper):
             method_named("steger-sorenson", **self.turning, heights=heights.by_side), boundary, start
         )
 
-    def _refuse(self, settings: Iterable[str], what: str, chosen: Sequence[str] | None = None) -> None:
-        """Raise InputError when one of `settings` was given, which are of no use to `what`."""
-        for setting in settings:
-            if setting in (self.chosen if chosen is None else chosen):
-                raise InputError(f"{{{setting}}} is of no use to {what}", f"drop {{{setting}}}")
+
+def _refuse(settings: Iterable[str], what: str) -> None:
+    """Raise InputError for the first of the `settings`, which are of no use to `what`."""
+    for setting in settings:
+        raise InputError(f"{{{setting}}} is of no use to {what}", f"drop {{{setting}}}")
