@@ -102,14 +102,7 @@ def write_grids(
 ) -> int:  # fmt: skip
     """Turn every boundary of `sources` into a grid in `output` and return the exit code.
 
-    Parameters
-    ----------
-    checks : their gates end the program with 1.
-    files : formats, and whether members are passed over whose own file is there.
-    history : file that the cycles go to.
-    jobs : processes at work.
-
-    Raises InputError: several members and room for one.
+    The gates of `checks` end the program with 1; the cycles go to the file `history`.
     """
     destination = Destination(output, files.to_format, "grids")
     prepare(sources, destination, session)

@@ -30,15 +30,7 @@ Corner = tuple[str, int]
 
 
 class Patch:
-    """The nodes around one corner, relaxed with those beyond held fixed.
-
-    Parameters
-    ----------
-    level : whose nodes they are.
-    xi, eta : its directions.
-    window : rows and columns of the nodes.
-    scratch : of the level.
-    """
+    """The nodes in a `window` around one corner of a `level`, relaxed with those beyond held fixed."""
 
     def __init__(
         self, level: MultigridLevel, xi: Direction, eta: Direction, window: Window, scratch: Floats

@@ -50,21 +50,12 @@ def solve(
 ) -> Solution:
     """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c; the nodes of a C boundary's wake stay where they are.
-    tol : stop when the residual is this fraction of that of the transfinite interpolation; None stops at
-        discretisation level, when more cycles would change the grid by less than refining it would.
-    max_cycles : cycles on the finest level at the most.
-    initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
-        nodes are replaced.
-    controls : control functions (`meshonet.solvers.elliptic.control`), none when not given.
-    method : what the solution is called.
+    `boundary` is a quad, o or c, whose wake stays where it is. `tol` is the residual at which to stop, over
+    that of the transfinite interpolation; None stops when more of the at most `max_cycles` cycles would
+    change the grid by less than refining it would. `initial`, of the same counts, takes the place of nested
+    iteration. The grid may be folded at re-entrant corners (`meshonet.solvers.pipeline.fallback`).
 
-    Returns the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be
-    folded at re-entrant corners: see `meshonet.solvers.pipeline.fallback`. Raises InputError: `initial` of
-    other node counts; `tol` or `max_cycles` not positive; SolverError: the iteration diverged from every
-    start tried.
+    Raises InputError for bad settings or counts, SolverError when it diverged from every start tried.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()

@@ -53,18 +53,12 @@ def solve_steger_sorenson(
 ) -> Solution:
     """Solve Winslow's equations with sources that turn the lines at edges and hold first cells.
 
-    Parameters
-    ----------
-    boundary : quad or o.
-    heights : of the first cells by side, in its unit, 0 for any; the sides named are those under control.
-        None: south and north of a quad, the body of an o, of any height.
-    angle : in degrees between an edge's direction and the lines that leave it.
-    tol, max_cycles : of the last cycles, as in `meshonet.solvers.elliptic.solve.solve`.
-    initial : start from this grid instead of Winslow's solution.
+    `heights` of first cells by side, in the unit of the quad or o `boundary`, 0 for any, name the sides under
+    control; None: south and north of a quad, the body of an o. `angle` is in degrees between an edge's
+    direction and the lines that leave it. `tol`, `max_cycles` and `initial` are those of `solve`. Notes say
+    how near the angles came, and whether sources that folded cells were weakened.
 
-    Notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid they
-    are weakened, and a note says so. Raises InputError: a side that cannot be controlled, an angle out of
-    range, or as `solve`; SolverError: as `solve`.
+    Raises InputError: a side that cannot be controlled, an angle out of range, or as `solve`; SolverError.
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)
@@ -131,11 +125,7 @@ def _sum(edges: Sequence[ControlledEdge], boundary: Boundary) -> Controls:
 
 
 def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], rounds: int) -> None:
-    """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right.
-
-    Nodes that are not finite or err three times as much as the best so far are taken back to these, and the
-    corrections are halved.
-    """
+    """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right."""
     four = boundary.south, boundary.north, boundary.west, boundary.east
     work = planar_nodes(boundary.ni, boundary.nj)
     levels = Multigrid(work, four, boundary.periodic, controls=_sum(edges, boundary))

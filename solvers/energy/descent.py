@@ -44,14 +44,9 @@ def descend(
 ) -> tuple[int, bool]:
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
-    Parameters
-    ----------
-    still : as `tol` of `solve`.
-    most : iterations at the most.
-    periodic : around a body: the last row of nodes is the first, and its nodes move like any others. Before
-        all others those of windows around skewed cells do (`windowed`).
-    first : end after so many iterations where the value is not `HARD` then.
-    stiffness : the Hessian on a coarse copy and its counts, which leads smooth moves.
+    `still` is the `tol` of `solve`, `most` the iterations at the most, `first` those where the value is not
+    `HARD` then. Around a body (`periodic`) the last row of nodes is the first and moves like any other. The
+    Hessian on a coarse copy and its counts (`stiffness`) lead smooth moves.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -75,12 +70,10 @@ def descend(
 
 
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
-    """Take steps of Newton's method from planar `nodes` (ni, nj, 2) of a quad, in place; return how many.
+    """Take up to `most` steps of Newton's method from planar `nodes` (ni, nj, 2) of a quad; return how many.
 
-    A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. From nodes
-    that local repair leaves folded none is taken.
-
-    `most`: steps at the most. They end after one that lowers the functional by less than `WON` of it.
+    A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. They end
+    after one that lowers the functional by less than `WON`; from nodes that stay folded none is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0

@@ -27,10 +27,7 @@ def unfold(
     """Unfold planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations taken.
 
     ε is a cell's area at first and shrinks with the worst Jacobian, at least by half: large enough to let a
-    cell unfold, small enough to tell folded from valid.
-
-    `periodic`: the last row of nodes is the first, and its nodes move like any others. `aspect`: a of the
-    functional; None is that of `nodes`. `iterations`: with one regularisation, at the most.
+    cell unfold, small enough to tell folded from valid. `periodic` and `aspect` are those of `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]

@@ -74,19 +74,13 @@ def solve(
 ) -> Solution:
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c. Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is.
-    tol : stop when iterations move no node by more than this part of √cells steps, its own cells' steps; that
-        is about this part of the domain's size. None is 1e-4, and `FEW` or `FEW_AROUND` iterations suffice.
-    max_cycles : iterations on the finest level at the most.
-    initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
-        nodes are replaced.
-    weights : of the functional.
+    Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is. `tol` is the part of
+    √cells steps, about that of the domain's size, by which no node may move at the end; None is 1e-4, and
+    `FEW` or `FEW_AROUND` iterations suffice. `max_cycles` are iterations on the finest level; `initial`, of
+    the same counts, takes the place of nested iteration. Where no start could be unfolded a note says so, and
+    the grid is folded.
 
-    Returns the grid and the iterations on the finest level. It is valid wherever a start could be unfolded; a
-    note says when none could, and the grid is then folded. Raises InputError: `initial` of other node counts;
-    `tol` or `max_cycles` not positive.
+    Raises InputError: `initial` of other node counts; `tol` or `max_cycles` not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
@@ -159,11 +153,7 @@ def _nested(
 def _coarsest(
     boundary: Boundary, weights: Weights, still: float, most: int, easy: float, first: int | None
 ) -> tuple[Floats, Weights, int, bool]:
-    """Return what `_nested` does, for the coarsest level, from Winslow's solution.
-
-    On strongly curved domains the edge length term alone can make angles worse than Winslow's: it is then
-    made weaker until they are not.
-    """
+    """Return what `_nested` does, for the coarsest level, from Winslow's solution."""
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in angles(start)]
     periodic = boundary.periodic

@@ -30,10 +30,7 @@ sides and half a circle, over that rate. Measured on airfoils, where it leaves h
 
 
 class Front:
-    """Level 0 of a march and the measure of its last level.
-
-    `boundary`: ``o`` or ``c``.
-    """
+    """Level 0 of a march from an ``o`` or ``c`` boundary, and the measure of its last level."""
 
     inner: float
     """Radius of the circle of the body's area."""

@@ -38,16 +38,9 @@ def solve_coarse(
 ) -> Solution:
     """Solve with `solve` on at most n x n nodes and return the grid at the node counts of `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c.
-    solve : a function of boundary to solution.
-    n : coarse nodes along each direction that has more.
-    smooth : whether to end with sweeps of Winslow's equations at full resolution around kinks of the
-        boundary: always where these were solved or the grid came out folded, else where angles gain by them.
-
-    The edges of the grid equal those of `boundary` bitwise; residual and cycles are those of the coarse
-    solve. Raises InputError: fewer than 9 coarse nodes.
+    With `smooth` sweeps of Winslow's equations at full resolution end it around kinks of the boundary: always
+    where these were solved or the grid came out folded, else where angles gain by them. The edges equal those
+    of `boundary` bitwise; residual and cycles are those of the coarse solve. Raises InputError: n < 9.
     """
     if n < LEAST_NODES:
         raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")

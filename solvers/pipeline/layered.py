@@ -163,10 +163,7 @@ class Layered(Wrapper):
     def _upright(
         self, solution: Solution, boundary: Boundary, heights: Heights, start: Grid | None
     ) -> Solution:
-        """Return `solution`, its wall nodes slid; where lines still lean, sources turn them.
-
-        Where that does not do, sources with the nodes of `boundary` as they were, if those do better.
-        """
+        """Return `solution`, its wall nodes slid, or where lines lean the better of two turned by sources."""
         from meshonet.solvers.elliptic.steger_sorenson import largest_lean
 
         slid = solution.boundary

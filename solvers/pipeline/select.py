@@ -21,10 +21,7 @@ Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of t
 
 @dataclass(frozen=True)
 class Auto(OneByOne):
-    """A method for each topology.
-
-    `quad`, `o`, `c`: that solve boundaries of these topologies.
-    """
+    """A method for each topology."""
 
     quad: Method
     o: Method

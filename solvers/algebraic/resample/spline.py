@@ -22,10 +22,9 @@ from meshonet.geometry.arrays import Floats
 
 @lru_cache(maxsize=16)
 def bending(m: int, periodic: bool) -> Floats:
-    """Return the matrix (m, m) that takes values at m uniform knots to the second derivatives there.
+    """Return the matrix (m, m) that takes values at m >= 2 uniform knots to the second derivatives there.
 
-    `m`: knots, at least 2; the last repeats the first when `periodic`. 2 give a straight line, 3 a parabola.
-    `periodic`: the spline is.
+    The last knot repeats the first when `periodic`. 2 knots give a straight line, 3 a parabola.
     """
     if m == 2 or (periodic and m == 3):
         return np.zeros((m, m))
