@@ -25,11 +25,9 @@ LABELS = {
 
 @dataclass(frozen=True)
 class Summary:
-    """Figures of many grids.
+    """Figures of many grids."""
 
-    `rows`: label and figures by column of each grid; a column is missing where it was not measured.
-    """
-
+    # label and figures by column of each grid; a column is missing where it was not measured
     rows: Sequence[tuple[str, Mapping[str, float]]]
 
     def as_json(self) -> dict[str, Any]:

@@ -24,14 +24,11 @@ from meshonet.solvers.elliptic.corner_relaxation import Patch, patches, reentran
 
 @dataclass(frozen=True)
 class Settings:
-    """How the cycles run.
+    """How the cycles run."""
 
-    `coarsest`: a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils,
-    50 slow. `sweeps`: relaxation sweeps before and after the coarse correction.
-    """
-
+    # a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils, 50 slow.
     coarsest: int = 16
-    sweeps: int = 1
+    sweeps: int = 1  # relaxation sweeps before and after the coarse correction
 
 
 class Multigrid:

@@ -30,13 +30,10 @@ from meshonet.kernels._native import variational_energy, variational_workspace
 
 @dataclass(frozen=True)
 class Weights:
-    """Weights of the terms.
+    """Weights of the terms."""
 
-    `shape`: w, from 0 (harmonic) to 1 (angles only). `smoothness`: β. A fourth of the default is sharper, but
-    buckles on strongly skewed domains.
-    """
-
-    shape: float = 0.97
+    shape: float = 0.97  # w, from 0 (harmonic) to 1 (angles only)
+    # β. A fourth of the default is sharper, but buckles on strongly skewed domains.
     smoothness: float = 2.5e-3
 
 

@@ -19,22 +19,16 @@ from meshonet.kernels._native import layer_steps
 class Heights:
     """Heights of the first cells off the edges, 0 for any height.
 
-    Parameters
-    ----------
-    south, north, west, east : in the unit of the boundary.
-    constant : so many first cells have that height; those beyond grow by one ratio.
-    growth : largest ratio of neighbouring cells allowed, None for any up to 10.
-    free_rows : take as many rows off south and north as `growth` needs, instead of those of the boundary.
-
     Raises InputError: a height, a number of layers or a growth out of range.
     """
 
-    south: float = 0.0
+    south: float = 0.0  # in the unit of the boundary
     north: float = 0.0
     west: float = 0.0
     east: float = 0.0
-    constant: int = 1
-    growth: float | None = None
+    constant: int = 1  # so many first cells have that height; those beyond grow by one ratio
+    growth: float | None = None  # largest ratio of neighbouring cells allowed, None for any up to 10
+    # take as many rows off south and north as `growth` needs, instead of those of the boundary
     free_rows: bool = False
 
     def __post_init__(self) -> None:

@@ -32,27 +32,18 @@ MARCHED = "a grid marched from the wall"
 
 @dataclass(frozen=True)
 class FirstCells:
-    """Heights of first cells, and the layers that begin with them.
+    """Heights of first cells, and the layers that begin with them."""
 
-    Parameters
-    ----------
-    height : off walls, or None: around a body in chords, off south and north of a four-sided domain in its
-        own unit.
-    sides : heights off single sides of four-sided domains, in their unit.
-    constant : so many first layers are equally high.
-    growth : largest ratio of neighbouring cells, or None.
-    free_rows : whether growth decides how many rows there are.
-    in_chords : the height is in chords everywhere; that of a four-sided domain is the extent of its south.
-    note : where the height comes from, when it was computed.
-    """
-
+    # off walls, or None: around a body in chords, off south and north of a four-sided domain in its own unit
     height: float | None = None
+    # heights off single sides of four-sided domains, in their unit
     sides: Mapping[str, float] = field(default_factory=dict)
-    constant: int = 1
-    growth: float | None = None
-    free_rows: bool = False
+    constant: int = 1  # so many first layers are equally high
+    growth: float | None = None  # largest ratio of neighbouring cells, or None
+    free_rows: bool = False  # whether growth decides how many rows there are
+    # the height is in chords everywhere; that of a four-sided domain is the extent of its south
     in_chords: bool = False
-    note: str = ""
+    note: str = ""  # where the height comes from, when it was computed
 
     def heights(self, boundary: Boundary) -> Heights:
         """Return the heights in the unit of `boundary`."""
@@ -69,26 +60,19 @@ class FirstCells:
 
 @dataclass(frozen=True)
 class Layered(Wrapper):
-    """`method`, and first cells of given heights at the walls of its grids.
+    """`method`, and first cells of given heights at the walls of its grids."""
 
-    Parameters
-    ----------
-    method : makes the grids with even rows.
-    cells : heights and layers.
-    turning : settings of ``steger-sorenson``, whose sources turn lines at walls.
-    full : `method` as it solves on all nodes; None when it is not to.
-    marched : topologies that are marched from the wall when there is a height off walls.
-    channels : make lines leave the walls of four-sided domains at right angles when there is such a height.
-    slide : move wall nodes of four-sided domains; None: in channels, when they were sampled here.
-    chosen : settings that are not the defaults; they are refused where they are of no use.
-    """
-
-    cells: FirstCells
+    cells: FirstCells  # heights and layers
+    # settings of ``steger-sorenson``, whose sources turn lines at walls
     turning: Mapping[str, Any] = field(default_factory=dict)
-    full: Method | None = None
+    full: Method | None = None  # `method` as it solves on all nodes; None when it is not to
+    # topologies that are marched from the wall when there is a height off walls
     marched: tuple[Topology, ...] = ()
+    # make lines leave the walls of four-sided domains at right angles when there is such a height
     channels: bool = False
+    # move wall nodes of four-sided domains; None: in channels, when they were sampled here
     slide: bool | None = None
+    # settings that are not the defaults; they are refused where they are of no use
     chosen: tuple[str, ...] = ()
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:

@@ -54,11 +54,9 @@ class AroundWake(OneByOne):
     """C grids: marched with a first cell of its own choice, or where that does not suit variational.
 
     Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
-
-    `note`: begins the notes, before the method's name.
     """
 
-    note: str = ""
+    note: str = ""  # begins the notes, before the method's name
     name: str = "auto"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
