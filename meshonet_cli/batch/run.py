@@ -184,10 +184,7 @@ def _of_group(group: Sequence[tuple[Item[T], str]], future: Future[list[Done[S, 
 
 
 def _streamed(
-    done: Iterator[Done[S, R]],
-    destination: Destination,
-    session: Session,
-    written: Callable[[R, str], None],
+    done: Iterator[Done[S, R]], destination: Destination, session: Session, written: Callable[[R, str], None]
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
     size: tuple[int, int, str] | None = None

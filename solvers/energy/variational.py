@@ -188,13 +188,7 @@ def winslow_start(boundary: Boundary) -> Floats:
 
 
 def _descended(
-    start: Floats,
-    weights: Weights,
-    still: float,
-    most: int,
-    periodic: bool,
-    easy: float,
-    first: int | None,
+    start: Floats, weights: Weights, still: float, most: int, periodic: bool, easy: float, first: int | None
 ) -> tuple[Floats, int, bool]:
     """Return the minimum reached from `start` on the coarsest level, iterations, whether it is valid.
 

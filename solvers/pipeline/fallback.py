@@ -19,11 +19,7 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 
 
 def guard(
-    solution: Solution,
-    boundary: Boundary,
-    *,
-    allow_invalid: bool = False,
-    margin: int | None = None,
+    solution: Solution, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
 ) -> Solution:
     """Return a valid grid: that of `solution` when it is one, else that of the first way that works.
 
