@@ -22,18 +22,10 @@ from meshonet_cli.session import Session
 
 
 def measure_grids(
-    sources: Sequence[str],
-    session: Session,
-    *,
-    fmt: str | None = None,
-    fail_on: Sequence[str] | None = None,
-    profile: str | None = None,
-    compare: str | None = None,
-    pairing: Pairing = "auto",
-    summary: bool = False,
-    plot: str | None = None,
-    per_cell: str | None = None,
-) -> int:
+    sources: Sequence[str], session: Session, *, fmt: str | None = None, fail_on: Sequence[str] | None = None,
+    profile: str | None = None, compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
+    plot: str | None = None, per_cell: str | None = None,
+) -> int:  # fmt: skip
     """Measure every grid of `sources`, print the reports and return the exit code.
 
     `fail_on` are gates, `profile` names thresholds, `compare` is a file of reference grids, matched by

@@ -53,13 +53,9 @@ def listened_to() -> bool:
 
 
 def cycle_ended(
-    method: str,
-    nodes: Floats,
-    number: int,
-    residual: float,
-    change: float | None = None,
+    method: str, nodes: Floats, number: int, residual: float, change: float | None = None,
     functional: float | None = None,
-) -> None:
+) -> None:  # fmt: skip
     """Call the listeners after a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
     listeners = _listeners.get()
     if not listeners:

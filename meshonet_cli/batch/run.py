@@ -64,16 +64,9 @@ class one_by_one(Generic[T, S, R]):  # noqa: N801 - used as a function, and a cl
 
 
 def deliver(
-    members: Iterator[Item[T]],
-    make: Make[T, S, R],
-    destination: Destination,
-    session: Session,
-    written: Callable[[R, str], None],
-    *,
-    skip_existing: bool = False,
-    together: int = 1,
-    jobs: int = 1,
-) -> None:
+    members: Iterator[Item[T]], make: Make[T, S, R], destination: Destination, session: Session,
+    written: Callable[[R, str], None], *, skip_existing: bool = False, together: int = 1, jobs: int = 1,
+) -> None:  # fmt: skip
     """Make something of every member of `members`, write it to `destination`, and report it.
 
     A member that fails is reported and left out. `make` yields what to write, and reports whose stage

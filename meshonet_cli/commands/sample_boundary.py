@@ -49,19 +49,10 @@ Seed = Annotated[int | None, _option("--seed", metavar="S", min=0, help="Seed of
 
 @o.expanded
 def sample_boundary(
-    output: o.Output,
-    sampling: o.SamplingOptions,
-    files: o.FileOptions,
-    printing: o.PrintOptions,
-    source: Source = None,
-    family: FamilyName = None,
-    count: Count = None,
-    spread: Range = None,
-    seed: Seed = None,
-    split: Split = None,
-    sensors: Sensors = None,
-    jobs: o.Jobs = 1,
-) -> int:
+    output: o.Output, sampling: o.SamplingOptions, files: o.FileOptions, printing: o.PrintOptions,
+    source: Source = None, family: FamilyName = None, count: Count = None, spread: Range = None,
+    seed: Seed = None, split: Split = None, sensors: Sensors = None, jobs: o.Jobs = 1,
+) -> int:  # fmt: skip
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws

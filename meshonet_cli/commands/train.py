@@ -113,28 +113,13 @@ LogCsv = Annotated[str | None, _output(
 def train(
     dataset: Dataset,
     output: Annotated[str, _output("-o", "--output", metavar="FILE", help="Model file, .safetensors.")],
-    printing: o.PrintOptions,
-    model: Model = None,
-    split: Split = None,
-    settings: Settings = None,
-    epochs: Epochs = None,
-    batch: Batch = None,
-    rate: Rate = None,
-    schedule: Schedule = None,
-    points: Points = None,
-    held_out: HeldOut = None,
-    initial: Initial = None,
-    patience: Patience = None,
-    seed: Seed = 0,
-    threads: Threads = 1,
-    device: DeviceName = None,
-    amp: Amp = False,
-    compiled: Compile = False,
-    resume: Resume = False,
-    checkpoint_every: CheckpointEvery = None,
-    log_csv: LogCsv = None,
-    from_format: o.From = None,
-) -> int:
+    printing: o.PrintOptions, model: Model = None, split: Split = None, settings: Settings = None,
+    epochs: Epochs = None, batch: Batch = None, rate: Rate = None, schedule: Schedule = None,
+    points: Points = None, held_out: HeldOut = None, initial: Initial = None, patience: Patience = None,
+    seed: Seed = 0, threads: Threads = 1, device: DeviceName = None, amp: Amp = False,
+    compiled: Compile = False, resume: Resume = False, checkpoint_every: CheckpointEvery = None,
+    log_csv: LogCsv = None, from_format: o.From = None,
+) -> int:  # fmt: skip
     """Fit a neural operator to datasets (needs the extra `train`).
 
     Several processes under torchrun share each step.

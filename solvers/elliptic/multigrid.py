@@ -44,13 +44,9 @@ class Multigrid:
     """
 
     def __init__(
-        self,
-        nodes: Floats,
-        edges: Four,
-        periodic: bool,
-        settings: Settings | None = None,
+        self, nodes: Floats, edges: Four, periodic: bool, settings: Settings | None = None,
         controls: Controls | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.settings = settings or Settings()
         self.levels: list[MultigridLevel] = []
         self._edges: list[Four] = []

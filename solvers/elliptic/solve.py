@@ -40,14 +40,9 @@ class _DivergedError(Exception):
 
 
 def solve(
-    boundary: Boundary,
-    *,
-    tol: float | None = None,
-    max_cycles: int = 30,
-    initial: Grid | None = None,
-    controls: Controls | None = None,
-    method: str = "winslow",
-) -> Solution:
+    boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
+    controls: Controls | None = None, method: str = "winslow",
+) -> Solution:  # fmt: skip
     """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
     `boundary` is a quad, o or c, whose wake stays where it is. `tol` is the residual at which to stop, over
@@ -93,13 +88,9 @@ def solve_thomas_middlecoff(
     As `solve`, with `meshonet.solvers.elliptic.control.thomas_middlecoff`.
     """
     return solve(
-        boundary,
-        tol=tol,
-        max_cycles=max_cycles,
-        initial=initial,
-        controls=thomas_middlecoff(boundary),
+        boundary, tol=tol, max_cycles=max_cycles, initial=initial, controls=thomas_middlecoff(boundary),
         method="thomas-middlecoff",
-    )
+    )  # fmt: skip
 
 
 def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ...]]]:
@@ -109,14 +100,9 @@ def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ..
 
 
 def _attempt(
-    boundary: Boundary,
-    tol: float | None,
-    max_cycles: int,
-    initial: Grid | None,
-    settings: Settings,
-    controls: Controls | None,
-    method: str,
-) -> tuple[Floats, float, int]:
+    boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None, settings: Settings,
+    controls: Controls | None, method: str,
+) -> tuple[Floats, float, int]:  # fmt: skip
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)

@@ -43,14 +43,9 @@ RELAXATION = 0.5  # part of the linearised correction that is made
 
 
 def solve_steger_sorenson(
-    boundary: Boundary,
-    *,
-    heights: Mapping[str, float] | None = None,
-    angle: float = 90.0,
-    tol: float | None = None,
-    max_cycles: int = 30,
-    initial: Grid | None = None,
-) -> Solution:
+    boundary: Boundary, *, heights: Mapping[str, float] | None = None, angle: float = 90.0,
+    tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
+) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that turn the lines at edges and hold first cells.
 
     `heights` of first cells by side, in the unit of the quad or o `boundary`, 0 for any, name the sides under
@@ -169,26 +164,19 @@ def _restore(edges: Sequence[ControlledEdge], sources: Sequence[Floats]) -> None
 
 
 def _settled(
-    boundary: Boundary,
-    start: Floats,
-    nodes: Floats,
-    edges: Sequence[ControlledEdge],
-    tol: float | None,
+    boundary: Boundary, start: Floats, nodes: Floats, edges: Sequence[ControlledEdge], tol: float | None,
     max_cycles: int,
-) -> tuple[Solution, float]:
+) -> tuple[Solution, float]:  # fmt: skip
     """Return the solution with the sources kept, and the part of them that folds no more than `start` is."""
     folded, most = count_folded(start), max(_error(start, edges), 5.0 * CLOSE)
     controls = _sum(edges, boundary)
     for part in (1.0, 0.5, 0.25):
         try:
             solution = solve(
-                boundary,
-                tol=tol,
-                max_cycles=max_cycles,
+                boundary, tol=tol, max_cycles=max_cycles,
                 initial=Grid.from_nodes(nodes if part == 1.0 else start, boundary.topology),
-                controls=controls.scaled(part),
-                method="steger-sorenson",
-            )
+                controls=controls.scaled(part), method="steger-sorenson",
+            )  # fmt: skip
         except SolverError:
             continue
         found = solution.grid.nodes

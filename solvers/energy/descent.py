@@ -33,15 +33,9 @@ ITERATIONS = 30  # in a window at the most
 
 
 def descend(
-    nodes: Floats,
-    weights: Weights,
-    still: float,
-    most: int,
-    *,
-    periodic: bool = False,
-    first: int | None = None,
-    stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
-) -> tuple[int, bool]:
+    nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False,
+    first: int | None = None, stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
+) -> tuple[int, bool]:  # fmt: skip
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
     `still` is the `tol` of `solve`, `most` the iterations at the most, `first` those where the value is not

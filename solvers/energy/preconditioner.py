@@ -37,14 +37,9 @@ class Descent:
         self.minimiser = minimiser(nodes.shape[0], nodes.shape[1], periodic, aspect, weights)
 
     def run(
-        self,
-        still: float,
-        most: int,
-        *,
-        epsilon: float = 0.0,
-        relief: Floats | None = None,
+        self, still: float, most: int, *, epsilon: float = 0.0, relief: Floats | None = None,
         listener: Callable[[int, float, float], None] | None = None,
-    ) -> tuple[float, float, int]:
+    ) -> tuple[float, float, int]:  # fmt: skip
         """Descend; return the value of the functional, the smallest corner Jacobian and the iterations.
 
         It stops when nodes move by less than `still` of their own cells, or after `most` iterations.

@@ -17,13 +17,9 @@ WITHOUT_GAIN = 3  # regularisations without gain after which unfolding is given 
 
 
 def unfold(
-    nodes: Floats,
-    weights: Weights,
-    *,
-    periodic: bool = False,
-    aspect: float | None = None,
+    nodes: Floats, weights: Weights, *, periodic: bool = False, aspect: float | None = None,
     iterations: int = ITERATIONS,
-) -> tuple[bool, int]:
+) -> tuple[bool, int]:  # fmt: skip
     """Unfold planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations taken.
 
     ε is a cell's area at first and shrinks with the worst Jacobian, at least by half: large enough to let a

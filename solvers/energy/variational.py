@@ -65,13 +65,9 @@ SWEEPS = 30  # sweeps there; they leave some thousandths of the change from the 
 
 
 def solve(
-    boundary: Boundary,
-    *,
-    tol: float | None = None,
-    max_cycles: int = 200,
-    initial: Grid | None = None,
+    boundary: Boundary, *, tol: float | None = None, max_cycles: int = 200, initial: Grid | None = None,
     weights: Weights | None = None,
-) -> Solution:
+) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
     Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is. `tol` is the part of
@@ -105,13 +101,9 @@ def solve(
 
 
 def _nested(
-    boundary: Boundary,
-    weights: Weights,
-    still: float,
-    limits: tuple[int, int],
-    easy: float = EASY,
+    boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int], easy: float = EASY,
     few: tuple[int, int] | None = None,
-) -> tuple[Floats, Weights, int, bool]:
+) -> tuple[Floats, Weights, int, bool]:  # fmt: skip
     """Return nodes, the weights that made them, iterations on the finest level, whether it is valid.
 
     The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes; `few`

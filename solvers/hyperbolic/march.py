@@ -46,13 +46,9 @@ AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a le
 
 
 def hyperbolic(
-    boundary: Boundary,
-    *,
-    wall_spacing: float,
-    growth: float | None = None,
-    free_rows: bool = False,
+    boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1,
-) -> Solution:
+) -> Solution:  # fmt: skip
     """Return an O or C grid marched from the wall of `boundary`, which is met bitwise.
 
     The far field of `boundary` says how far to march, its `nj` how many rows to take, unless they are
@@ -200,13 +196,10 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
     )
     facts = {"method": "hyperbolic", "wall_spacing": first}
     return Solution(
-        Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts),
-        "hyperbolic",
-        seconds={"grid": time.perf_counter() - begun},
-        notes=(_first_cell_note(boundary, nodes, first),),
-        boundary=edges,
-        first_cells={"south": first},
-    )
+        Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts), "hyperbolic",
+        seconds={"grid": time.perf_counter() - begun}, notes=(_first_cell_note(boundary, nodes, first),),
+        boundary=edges, first_cells={"south": first},
+    )  # fmt: skip
 
 
 def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:

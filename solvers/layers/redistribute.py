@@ -58,14 +58,10 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         nodes, growth = _along_eta(nodes, boundary, heights)
     _make_exact(nodes, grid.periodic, heights)
     edges = replace(
-        boundary,
-        south=nodes[:, 0],
-        north=nodes[:, -1],
-        west=nodes[0],
-        east=nodes[-1],
+        boundary, south=nodes[:, 0], north=nodes[:, -1], west=nodes[0], east=nodes[-1],
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
-    )
+    )  # fmt: skip
     first_cells = heights.by_side
     facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights}, at every node there"
