@@ -78,7 +78,7 @@ def train(
     sources = [str(d) for d in ([datasets] if isinstance(datasets, str | Path) else datasets)]
     name = model or _suited(sources[0], from_format)
     members = team(plan.get("device") or "auto")
-    say = note if note and members.leads else _silent
+    say = note if note and members.leads else lambda _: None
     try:
         if initial is not None and name != "quad":
             raise InputError(f"{{initial}} is of no use to {name}", "leave it out, or use {model} quad")
@@ -106,10 +106,6 @@ def train(
     finally:
         members.close()
     return {"model": name, "shapes": len(data), "figures": figures} if members.leads else {}
-
-
-def _silent(_: str) -> None:
-    """Say nothing."""
 
 
 def _check_output(text: str) -> None:

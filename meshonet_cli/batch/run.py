@@ -155,12 +155,12 @@ def _paths(
 
 def _in_processes(work: _Work[T, S, R], todo: Todo[T], jobs: int, together: int) -> Iterator[Done[S, R]]:
     """Yield in order what processes make of groups of members; a few groups are under way."""
-    from meshonet_cli.batch.processes import Processes  # and with it concurrent.futures: 10 ms
+    from meshonet_cli.batch.processes import processes  # and with it concurrent.futures: 10 ms
 
     todo = iter(todo)
     most = 2 * jobs if together == 1 else jobs + 1
     waiting: deque[tuple[list[tuple[Item[T], str]], Future[list[Done[S, R]]]]] = deque()
-    with Processes(jobs) as pool:
+    with processes(jobs) as pool:
         while group := list(islice(todo, together)):
             waiting.append((group, pool.submit(work.listed, group)))
             if len(waiting) >= most:

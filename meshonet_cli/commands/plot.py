@@ -27,8 +27,7 @@ def plot(
     )] = "max_angle",
     zoom: Annotated[str | None, _option("--zoom", metavar="x0,x1,y0,y1", help="Show this part only.")] = None,
     every: Annotated[int | None, _option(
-        "--every", metavar="K",
-        help="Draw every K-th grid line. [default: as many as can be distinguished]",
+        "--every", metavar="K", help="Draw every K-th grid line. [default: as many as can be distinguished]",
     )] = None,
     from_format: o.From = None,
     to_format: Annotated[str | None, _output(

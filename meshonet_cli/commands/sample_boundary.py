@@ -27,12 +27,10 @@ FamilyName = Annotated[str | None, _option(
     "fields). 101x101 nodes unless --res says otherwise.",
 )]
 Count = Annotated[int | None, _option(
-    "--count", metavar="N", min=1,
-    help="Number of members to draw of the family. [default: 1]",
+    "--count", metavar="N", min=1, help="Number of members to draw of the family. [default: 1]",
 )]
 Range = Annotated[str | None, _option(
-    "--range", metavar="A:B",
-    help="Range that the family's parameter is drawn from. [default: the paper's]",
+    "--range", metavar="A:B", help="Range that the family's parameter is drawn from. [default: the paper's]",
 )]
 Sensors = Annotated[int | None, _option(
     "--sensors", metavar="M", min=2,

@@ -16,8 +16,7 @@ FirstCell = Annotated[float | None, _option(
     "south and north in its own unit. Around bodies, solve-pde and infer then march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
-    "--y-plus", metavar="Y",
-    help="The same as a y+, estimated for a turbulent flat plate; needs --reynolds.",
+    "--y-plus", metavar="Y", help="The same as a y+, estimated for a turbulent flat plate; needs --reynolds.",
 )]
 Reynolds = Annotated[float | None, _option(
     "--reynolds", metavar="RE",
@@ -51,16 +50,13 @@ SpacingSouth = Annotated[float | None, _option(
     help="Height of the first cell at every node of the south side of a four-sided domain, in its unit.",
 )]
 SpacingNorth = Annotated[float | None, _option(
-    "--spacing-north", metavar="H",
-    help="The same off the north side.",
+    "--spacing-north", metavar="H", help="The same off the north side.",
 )]
 SpacingWest = Annotated[float | None, _option(
-    "--spacing-west", metavar="H",
-    help="The same off the west side.",
+    "--spacing-west", metavar="H", help="The same off the west side.",
 )]
 SpacingEast = Annotated[float | None, _option(
-    "--spacing-east", metavar="H",
-    help="The same off the east side.",
+    "--spacing-east", metavar="H", help="The same off the east side.",
 )]
 # fmt: on
 

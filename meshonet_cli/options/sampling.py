@@ -32,12 +32,10 @@ SpacingOption = Annotated[SpacingName, _option(
     help="Spacing of the nodes along walls.",
 )]
 LeSpacing = Annotated[float | None, _option(
-    "--le-spacing", metavar="H",
-    help="Length of the wall cell at the leading edge, in chords.",
+    "--le-spacing", metavar="H", help="Length of the wall cell at the leading edge, in chords.",
 )]
 TeSpacing = Annotated[float | None, _option(
-    "--te-spacing", metavar="H",
-    help="Length of the wall cell at the trailing edge, in chords.",
+    "--te-spacing", metavar="H", help="Length of the wall cell at the trailing edge, in chords.",
 )]
 TrailingEdge = Annotated[Literal["auto", "exact", "round", "wedge"], _option(
     "--te", metavar="auto|exact|round|wedge", show_default=True,
@@ -46,8 +44,7 @@ TrailingEdge = Annotated[Literal["auto", "exact", "round", "wedge"], _option(
     "heights long. auto is wedge for a C grid, else exact.",
 )]
 FarField = Annotated[float | None, _option(
-    "--far-field", metavar="R",
-    help="Distance of the far field, in chords. [default: 15]",
+    "--far-field", metavar="R", help="Distance of the far field, in chords. [default: 15]",
 )]
 Wake = Annotated[float | None, _option(
     "--wake", metavar="L",
@@ -64,8 +61,7 @@ Corners = Annotated[str, _option(
     "first.",
 )]
 Normalise = Annotated[bool, _option(
-    "--normalise",
-    help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).",
+    "--normalise", help="Move the leading edge to (0, 0) and the trailing edge to (1, 0).",
 )]
 # fmt: on
 

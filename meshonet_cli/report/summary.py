@@ -9,17 +9,10 @@ from typing import Any
 from meshonet_cli.text import aligned, figure
 
 LABELS = {
-    "folded": "folded",
-    "max_angle": "max angle",
-    "mean_angle": "mean angle",
-    "relative_l2": "rel L2",
-    "near_wall": "near wall",
-    "max": "max",
-    "boundary": "boundary",
-    "folded_other": "folded there",
-    "max_angle_ratio": "max ratio",
-    "mean_angle_ratio": "mean ratio",
-}
+    "folded": "folded", "max_angle": "max angle", "mean_angle": "mean angle", "relative_l2": "rel L2",
+    "near_wall": "near wall", "max": "max", "boundary": "boundary", "folded_other": "folded there",
+    "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio",
+}  # fmt: skip
 """Columns, for people."""
 
 

@@ -91,17 +91,12 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
     least = heights.constant * ((first > 0) + (last > 0)) + 1
     allowed = heights.growth or LARGEST
     count = least
-    while layer_ratio(count, length, first, last, heights.constant) > allowed * (1 + 1e-9):
+    while layer_steps(np.empty(count), length, first, last, heights.constant) > allowed * (1 + 1e-9):
         count = max(count + 1, int(1.02 * count))
         if count > 100_000:
             problem = f"cells growing by {allowed:g} do not fill {length:.3g}"
             raise InputError(problem, "allow more", parameter="growth")
     return count
-
-
-def layer_ratio(cells: int, length: float, first: float, last: float, constant: int) -> float:
-    """Return the largest ratio of neighbours when `cells` cells fill `length`, infinite when they cannot."""
-    return layer_steps(np.empty(cells), length, first, last, constant)
 
 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:
