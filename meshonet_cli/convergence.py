@@ -16,10 +16,7 @@ INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
 class Live:
-    """Shows cycles on the terminal, ten a second at the most.
-
-    `show`: takes a line.
-    """
+    """Shows cycles on the terminal, ten a second at the most: `show` takes a line."""
 
     def __init__(self, show: Callable[[str], None]) -> None:
         self._show = show

@@ -19,10 +19,7 @@ def option_of(group: str) -> Callable[..., Any]:
 
 
 def only_with(needed: str, given: bool, **others: object) -> None:
-    """Raise InputError when an option that needs another one is there (not None) without it.
-
-    `needed`: the other option, by its parameter. `given`: whether it is there. `others`: values by parameter.
-    """
+    """Raise InputError when one of the `others` is there (not None) without the option `needed`."""
     from meshonet.geometry.errors import InputError
 
     for name, value in others.items():

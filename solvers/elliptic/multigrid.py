@@ -32,15 +32,9 @@ class Settings:
 
 
 class Multigrid:
-    """The hierarchy of levels above one boundary.
+    """The hierarchy of levels above `edges` (south, north, west, east), `periodic` in xi or not.
 
-    Parameters
-    ----------
-    nodes : (ni, nj, 2) planar, the finest level, worked on in place; need not be initialised.
-    edges : (south, north, west, east) nodes.
-    periodic : in xi.
-    settings : how the cycles run.
-    controls : control functions, none when not given.
+    The finest level are planar `nodes` (ni, nj, 2), worked on in place; they need not be initialised.
     """
 
     def __init__(

@@ -32,18 +32,13 @@ sides and half a circle, over that rate. Measured on airfoils, where it leaves h
 class Front:
     """Level 0 of a march from an ``o`` or ``c`` boundary, and the measure of its last level."""
 
-    inner: float
-    """Radius of the circle of the body's area."""
+    inner: float  # radius of the circle of the body's area
     slender: float
     """1 - l/L, with l the perimeter of the circle of the body's area and L its own: 0 for a circle."""
-    outer: float
-    """Radius of the far field."""
-    ends: Floats | None
-    """(2, 2) unit directions in which the ends of an open front move."""
-    widening: Floats | None
-    """(n,) how much larger than at the wall first steps are, for an open front."""
-    edge: Edge | None
-    """The sharpest corner of a closed front."""
+    outer: float  # radius of the far field
+    ends: Floats | None  # (2, 2) unit directions in which the ends of an open front move
+    widening: Floats | None  # (n,) how much larger than at the wall first steps are, for an open front
+    edge: Edge | None  # the sharpest corner of a closed front
 
     def __init__(self, boundary: Boundary) -> None:
         self._south = boundary.south
