@@ -163,7 +163,7 @@ METHODS: Mapping[str, Row] = MappingProxyType(
             "meshonet.solvers.conformal.solve:Conformal",
             "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
         ),
-        "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),
+        "operator": Row("meshonet.solvers.neural.inference:Operator", "a neural operator", solves=False),
     }
 )
 """Methods by name; ``operator:NAME`` is the operator of that name."""

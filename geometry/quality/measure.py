@@ -54,14 +54,17 @@ class Quality:
         """Return the summary of one metric."""
         return self.metrics[name]
 
+    def __str__(self) -> str:
+        rows = [f"{self.cells} cells, {self.folded} folded", f"{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"]
+        rows += [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
+        return "\n".join(rows)
+
 
 def count_folded(nodes: Floats) -> int:
     """Return how many cells of `nodes` (ni, nj, 2) are folded.
 
     Fastest, and free of copies, in the planar layout of `meshonet.geometry.arrays`.
 
-    Examples
-    --------
     >>> square = np.stack(np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij"), axis=-1)
     >>> count_folded(square), count_folded(square[::-1])
     (0, 2)
@@ -153,10 +156,7 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 def per_cell(grid: Grid, name: str) -> Floats:
     """Return the metric `name` of every cell, (ni-1, nj-1).
 
-    Raises
-    ------
-    InputError
-        there is no such metric.
+    Raises InputError: there is no such metric.
     """
     if name not in NAMES:
         raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))

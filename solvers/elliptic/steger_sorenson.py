@@ -90,6 +90,9 @@ def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: flo
     if boundary.topology == "c":
         problem, remedy = "steger-sorenson has no C grids", "use topology o or method hyperbolic"
         raise InputError(problem, remedy, parameter="method")
+    if min(boundary.ni, boundary.nj) < 3:
+        problem = f"{boundary.ni}x{boundary.nj} nodes are too few to control lines at walls"
+        raise InputError(problem, "use at least 3x3", parameter="res")
     if not 30.0 <= angle <= 150.0:
         raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150", parameter="wall_angle")
     walls = ("south", "north") if not boundary.around_body else ("south",)
