@@ -14,8 +14,6 @@ code  meaning
 A batch ends with the greatest code of its members: 3 is worse than 2, and 2 is worse than 1.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os

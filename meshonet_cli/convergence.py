@@ -1,7 +1,5 @@
 """Cycles as they run: on the terminal, and in the file of ``--history``."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import astuple, fields

@@ -1,7 +1,5 @@
 """The files of `convert`, one after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank

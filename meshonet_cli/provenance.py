@@ -1,7 +1,5 @@
 """How a file was made, as facts that travel in it."""
 
-from __future__ import annotations
-
 import shlex
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The grids of `quality`, one after the other."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 

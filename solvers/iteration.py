@@ -1,7 +1,5 @@
 """What iterative solvers have in common: their settings are checked, and they may start from a grid."""
 
-from __future__ import annotations
-
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid

@@ -1,7 +1,5 @@
 """Where the results of a batch go."""
 
-from __future__ import annotations
-
 import re
 import string
 import sys

@@ -1,7 +1,5 @@
 """Options that say how high the cells at walls are, and how they grow."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

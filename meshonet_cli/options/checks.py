@@ -1,7 +1,5 @@
 """Options that say what a grid must be to be written, and what ends the program with 1."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Annotated
 

@@ -1,7 +1,5 @@
 """The groups of options in help texts, and what all options have in common."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Options of methods, and their values."""
 
-from __future__ import annotations
-
 import re
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """Many grids in one table: a row each, and the median, mean, 90th percentile and worst of every column."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -6,8 +6,6 @@ left. A few sweeps on the nodes around, a fixed number on every level, restore m
 Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134 (local relaxation at singularities).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

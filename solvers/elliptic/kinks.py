@@ -1,7 +1,5 @@
 """Sweeps of Winslow's equations around kinks of a boundary, where splines through coarse nodes are wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -8,8 +8,6 @@ interpolation* up, so that boundaries stay exact and kinks in them are not smear
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee, Schüller, Multigrid (2001), chapters 5 and 8.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

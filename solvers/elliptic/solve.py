@@ -7,8 +7,6 @@
                                        diverges --> more sweeps --> controls little by little
 """
 
-from __future__ import annotations
-
 import time
 
 import numpy as np

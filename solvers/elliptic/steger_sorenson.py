@@ -11,8 +11,6 @@ even rows. Thinner ones are made by `meshonet.solvers.layers.redistribute`, alon
 wall at the angle.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

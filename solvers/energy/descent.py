@@ -3,8 +3,6 @@
 The iterations themselves are compiled: preconditioned L-BFGS and, for few nodes, Newton's method.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -17,8 +17,6 @@ Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the b
 Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -5,8 +5,6 @@ products of sines (along eta, and along xi between fixed nodes) or of sines and 
 compiled descent applies them in the frame of each node, by products of matrices.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from typing import TypeAlias

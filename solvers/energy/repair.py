@@ -6,8 +6,6 @@ follows, and what is left is unfolded on windows. Only inner nodes move, so the 
 cannot be unfolded is given up after a second or two.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """A folded grid made valid by minimising the functional with regularised Jacobians, all nodes at once."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

@@ -5,8 +5,6 @@ unfolded first: by local repair, else as a whole. The Hessian of the coarsest le
 moves of finer ones.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 

@@ -7,8 +7,6 @@
        field is as large as half a circle with two straight sides of the same area
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

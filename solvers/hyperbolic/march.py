@@ -10,8 +10,6 @@ The equations stand in ``kernels/hyperbolic/march.c``. The far field is where th
 or a C, with the area of the far field of the boundary.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from dataclasses import replace

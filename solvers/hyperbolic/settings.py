@@ -1,7 +1,5 @@
 """Settings of the march, and those that are tried in turn while cells are folded."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """Heights of the first cells off each edge, and cells that grow from them by one ratio."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

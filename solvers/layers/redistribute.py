@@ -9,8 +9,6 @@ The lines that leave a wall stay the curves they are, and nodes are placed anew 
 by one map of their index, which keeps kinks of the walls on their nodes.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -7,8 +7,6 @@ the leans are divided by that, wave by wave. It is done on few nodes; the map fr
 wall is smooth and serves any number.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

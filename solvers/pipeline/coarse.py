@@ -4,8 +4,6 @@ A few nodes describe a smooth grid. So the boundary is thinned to the coarse cou
 and its grid is evaluated inside the full edges (`meshonet.solvers.algebraic.resample.grids`).
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace

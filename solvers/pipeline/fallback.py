@@ -1,7 +1,5 @@
 """No folded grid passes here in silence: it is repaired, or made by another method, or refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 

@@ -8,8 +8,6 @@
     anything else ---------------- solve --------------------+
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter

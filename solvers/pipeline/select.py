@@ -1,7 +1,5 @@
 """Which method makes a grid, and on how many nodes, when that is left open."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.arrays import Topology

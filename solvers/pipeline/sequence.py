@@ -9,8 +9,6 @@ The nodes of each boundary are among those of the next finer one. A solution is 
 as a coarse one is (`meshonet.solvers.algebraic.resample.grids`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 

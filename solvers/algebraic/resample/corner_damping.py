@@ -9,8 +9,6 @@ second derivatives B add between, and K the share left at each node::
     L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -10,8 +10,6 @@ with the third derivative continuous at the second and the last but one knot ("n
 de Boor, A Practical Guide to Splines (1978), chapter IV.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
