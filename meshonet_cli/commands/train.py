@@ -141,9 +141,7 @@ def _values(words: Sequence[str]) -> dict[str, Any]:
     for word in words:
         name, mark, text = word.partition("=")
         if not mark:
-            from meshonet.geometry.errors import InputError
-
-            raise InputError(f"{word!r} is not NAME=VALUE", "use e.g. sensors=80", parameter="settings")
+            raise o.bad_value(word, "NAME=VALUE", "use e.g. sensors=80", "settings")
         try:
             values[name] = json.loads(text)
         except ValueError:

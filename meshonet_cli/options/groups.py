@@ -16,6 +16,13 @@ def option_of(group: str) -> Callable[..., Any]:
     return partial(typer.Option, rich_help_panel=group, show_default=False)
 
 
+def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
+    """Return the InputError for an option's `text`, which is not `what` it should be."""
+    from meshonet.geometry.errors import InputError
+
+    return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
+
+
 def only_with(needed: str, given: bool, **others: object) -> None:
     """Raise InputError when one of the `others` is there (not None) without the option `needed`."""
     from meshonet.geometry.errors import InputError

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from meshonet_cli.options.groups import SAMPLING, option_of
+from meshonet_cli.options.groups import SAMPLING, bad_value, option_of
 
 if TYPE_CHECKING:
     from meshonet.geometry.spacing.sampling import Sampling
@@ -82,27 +82,20 @@ class SamplingOptions:
 
 
 def resolution(text: str) -> tuple[int, int]:
-    """Return the node counts (ni, nj) of ``N`` or ``NIxNJ``.
-
-    Raises InputError: `text` is neither.
+    """Return the node counts (ni, nj) of ``N`` or ``NIxNJ``, or raise InputError.
 
     >>> resolution("200"), resolution("400x100")
     ((200, 200), (400, 100))
     """
     match = re.fullmatch(r"\s*(\d{1,9})\s*(?:[xX]\s*(\d{1,9})\s*)?", text, re.ASCII)
     if match is None:
-        from meshonet.geometry.errors import InputError
-
-        remedy = "use N or NIxNJ, e.g. 200 or 400x100"
-        raise InputError(f"{text!r} is not a number of nodes", remedy, parameter="res")
+        raise bad_value(text, "a number of nodes", "use N or NIxNJ, e.g. 200 or 400x100", "res")
     ni = int(match[1])
     return ni, int(match[2] or ni)
 
 
 def four_corners(text: str) -> tuple[int, int, int, int] | None:
-    """Return the four indices of ``I,J,K,L``, or None for ``auto``.
-
-    Raises InputError: `text` is neither.
+    """Return the four indices of ``I,J,K,L``, or None for ``auto``, or raise InputError.
 
     >>> four_corners("0,10,20,30"), four_corners("auto")
     ((0, 10, 20, 30), None)
@@ -111,9 +104,6 @@ def four_corners(text: str) -> tuple[int, int, int, int] | None:
         return None
     words = text.split(",")
     if len(words) != 4 or not all(re.fullmatch(r"\s*\d{1,9}\s*", word, re.ASCII) for word in words):
-        from meshonet.geometry.errors import InputError
-
-        remedy = "use auto or I,J,K,L, e.g. 0,40,60,100"
-        raise InputError(f"{text!r} is not four points", remedy, parameter="corners")
+        raise bad_value(text, "four points", "use auto or I,J,K,L, e.g. 0,40,60,100", "corners")
     a, b, c, d = (int(word) for word in words)
     return a, b, c, d
