@@ -14,8 +14,6 @@ code  meaning
 A batch ends with the greatest code of its members: 3 is worse than 2, and 2 is worse than 1.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os
@@ -26,16 +24,16 @@ from typing import Annotated, Any, NoReturn
 import typer
 import typer.core
 
+from meshonet import __version__
 from meshonet_cli.commands import COMMANDS, Command
 from meshonet_cli.stopping import install
-from meshonet_cli.version import VERSION
 
 INTERRUPTED, BAD_INPUT = 130, 2
 
 
 def _version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"meshonet {VERSION}")
+        typer.echo(f"meshonet {__version__}")
         raise typer.Exit
 
 

@@ -1,7 +1,5 @@
 """The boundaries of `sample-boundary`: from files, or drawn from a family."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Cycles as they run: on the terminal, and in the file of ``--history``."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import astuple, fields
@@ -16,10 +14,7 @@ INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
 class Live:
-    """Shows cycles on the terminal, ten a second at the most.
-
-    `show`: takes a line.
-    """
+    """Shows cycles on the terminal, ten a second at the most: `show` takes a line."""
 
     def __init__(self, show: Callable[[str], None]) -> None:
         self._show = show

@@ -1,7 +1,5 @@
 """The files of `convert`, one after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from meshonet.formats.convert import Conversion, plot3d_variant, unused_iblank
@@ -20,11 +18,7 @@ def convert_files(
     from_format: str | None = None, to_format: str | None = None, plot3d: str | None = None,
     skip_existing: bool = False,
 ) -> int:  # fmt: skip
-    """Write what `sources` hold to `output` and return the exit code.
-
-    `plot3d`: variant of the Plot3D file among them. `skip_existing`: pass over members whose own file is
-    there. Raises InputError: a format that cannot be written, or not in 3D; a height that is not positive.
-    """
+    """Write what `sources` hold to `output` and return the exit code; `plot3d` is a variant of it."""
     from_format, to_format = plot3d_variant(plot3d, output, from_format, to_format)
     boundaries = conversion.of_boundaries(sources[0], output, from_format, to_format)
     put = None if boundaries else conversion.extruder(output, to_format)

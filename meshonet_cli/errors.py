@@ -1,7 +1,5 @@
 """Errors as a line for the user, parameters spelled as options."""
 
-from __future__ import annotations
-
 _OPTIONS = {
     "from_format": "--from", "to_format": "--to", "output": "-o", "settings": "--set",
 }  # fmt: skip

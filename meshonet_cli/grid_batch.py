@@ -54,31 +54,18 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
     """Return the grid of `member` with the command in its provenance, and the report."""
     solution, grid = result.solution, result.grid
     report = Report(
-        member,
-        method=solution.method,
-        ni=grid.ni,
-        nj=grid.nj,
-        topology=grid.topology,
-        quality=result.quality,
-        model=solution.model,
-        path=solution.path,
-        residual=solution.residual,
-        cycles=solution.cycles,
-        notes=result.notes,
-        history=result.history,
-    )
+        member, method=solution.method, ni=grid.ni, nj=grid.nj, topology=grid.topology,
+        quality=result.quality, model=solution.model, path=solution.path, residual=solution.residual,
+        cycles=solution.cycles, notes=result.notes, history=result.history,
+    )  # fmt: skip
     report.seconds |= result.seconds
     return grid.with_provenance(**provenance()), report
 
 
 def request_of(
-    method: str,
-    sampling: SamplingOptions,
-    checks: CheckOptions,
-    *blocks: LayerOptions | SideOptions,
-    settings: Mapping[str, Any],
-    **parameters: Any,
-) -> GridRequest:
+    method: str, sampling: SamplingOptions, checks: CheckOptions, *blocks: LayerOptions | SideOptions,
+    settings: Mapping[str, Any], **parameters: Any,
+) -> GridRequest:  # fmt: skip
     """Return the request that options describe, `parameters` by the names of its fields.
 
     Raises InputError: as `GridRequest`; a gate that is none.
@@ -86,14 +73,10 @@ def request_of(
     for block in blocks:
         parameters |= vars(block)
     return GridRequest(
-        sampling.settings(),
-        method,
-        {name: value for name, value in settings.items() if value is not None},
-        repair=checks.repair,
-        allow_invalid=checks.allow_invalid,
-        percentiles=need_percentiles(parse_gates(checks.fail_on)),
-        **parameters,
-    )
+        sampling.settings(), method, {name: value for name, value in settings.items() if value is not None},
+        repair=checks.repair, allow_invalid=checks.allow_invalid,
+        percentiles=need_percentiles(parse_gates(checks.fail_on)), **parameters,
+    )  # fmt: skip
 
 
 def write_grids(
@@ -102,14 +85,7 @@ def write_grids(
 ) -> int:  # fmt: skip
     """Turn every boundary of `sources` into a grid in `output` and return the exit code.
 
-    Parameters
-    ----------
-    checks : their gates end the program with 1.
-    files : formats, and whether members are passed over whose own file is there.
-    history : file that the cycles go to.
-    jobs : processes at work.
-
-    Raises InputError: several members and room for one.
+    The gates of `checks` end the program with 1; the cycles go to the file `history`.
     """
     destination = Destination(output, files.to_format, "grids")
     prepare(sources, destination, session)

@@ -1,7 +1,5 @@
 """The pictures of `plot`, one after the other."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 

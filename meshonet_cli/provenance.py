@@ -1,13 +1,11 @@
 """How a file was made, as facts that travel in it."""
 
-from __future__ import annotations
-
 import shlex
 import sys
 from collections.abc import Sequence
 from functools import lru_cache
 
-from meshonet_cli.version import VERSION
+from meshonet import __version__
 
 
 def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
@@ -21,7 +19,7 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     "meshonet tfi 'a b.csv' --res 80"
     """
     given = tuple(sys.argv[1:] if arguments is None else arguments)
-    return {"software": f"meshonet {VERSION}", "command": _command(given)}
+    return {"software": f"meshonet {__version__}", "command": _command(given)}
 
 
 @lru_cache(maxsize=1)  # every grid of many files has the same, and it names all of them

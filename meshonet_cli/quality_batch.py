@@ -1,7 +1,5 @@
 """The grids of `quality`, one after the other."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 
@@ -22,27 +20,15 @@ from meshonet_cli.session import Session
 
 
 def measure_grids(
-    sources: Sequence[str],
-    session: Session,
-    *,
-    fmt: str | None = None,
-    fail_on: Sequence[str] | None = None,
-    profile: str | None = None,
-    compare: str | None = None,
-    pairing: Pairing = "auto",
-    summary: bool = False,
-    plot: str | None = None,
-    per_cell: str | None = None,
-) -> int:
+    sources: Sequence[str], session: Session, *, fmt: str | None = None, fail_on: Sequence[str] | None = None,
+    profile: str | None = None, compare: str | None = None, pairing: Pairing = "auto", summary: bool = False,
+    plot: str | None = None, per_cell: str | None = None,
+) -> int:  # fmt: skip
     """Measure every grid of `sources`, print the reports and return the exit code.
 
-    Parameters
-    ----------
-    fail_on : gates.
-    profile : thresholds of `meshonet.geometry.quality.profiles` to judge by.
-    compare : file of reference grids, matched with the grids by `pairing`.
-    summary : print one table over all grids in place of one for each.
-    plot, per_cell : pictures and files of metrics to write of each grid.
+    `fail_on` are gates, `profile` names thresholds, `compare` is a file of reference grids, matched by
+    `pairing`. `summary` prints one table over all; `plot` and `per_cell` are pictures and files of metrics to
+    write.
     """
     gates = parse_gates(fail_on, COMPARED if compare else ())
     outputs = [picture_file(plot, None, Picture())] if plot else []

@@ -1,7 +1,5 @@
 """``docs/cli.md``, what every ``--help`` prints: ``python -m meshonet_cli.reference > docs/cli.md``."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 from collections.abc import Iterator

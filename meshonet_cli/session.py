@@ -37,10 +37,8 @@ class Printed(Protocol):
 class Session:
     """Prints what happens and remembers the worst exit code.
 
-    Results for programs (``--json``) and tables go to standard output, everything else to standard error.
-
-    `quiet`: no progress and no reports, only warnings and errors. `as_json`: one JSON object a member on
-    standard output, in place of reports. `debug`: tracebacks of failing members too.
+    Results for programs (`as_json`) and tables go to standard output, everything else to standard error; only
+    warnings and errors when `quiet`, and tracebacks of failing members too with `debug`.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:

@@ -4,8 +4,6 @@ The handlers raise at once, as Python's own does, and also remember; `check`, ca
 batch, raises what was dropped.
 """
 
-from __future__ import annotations
-
 import signal
 from types import FrameType
 from typing import NoReturn

@@ -1,7 +1,5 @@
 """Numbers and tables as text."""
 
-from __future__ import annotations
-
 
 def aligned(rows: list[list[str]]) -> str:
     """Return `rows` as lines with columns aligned, the first to the left and the others to the right."""

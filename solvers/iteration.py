@@ -1,7 +1,5 @@
 """What iterative solvers have in common: their settings are checked, and they may start from a grid."""
 
-from __future__ import annotations
-
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
@@ -9,11 +7,7 @@ from meshonet.geometry.errors import InputError
 
 
 def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
-    """Raise InputError unless an iterative solver can take the settings for `boundary`.
-
-    `tol`: at which it stops, None for its own. `max_cycles`: or iterations, on the finest level. `initial`:
-    grid to start from, None for none.
-    """
+    """Raise InputError unless an iterative solver can take the settings for `boundary`."""
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")
     if max_cycles < 1:

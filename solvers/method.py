@@ -85,14 +85,14 @@ class Wrapper(OneByOne):
 class Each(OneByOne):
     """A function of one boundary as a method.
 
-    `name`: in `METHODS`. `target`: a function of a boundary, its settings and perhaps ``initial``, a grid to
-    start from; or ``module:name`` of one, which is loaded when it is needed. `settings`: keywords of the
-    function. Raises InputError: a setting that the function does not have.
+    Raises InputError: a setting that the function does not have.
     """
 
-    name: str
+    name: str  # in `METHODS`
+    # a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or ``module:name``
+    # of one, which is loaded when it is needed
     target: str | Callable[..., Solution]
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, Any] = field(default_factory=dict)  # keywords of the function
 
     def __post_init__(self) -> None:
         if self.settings:
@@ -118,22 +118,15 @@ class Each(OneByOne):
 
 
 class Row(NamedTuple):
-    """A method before it is loaded.
+    """A method before it is loaded."""
 
-    Parameters
-    ----------
-    target : ``module:name`` of the function of a boundary, or of the class of the method.
-    summary : for help and documentation, behind the name.
-    solves : whether ``solve-pde`` offers it.
-    sweeps : whether relaxing Winslow's equations around kinks suits its grids: not where they have sources.
-    algebraic : whether its grids are formulas of the boundary, not repaired unless that is asked for, and
-        inside boundaries that are sampled in the same way with first cells and without.
-    """
-
-    target: str
-    summary: str
-    solves: bool = True
+    target: str  # ``module:name`` of the function of a boundary, or of the class of the method
+    summary: str  # for help and documentation, behind the name
+    solves: bool = True  # whether ``solve-pde`` offers it
+    # whether relaxing Winslow's equations around kinks suits its grids: not where they have sources
     sweeps: bool = True
+    # whether its grids are formulas of the boundary, not repaired unless that is asked for, and inside
+    # boundaries that are sampled in the same way with first cells and without
     algebraic: bool = False
 
     @property

@@ -18,28 +18,19 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Cycle:
-    """State of the finest grid after a cycle.
+    """State of the finest grid after a cycle."""
 
-    Parameters
-    ----------
-    method : that iterates.
-    ni, nj : nodes of the grid.
-    number : of the cycle, 0 for the start; it begins anew with every attempt.
-    residual : relative to that of the transfinite interpolation; of a minimisation the norm of the gradient,
-        relative to that of its start on this grid.
-    change : root mean square of what the cycle's coarse levels moved the nodes by, in units of length.
-    folded : cells.
-    functional : value of what is minimised.
-    """
-
-    method: str
-    ni: int
+    method: str  # that iterates
+    ni: int  # nodes of the grid
     nj: int
-    number: int
+    number: int  # of the cycle, 0 for the start; it begins anew with every attempt
+    # relative to that of the transfinite interpolation; of a minimisation the norm of the gradient, relative
+    # to that of its start on this grid
     residual: float
+    # root mean square of what the cycle's coarse levels moved the nodes by, in units of length
     change: float | None
-    folded: int
-    functional: float | None = None
+    folded: int  # cells
+    functional: float | None = None  # value of what is minimised
 
 
 Listener = Callable[[Cycle], None]
@@ -62,13 +53,9 @@ def listened_to() -> bool:
 
 
 def cycle_ended(
-    method: str,
-    nodes: Floats,
-    number: int,
-    residual: float,
-    change: float | None = None,
+    method: str, nodes: Floats, number: int, residual: float, change: float | None = None,
     functional: float | None = None,
-) -> None:
+) -> None:  # fmt: skip
     """Call the listeners after a cycle of `method` that left the grid as `nodes` (ni, nj, 2)."""
     listeners = _listeners.get()
     if not listeners:
@@ -81,26 +68,16 @@ def cycle_ended(
 
 @dataclass(frozen=True)
 class Row:
-    """A cycle of a history.
+    """A cycle of a history."""
 
-    Parameters
-    ----------
-    method : that iterated.
-    ni, nj : nodes of the grid.
-    attempt : counted from 1; the next one begins where the one before diverged.
-    cycle : its number, None for the result of a method without cycles.
-    residual, change, folded, functional : as of `Cycle`; None where a method has none.
-    seconds : since the solve began.
-    """
-
-    method: str
-    ni: int
+    method: str  # that iterated
+    ni: int  # nodes of the grid
     nj: int
-    attempt: int
-    cycle: int | None
-    residual: float | None
+    attempt: int  # counted from 1; the next one begins where the one before diverged
+    cycle: int | None  # its number, None for the result of a method without cycles
+    residual: float | None  # as of `Cycle`; None where a method has none
     change: float | None
-    seconds: float
+    seconds: float  # since the solve began
     folded: int | None
     functional: float | None = None
 

@@ -1,7 +1,5 @@
 """What a solver returns: the grid, how the solve ended and what it took."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum

@@ -12,10 +12,10 @@ import grimp
 import numpy as np
 import pytest
 
+from meshonet import __version__
 from meshonet_cli.commands import COMMANDS
 from meshonet_cli.options.sampling import SpacingName, TopologyName
 from meshonet_cli.reference import reference
-from meshonet_cli.version import VERSION
 
 ROOT = Path(__file__).parents[1]
 HEAVY = ("torch", "matplotlib", "numba", "scipy", "h5py", "meshio")
@@ -156,7 +156,7 @@ def test_every_command_is_thin(command: object) -> None:
 def test_the_version_is_that_of_the_package() -> None:
     import meshonet
 
-    assert meshonet.__version__ == VERSION
+    assert meshonet.__version__ == __version__
     assert 'version = { attr = "meshonet.__version__" }' in (ROOT / "pyproject.toml").read_text()
 
 

@@ -1,7 +1,5 @@
 """`meshonet.read`, `meshonet.read_all` and `meshonet.write`."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path

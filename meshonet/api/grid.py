@@ -1,7 +1,5 @@
 """`meshonet.grid`, and the functions of the commands that make grids and boundaries."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 

@@ -1,7 +1,5 @@
 """`meshonet.models`."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from meshonet.solvers.neural.registry import described, shipped

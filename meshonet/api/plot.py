@@ -1,7 +1,5 @@
 """`meshonet.plot`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from meshonet.api.quality import single_grid

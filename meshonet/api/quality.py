@@ -1,7 +1,5 @@
 """`meshonet.quality`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from meshonet.formats.registry import read_grids

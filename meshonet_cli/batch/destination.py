@@ -1,7 +1,5 @@
 """Where the results of a batch go."""
 
-from __future__ import annotations
-
 import re
 import string
 import sys
@@ -18,16 +16,10 @@ FIELDS = ("stem", "index", "name")
 
 
 class Destination:
-    """Where results go: one file, one file each, or standard output.
+    """Where results go: one file, one file each (``{stem}``, ``{index}`` or ``{name}`` in `text`), or ``-``.
 
-    Parameters
-    ----------
-    text : path, path with ``{stem}``, ``{index}`` or ``{name}`` in it, or ``-``.
-    fmt : format to write, or None to go by the ending.
-    kind : what will be written.
-    put : writes to a path in place of the format's own function.
-
-    Raises InputError: an unknown field or ending, or a format that cannot be written.
+    `put` writes to a path in place of the format's own function for that `kind`. Raises InputError: an
+    unknown field or ending, or a format that cannot be written.
     """
 
     def __init__(

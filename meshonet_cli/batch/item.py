@@ -28,22 +28,13 @@ T = TypeVar("T", bound=Named)
 
 @dataclass(frozen=True)
 class Item(Generic[T]):
-    """One member of a batch.
+    """One member of a batch."""
 
-    Parameters
-    ----------
-    index : counted from 0 over all inputs.
-    source : the input as the user wrote it.
-    what : the shape or grid.
-    seconds : spent on reading it.
-    only : whether its source holds nothing else.
-    """
-
-    index: int
-    source: str
-    what: T
-    seconds: float
-    only: bool = True
+    index: int  # counted from 0 over all inputs
+    source: str  # the input as the user wrote it
+    what: T  # the shape or grid
+    seconds: float  # spent on reading it
+    only: bool = True  # whether its source holds nothing else
 
     def without_content(self) -> Item[Name]:
         """Return the same member with nothing but the name of what it holds."""

@@ -64,28 +64,15 @@ class one_by_one(Generic[T, S, R]):  # noqa: N801 - used as a function, and a cl
 
 
 def deliver(
-    members: Iterator[Item[T]],
-    make: Make[T, S, R],
-    destination: Destination,
-    session: Session,
-    written: Callable[[R, str], None],
-    *,
-    skip_existing: bool = False,
-    together: int = 1,
-    jobs: int = 1,
-) -> None:
+    members: Iterator[Item[T]], make: Make[T, S, R], destination: Destination, session: Session,
+    written: Callable[[R, str], None], *, skip_existing: bool = False, together: int = 1, jobs: int = 1,
+) -> None:  # fmt: skip
     """Make something of every member of `members`, write it to `destination`, and report it.
 
-    A member that fails is reported and left out. Memory holds what `make` does, or some members for a job.
-
-    Parameters
-    ----------
-    make : makes of members what to write, and reports, whose stage ``write`` is timed here; with several jobs
-        it must be something that can be pickled.
-    written : is called with the report and the path when a member is written.
-    skip_existing : pass over members whose own file is there.
-    together : members that one of several jobs gets at a time.
-    jobs : processes that make, and write when every member has its own file.
+    A member that fails is reported and left out. `make` yields what to write, and reports whose stage
+    ``write`` is timed here; with several `jobs` (processes), which get so many members `together`, it must be
+    something that can be pickled. `written` is called with the report and the path of each; with
+    `skip_existing` members whose own file is there are passed over.
     """
     leading = next(members, None)
     if leading is None:
@@ -168,12 +155,12 @@ def _paths(
 
 def _in_processes(work: _Work[T, S, R], todo: Todo[T], jobs: int, together: int) -> Iterator[Done[S, R]]:
     """Yield in order what processes make of groups of members; a few groups are under way."""
-    from meshonet_cli.batch.processes import Processes  # and with it concurrent.futures: 10 ms
+    from meshonet_cli.batch.processes import processes  # and with it concurrent.futures: 10 ms
 
     todo = iter(todo)
     most = 2 * jobs if together == 1 else jobs + 1
     waiting: deque[tuple[list[tuple[Item[T], str]], Future[list[Done[S, R]]]]] = deque()
-    with Processes(jobs) as pool:
+    with processes(jobs) as pool:
         while group := list(islice(todo, together)):
             waiting.append((group, pool.submit(work.listed, group)))
             if len(waiting) >= most:
@@ -190,10 +177,7 @@ def _of_group(group: Sequence[tuple[Item[T], str]], future: Future[list[Done[S, 
 
 
 def _streamed(
-    done: Iterator[Done[S, R]],
-    destination: Destination,
-    session: Session,
-    written: Callable[[R, str], None],
+    done: Iterator[Done[S, R]], destination: Destination, session: Session, written: Callable[[R, str], None]
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
     size: tuple[int, int, str] | None = None

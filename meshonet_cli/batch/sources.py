@@ -1,7 +1,5 @@
 """Inputs of a batch: files one after the other, and the records of each."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence

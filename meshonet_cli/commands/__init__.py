@@ -1,7 +1,5 @@
 """One command a file; this is their list, in the order of the help."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from importlib import import_module
 from typing import Any, NamedTuple

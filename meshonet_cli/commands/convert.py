@@ -48,8 +48,7 @@ def convert(
         "with commas. Reading finds out what can be found; --from plot3d:WORDS says it in any command.",
     )] = None,
     swap: Annotated[bool, _option(
-        "--swap",
-        help="Have xi run where eta ran (four-sided grids), still right-handed.",
+        "--swap", help="Have xi run where eta ran (four-sided grids), still right-handed.",
     )] = False,
     normalise: Annotated[bool, _option(
         "--normalise",
@@ -61,8 +60,7 @@ def convert(
         help="Keep every K-th node along xi and eta; K must divide the cells.",
     )] = None,
     list_formats: Annotated[bool, _output(
-        "--list-formats",
-        help="Print what can be read and written, and stop.",
+        "--list-formats", help="Print what can be read and written, and stop.",
     )] = False,
 ) -> int:
     """Turn files from one format into another."""

@@ -38,19 +38,10 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 
 @o.expanded
 def infer(
-    boundary: o.Boundaries,
-    output: o.Output,
-    sampling: o.SamplingOptions,
-    first: o.LayerOptions,
-    checks: o.CheckOptions,
-    files: o.FileOptions,
-    printing: o.PrintOptions,
-    model: ModelName = None,
-    polish: Polish = "auto",
-    answer: Answer = "valid",
-    device: DeviceName = None,
-    jobs: o.Jobs = 1,
-) -> int:
+    boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
+    checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions, model: ModelName = None,
+    polish: Polish = "auto", answer: Answer = "valid", device: DeviceName = None, jobs: o.Jobs = 1,
+) -> int:  # fmt: skip
     """Make the grid that measures best: conformal, marched or variational.
 
     Around a body that is an O grid by a conformal map; with a first cell given, and for C grids, a grid

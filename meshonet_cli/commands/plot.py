@@ -27,8 +27,7 @@ def plot(
     )] = "max_angle",
     zoom: Annotated[str | None, _option("--zoom", metavar="x0,x1,y0,y1", help="Show this part only.")] = None,
     every: Annotated[int | None, _option(
-        "--every", metavar="K",
-        help="Draw every K-th grid line. [default: as many as can be distinguished]",
+        "--every", metavar="K", help="Draw every K-th grid line. [default: as many as can be distinguished]",
     )] = None,
     from_format: o.From = None,
     to_format: Annotated[str | None, _output(
@@ -56,7 +55,5 @@ def _box(text: str | None) -> tuple[float, float, float, float] | None:
     try:
         x0, x1, y0, y1 = (float(word) for word in text.split(","))
     except ValueError:
-        from meshonet.geometry.errors import InputError
-
-        raise InputError(f"{text!r} is not a box", "use x0,x1,y0,y1", parameter="zoom") from None
+        raise o.bad_value(text, "a box", "use x0,x1,y0,y1", "zoom") from None
     return x0, x1, y0, y1

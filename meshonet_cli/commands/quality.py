@@ -27,12 +27,10 @@ def quality(
         "FAIL, and exits with 1 when one fails. See docs/quality.md.",
     )] = None,
     plot: Annotated[str | None, _output(
-        "--plot", metavar="F.png",
-        help="Draw the grid, coloured by max_angle.",
+        "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
     )] = None,
     per_cell: Annotated[str | None, _output(
-        "--per-cell", metavar="F.vts",
-        help="Write every metric of every cell.",
+        "--per-cell", metavar="F.vts", help="Write every metric of every cell.",
     )] = None,
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",
@@ -45,8 +43,7 @@ def quality(
         "several are matched by name where they have names, else by order. [default: auto]",
     )] = None,
     summary: Annotated[bool, _output(
-        "--summary",
-        help="One table (or JSON object) over all grids, a row each.",
+        "--summary", help="One table (or JSON object) over all grids, a row each.",
     )] = False,
     from_format: o.From = None,
 ) -> int:

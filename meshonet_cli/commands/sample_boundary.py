@@ -27,12 +27,10 @@ FamilyName = Annotated[str | None, _option(
     "fields). 101x101 nodes unless --res says otherwise.",
 )]
 Count = Annotated[int | None, _option(
-    "--count", metavar="N", min=1,
-    help="Number of members to draw of the family. [default: 1]",
+    "--count", metavar="N", min=1, help="Number of members to draw of the family. [default: 1]",
 )]
 Range = Annotated[str | None, _option(
-    "--range", metavar="A:B",
-    help="Range that the family's parameter is drawn from. [default: the paper's]",
+    "--range", metavar="A:B", help="Range that the family's parameter is drawn from. [default: the paper's]",
 )]
 Sensors = Annotated[int | None, _option(
     "--sensors", metavar="M", min=2,
@@ -49,19 +47,10 @@ Seed = Annotated[int | None, _option("--seed", metavar="S", min=0, help="Seed of
 
 @o.expanded
 def sample_boundary(
-    output: o.Output,
-    sampling: o.SamplingOptions,
-    files: o.FileOptions,
-    printing: o.PrintOptions,
-    source: Source = None,
-    family: FamilyName = None,
-    count: Count = None,
-    spread: Range = None,
-    seed: Seed = None,
-    split: Split = None,
-    sensors: Sensors = None,
-    jobs: o.Jobs = 1,
-) -> int:
+    output: o.Output, sampling: o.SamplingOptions, files: o.FileOptions, printing: o.PrintOptions,
+    source: Source = None, family: FamilyName = None, count: Count = None, spread: Range = None,
+    seed: Seed = None, split: Split = None, sensors: Sensors = None, jobs: o.Jobs = 1,
+) -> int:  # fmt: skip
     """Turn geometry into boundaries of four edges."""
     from meshonet.geometry.errors import InputError
     from meshonet.geometry.families.draw import draws

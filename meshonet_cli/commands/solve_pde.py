@@ -71,26 +71,12 @@ History = Annotated[str | None, o.option_of(o.IO)(
 
 @o.expanded
 def solve_pde(
-    boundary: o.Boundaries,
-    output: o.Output,
-    sampling: o.SamplingOptions,
-    first: o.LayerOptions,
-    sides: o.SideOptions,
-    checks: o.CheckOptions,
-    files: o.FileOptions,
-    printing: o.PrintOptions,
-    method: Method = "auto",
-    tol: Tolerance = None,
-    max_cycles: MaxCycles = None,
-    coarse: Coarse = "auto",
-    refine: Refine = 0,
-    initial: Initial = None,
-    history: History = None,
-    slide: o.Slide = None,
-    wall_angle: o.WallAngle = None,
-    repair_margin: RepairMargin = None,
-    jobs: o.Jobs = 1,
-) -> int:
+    boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
+    sides: o.SideOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
+    method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
+    refine: Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
+    wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None, jobs: o.Jobs = 1,
+) -> int:  # fmt: skip
     """Make grids by elliptic equations, a variational method, or marching."""
     from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
 

@@ -40,12 +40,10 @@ Settings = Annotated[list[str] | None, _option(
     "repeatable. The page docs/paper-models.md lists them.",
 )]
 Epochs = Annotated[int | None, _option(
-    "--epochs", metavar="N", min=1,
-    help="Passes over the shapes. [default: strip 24, quad 64, others 15000]",
+    "--epochs", metavar="N", min=1, help="Passes over the shapes. [default: strip 24, quad 64, others 15000]",
 )]
 Batch = Annotated[int | None, _option(
-    "--batch", metavar="N", min=1,
-    help="Shapes per step. [default: strip 32, quad 64, others 30]",
+    "--batch", metavar="N", min=1, help="Shapes per step. [default: strip 32, quad 64, others 30]",
 )]
 Rate = Annotated[float | None, _option(
     "--rate", "--lr", metavar="R",
@@ -66,8 +64,7 @@ HeldOut = Annotated[int | None, _option(
     "none]",
 )]
 Initial = Annotated[str | None, _option(
-    "--initial", metavar="NAME|PATH",
-    help="Quad model to start from. [default: random weights]",
+    "--initial", metavar="NAME|PATH", help="Quad model to start from. [default: random weights]",
 )]
 Patience = Annotated[int | None, _option(
     "--patience", metavar="EPOCHS", min=1,
@@ -79,32 +76,28 @@ Seed = Annotated[int, _option(
     help="Seed of the first weights, the order of shapes and the points drawn.",
 )]
 Threads = Annotated[int, _option(
-    "--threads", metavar="N", min=1, show_default=True,
-    help="Threads of torch.",
+    "--threads", metavar="N", min=1, show_default=True, help="Threads of torch.",
 )]
 DeviceName = Annotated[Literal["auto", "cpu", "cuda"] | None, _option(
     "--device", metavar="auto|cpu|cuda",
     help="Where to compute; auto takes CUDA where torch sees it. [default: strip and quad cpu, others auto]",
 )]
 Amp = Annotated[bool, _option(
-    "--amp",
-    help="Multiply in bfloat16 where that is safe; twice as slow on a CPU without units for it.",
+    "--amp", help="Multiply in bfloat16 where that is safe; twice as slow on a CPU without units for it.",
 )]
 Compile = Annotated[bool, _option(
     "--compile",
     help="Compile the step first (torch.compile; needs a C++ compiler); no gain for small models on a CPU.",
 )]
 Resume = Annotated[bool, _option(
-    "--resume",
-    help="Continue from the checkpoint beside the output, if there is one.",
+    "--resume", help="Continue from the checkpoint beside the output, if there is one.",
 )]
 CheckpointEvery = Annotated[int | None, _option(
     "--checkpoint-every", metavar="EPOCHS", min=1,
     help="Epochs between checkpoints. [default: strip and quad 1, others a two-hundredth of all]",
 )]
 LogCsv = Annotated[str | None, _output(
-    "--log-csv", metavar="FILE",
-    help="Write loss, its parts, rate and time to FILE.",
+    "--log-csv", metavar="FILE", help="Write loss, its parts, rate and time to FILE.",
 )]
 # fmt: on
 
@@ -113,28 +106,13 @@ LogCsv = Annotated[str | None, _output(
 def train(
     dataset: Dataset,
     output: Annotated[str, _output("-o", "--output", metavar="FILE", help="Model file, .safetensors.")],
-    printing: o.PrintOptions,
-    model: Model = None,
-    split: Split = None,
-    settings: Settings = None,
-    epochs: Epochs = None,
-    batch: Batch = None,
-    rate: Rate = None,
-    schedule: Schedule = None,
-    points: Points = None,
-    held_out: HeldOut = None,
-    initial: Initial = None,
-    patience: Patience = None,
-    seed: Seed = 0,
-    threads: Threads = 1,
-    device: DeviceName = None,
-    amp: Amp = False,
-    compiled: Compile = False,
-    resume: Resume = False,
-    checkpoint_every: CheckpointEvery = None,
-    log_csv: LogCsv = None,
-    from_format: o.From = None,
-) -> int:
+    printing: o.PrintOptions, model: Model = None, split: Split = None, settings: Settings = None,
+    epochs: Epochs = None, batch: Batch = None, rate: Rate = None, schedule: Schedule = None,
+    points: Points = None, held_out: HeldOut = None, initial: Initial = None, patience: Patience = None,
+    seed: Seed = 0, threads: Threads = 1, device: DeviceName = None, amp: Amp = False,
+    compiled: Compile = False, resume: Resume = False, checkpoint_every: CheckpointEvery = None,
+    log_csv: LogCsv = None, from_format: o.From = None,
+) -> int:  # fmt: skip
     """Fit a neural operator to datasets (needs the extra `train`).
 
     Several processes under torchrun share each step.
@@ -163,9 +141,7 @@ def _values(words: Sequence[str]) -> dict[str, Any]:
     for word in words:
         name, mark, text = word.partition("=")
         if not mark:
-            from meshonet.geometry.errors import InputError
-
-            raise InputError(f"{word!r} is not NAME=VALUE", "use e.g. sensors=80", parameter="settings")
+            raise o.bad_value(word, "NAME=VALUE", "use e.g. sensors=80", "settings")
         try:
             values[name] = json.loads(text)
         except ValueError:

@@ -1,7 +1,5 @@
 """Blocks of options: dataclasses whose fields are the options of a command."""
 
-from __future__ import annotations
-
 import dataclasses
 import functools
 import inspect

@@ -1,7 +1,5 @@
 """The groups of options in help texts, and what all options have in common."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -18,11 +16,15 @@ def option_of(group: str) -> Callable[..., Any]:
     return partial(typer.Option, rich_help_panel=group, show_default=False)
 
 
-def only_with(needed: str, given: bool, **others: object) -> None:
-    """Raise InputError when an option that needs another one is there (not None) without it.
+def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
+    """Return the InputError for an option's `text`, which is not `what` it should be."""
+    from meshonet.geometry.errors import InputError
 
-    `needed`: the other option, by its parameter. `given`: whether it is there. `others`: values by parameter.
-    """
+    return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
+
+
+def only_with(needed: str, given: bool, **others: object) -> None:
+    """Raise InputError when one of the `others` is there (not None) without the option `needed`."""
     from meshonet.geometry.errors import InputError
 
     for name, value in others.items():

@@ -20,8 +20,7 @@ Boundaries = Annotated[list[str], typer.Argument(
     help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
 )]
 Grids = Annotated[list[str], typer.Argument(
-    metavar="GRID", show_default=False,
-    help="Grid file, or - for standard input.",
+    metavar="GRID", show_default=False, help="Grid file, or - for standard input.",
 )]
 Output = Annotated[str, _option(
     "-o", "--output", metavar="FILE",
@@ -29,25 +28,16 @@ Output = Annotated[str, _option(
     "{index}) or one .h5.",
 )]
 From = Annotated[str | None, _option(
-    "--from", metavar="FORMAT",
-    help="Format of the input, when neither its ending nor its content says.",
-)]
-To = Annotated[str | None, _option(
-    "--to", metavar="FORMAT",
-    help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
+    "--from", metavar="FORMAT", help="Format of the input, when neither its ending nor its content says.",
 )]
 SkipExisting = Annotated[bool, _option(
-    "--skip-existing",
-    help="Skip inputs whose output file exists already.",
+    "--skip-existing", help="Skip inputs whose output file exists already.",
 )]
 Jobs = Annotated[int, _option(
-    "--jobs", metavar="N", min=1, max=1024, show_default=True,
-    help="Processes for a batch.",
+    "--jobs", metavar="N", min=1, max=1024, show_default=True, help="Processes for a batch.",
 )]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
-Quiet = Annotated[bool, _option("-q", "--quiet", help="Print warnings and errors only.")]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
-# fmt: on
 
 
 @dataclass(frozen=True)
@@ -55,7 +45,10 @@ class FileOptions:
     """Formats of a command that turns files into files."""
 
     from_format: From = None
-    to_format: To = None
+    to_format: Annotated[str | None, _option(
+        "--to", metavar="FORMAT",
+        help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
+    )] = None
     skip_existing: SkipExisting = False
 
 
@@ -64,7 +57,7 @@ class PrintOptions:
     """What is printed."""
 
     as_json: AsJson = False
-    quiet: Quiet = False
+    quiet: Annotated[bool, _option("-q", "--quiet", help="Print warnings and errors only.")] = False
     debug: Debug = False
 
     def session(self) -> Session:
@@ -72,3 +65,4 @@ class PrintOptions:
         from meshonet_cli.session import Session
 
         return Session(quiet=self.quiet, as_json=self.as_json, debug=self.debug)
+# fmt: on

@@ -1,34 +1,26 @@
 """Options of methods, and their values."""
 
-from __future__ import annotations
-
 import re
 from typing import Literal
 
+from meshonet_cli.options.groups import bad_value
+
 
 def polish_steps(text: str) -> Literal["auto", "off"] | int:
-    """Return the steps of ``auto``, ``off`` or a number.
-
-    Raises InputError: `text` is none of them.
+    """Return the steps of ``auto``, ``off`` or a number, or raise InputError.
 
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)
     """
-    if text == "auto":
-        return "auto"
-    if text == "off":
-        return "off"
+    if text in ("auto", "off"):
+        return "auto" if text == "auto" else "off"
     if not re.fullmatch(r"\d{1,3}", text, re.ASCII):
-        from meshonet.geometry.errors import InputError
-
-        raise InputError(f"{text!r} is not a number of steps", "use auto, off or e.g. 2", parameter="polish")
+        raise bad_value(text, "a number of steps", "use auto, off or e.g. 2", "polish")
     return int(text)
 
 
 def coarse_nodes(text: str) -> Literal["auto"] | int | None:
-    """Return the nodes of ``auto``, ``off`` (None; 0 is the same) or a number from 9 on.
-
-    Raises InputError: `text` is none of them.
+    """Return the nodes of ``auto``, ``off`` (None; 0 is the same) or a number from 9 on, or raise InputError.
 
     >>> coarse_nodes("auto"), coarse_nodes("off"), coarse_nodes("65")
     ('auto', None, 65)
@@ -38,8 +30,5 @@ def coarse_nodes(text: str) -> Literal["auto"] | int | None:
     if text in ("off", "0"):
         return None
     if not re.fullmatch(r"[0-9]{1,6}", text) or int(text) < 9:
-        from meshonet.geometry.errors import InputError
-
-        problem = f"{text!r} is not a number of nodes from 9 on"
-        raise InputError(problem, "use auto, off or e.g. 65", parameter="coarse")
+        raise bad_value(text, "a number of nodes from 9 on", "use auto, off or e.g. 65", "coarse")
     return int(text)

@@ -39,20 +39,11 @@ class Report(Timed):
         from meshonet.geometry.quality.report import quality_dict
 
         return {
-            **self.member_json(),
-            "method": self.method,
-            "model": self.model,
-            "ni": self.ni,
-            "nj": self.nj,
-            "topology": self.topology,
-            "folded": self.quality.folded,
-            "path": list(self.path),
-            "residual": self.residual,
-            "cycles": self.cycles,
-            "quality": quality_dict(self.quality),
-            "seconds": self.times_json(),
-            "notes": [with_options(note) for note in self.notes],
-        }
+            **self.member_json(), "method": self.method, "model": self.model, "ni": self.ni, "nj": self.nj,
+            "topology": self.topology, "folded": self.quality.folded, "path": list(self.path),
+            "residual": self.residual, "cycles": self.cycles, "quality": quality_dict(self.quality),
+            "seconds": self.times_json(), "notes": [with_options(note) for note in self.notes],
+        }  # fmt: skip
 
     def lines(self) -> str:
         """Return the report of a single grid for people."""

@@ -1,7 +1,5 @@
 """The quality of a grid for people."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

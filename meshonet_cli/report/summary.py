@@ -1,7 +1,5 @@
 """Many grids in one table: a row each, and the median, mean, 90th percentile and worst of every column."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,27 +7,18 @@ from typing import Any
 from meshonet_cli.text import aligned, figure
 
 LABELS = {
-    "folded": "folded",
-    "max_angle": "max angle",
-    "mean_angle": "mean angle",
-    "relative_l2": "rel L2",
-    "near_wall": "near wall",
-    "max": "max",
-    "boundary": "boundary",
-    "folded_other": "folded there",
-    "max_angle_ratio": "max ratio",
-    "mean_angle_ratio": "mean ratio",
-}
+    "folded": "folded", "max_angle": "max angle", "mean_angle": "mean angle", "relative_l2": "rel L2",
+    "near_wall": "near wall", "max": "max", "boundary": "boundary", "folded_other": "folded there",
+    "max_angle_ratio": "max ratio", "mean_angle_ratio": "mean ratio",
+}  # fmt: skip
 """Columns, for people."""
 
 
 @dataclass(frozen=True)
 class Summary:
-    """Figures of many grids.
+    """Figures of many grids."""
 
-    `rows`: label and figures by column of each grid; a column is missing where it was not measured.
-    """
-
+    # label and figures by column of each grid; a column is missing where it was not measured
     rows: Sequence[tuple[str, Mapping[str, float]]]
 
     def as_json(self) -> dict[str, Any]:

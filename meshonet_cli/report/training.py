@@ -34,10 +34,9 @@ def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
 
 
 class Log:
-    """Shows progress, and adds a row for each report to a CSV file.
+    """Shows progress, and adds a row for each report to the CSV file `path`, if there is one.
 
-    `path`: CSV file, or None. A run that begins anew begins it anew; one that goes on cuts the rows after its
-    checkpoint.
+    A run that begins anew begins it anew; one that goes on cuts the rows after its checkpoint.
     """
 
     def __init__(self, session: Session, path: str | None, *, resume: bool) -> None:

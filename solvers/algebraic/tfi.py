@@ -13,8 +13,6 @@ and its position is the Boolean sum of the two edge interpolations there (a, b, 
 Gordon and Hall, Int. J. Numer. Meth. Engng 7 (1973) 461-477; the crossing: Soni, AIAA 85-1526 (1985).
 """
 
-from __future__ import annotations
-
 import time
 from typing import Literal, get_args
 

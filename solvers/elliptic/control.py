@@ -24,13 +24,10 @@ STEEPEST = 2.0  # largest logarithm of a ratio of neighbouring steps that is tak
 
 @dataclass(frozen=True, eq=False)
 class Factors:
-    """Σ_t along[t, i] across[t, j].
+    """Σ_t along[t, i] across[t, j]."""
 
-    `along`: (terms, ni). `across`: (terms, nj).
-    """
-
-    along: Floats
-    across: Floats
+    along: Floats  # (terms, ni)
+    across: Floats  # (terms, nj)
 
     @classmethod
     def none(cls, ni: int, nj: int) -> Factors:
@@ -58,12 +55,9 @@ class Factors:
 
 @dataclass(frozen=True, eq=False)
 class Controls:
-    """The control functions of a grid.
+    """The control functions of a grid."""
 
-    `phi`, `psi`: logarithm of the ratio of neighbouring steps along ξ and along η.
-    """
-
-    phi: Factors
+    phi: Factors  # logarithm of the ratio of neighbouring steps along ξ and along η
     psi: Factors
 
     def scaled(self, part: float) -> Controls:

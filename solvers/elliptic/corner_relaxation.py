@@ -6,8 +6,6 @@ left. A few sweeps on the nodes around, a fixed number on every level, restore m
 Bai, Brandt, SIAM J. Sci. Stat. Comput. 8 (1987) 109-134 (local relaxation at singularities).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -30,15 +28,7 @@ Corner = tuple[str, int]
 
 
 class Patch:
-    """The nodes around one corner, relaxed with those beyond held fixed.
-
-    Parameters
-    ----------
-    level : whose nodes they are.
-    xi, eta : its directions.
-    window : rows and columns of the nodes.
-    scratch : of the level.
-    """
+    """The nodes in a `window` around one corner of a `level`, relaxed with those beyond held fixed."""
 
     def __init__(
         self, level: MultigridLevel, xi: Direction, eta: Direction, window: Window, scratch: Floats

@@ -1,7 +1,5 @@
 """Sweeps of Winslow's equations around kinks of a boundary, where splines through coarse nodes are wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np
@@ -27,11 +25,10 @@ SWEEPS = 4  # sweeps there
 def sweep_kinks(
     nodes: Floats, boundary: Boundary, counts: tuple[int, int], *, only_better: bool = False
 ) -> bool:
-    """Relax planar `nodes` in place by sweeps of Winslow's equations around the kinks of the boundary.
+    """Relax planar `nodes` in place around the kinks of the boundary; return whether there are any.
 
-    There the solution is not smooth, and a spline through the `counts` coarse nodes smears it. With
-    `only_better` a kink is left alone around which the largest angle would not be smaller. Returns whether
-    there are kinks.
+    A spline through the `counts` coarse nodes smears the solution there. With `only_better` a kink is left
+    alone around which the largest angle would not be smaller.
     """
     any_kinks = False
     steps = [(n - 1) / (m - 1) for n, m in zip(nodes.shape[:2], counts, strict=True)]

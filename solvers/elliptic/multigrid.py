@@ -8,8 +8,6 @@ interpolation* up, so that boundaries stay exact and kinks in them are not smear
 Brandt, Math. Comp. 31 (1977) 333-390; Trottenberg, Oosterlee, Schüller, Multigrid (2001), chapters 5 and 8.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,36 +22,23 @@ from meshonet.solvers.elliptic.corner_relaxation import Patch, patches, reentran
 
 @dataclass(frozen=True)
 class Settings:
-    """How the cycles run.
+    """How the cycles run."""
 
-    `coarsest`: a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils,
-    50 slow. `sweeps`: relaxation sweeps before and after the coarse correction.
-    """
-
+    # a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils, 50 slow.
     coarsest: int = 16
-    sweeps: int = 1
+    sweeps: int = 1  # relaxation sweeps before and after the coarse correction
 
 
 class Multigrid:
-    """The hierarchy of levels above one boundary.
+    """The hierarchy of levels above `edges` (south, north, west, east), `periodic` in xi or not.
 
-    Parameters
-    ----------
-    nodes : (ni, nj, 2) planar, the finest level, worked on in place; need not be initialised.
-    edges : (south, north, west, east) nodes.
-    periodic : in xi.
-    settings : how the cycles run.
-    controls : control functions, none when not given.
+    The finest level are planar `nodes` (ni, nj, 2), worked on in place; they need not be initialised.
     """
 
     def __init__(
-        self,
-        nodes: Floats,
-        edges: Four,
-        periodic: bool,
-        settings: Settings | None = None,
+        self, nodes: Floats, edges: Four, periodic: bool, settings: Settings | None = None,
         controls: Controls | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.settings = settings or Settings()
         self.levels: list[MultigridLevel] = []
         self._edges: list[Four] = []

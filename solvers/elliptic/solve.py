@@ -7,8 +7,6 @@
                                        diverges --> more sweeps --> controls little by little
 """
 
-from __future__ import annotations
-
 import time
 
 import numpy as np
@@ -40,31 +38,17 @@ class _DivergedError(Exception):
 
 
 def solve(
-    boundary: Boundary,
-    *,
-    tol: float | None = None,
-    max_cycles: int = 30,
-    initial: Grid | None = None,
-    controls: Controls | None = None,
-    method: str = "winslow",
-) -> Solution:
+    boundary: Boundary, *, tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
+    controls: Controls | None = None, method: str = "winslow",
+) -> Solution:  # fmt: skip
     """Solve Winslow's equations, with control functions or without, for the nodes inside `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c; the nodes of a C boundary's wake stay where they are.
-    tol : stop when the residual is this fraction of that of the transfinite interpolation; None stops at
-        discretisation level, when more cycles would change the grid by less than refining it would.
-    max_cycles : cycles on the finest level at the most.
-    initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
-        nodes are replaced.
-    controls : control functions (`meshonet.solvers.elliptic.control`), none when not given.
-    method : what the solution is called.
+    `boundary` is a quad, o or c, whose wake stays where it is. `tol` is the residual at which to stop, over
+    that of the transfinite interpolation; None stops when more of the at most `max_cycles` cycles would
+    change the grid by less than refining it would. `initial`, of the same counts, takes the place of nested
+    iteration. The grid may be folded at re-entrant corners (`meshonet.solvers.pipeline.fallback`).
 
-    Returns the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be
-    folded at re-entrant corners: see `meshonet.solvers.pipeline.fallback`. Raises InputError: `initial` of
-    other node counts; `tol` or `max_cycles` not positive; SolverError: the iteration diverged from every
-    start tried.
+    Raises InputError for bad settings or counts, SolverError when it diverged from every start tried.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
@@ -102,13 +86,9 @@ def solve_thomas_middlecoff(
     As `solve`, with `meshonet.solvers.elliptic.control.thomas_middlecoff`.
     """
     return solve(
-        boundary,
-        tol=tol,
-        max_cycles=max_cycles,
-        initial=initial,
-        controls=thomas_middlecoff(boundary),
+        boundary, tol=tol, max_cycles=max_cycles, initial=initial, controls=thomas_middlecoff(boundary),
         method="thomas-middlecoff",
-    )
+    )  # fmt: skip
 
 
 def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ...]]]:
@@ -118,14 +98,9 @@ def _attempts(controls: Controls | None) -> list[tuple[Settings, tuple[float, ..
 
 
 def _attempt(
-    boundary: Boundary,
-    tol: float | None,
-    max_cycles: int,
-    initial: Grid | None,
-    settings: Settings,
-    controls: Controls | None,
-    method: str,
-) -> tuple[Floats, float, int]:
+    boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None, settings: Settings,
+    controls: Controls | None, method: str,
+) -> tuple[Floats, float, int]:  # fmt: skip
     """Return nodes, relative residual and cycles of one try; raise _DivergedError."""
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)

@@ -11,8 +11,6 @@ even rows. Thinner ones are made by `meshonet.solvers.layers.redistribute`, alon
 wall at the angle.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -43,28 +41,17 @@ RELAXATION = 0.5  # part of the linearised correction that is made
 
 
 def solve_steger_sorenson(
-    boundary: Boundary,
-    *,
-    heights: Mapping[str, float] | None = None,
-    angle: float = 90.0,
-    tol: float | None = None,
-    max_cycles: int = 30,
-    initial: Grid | None = None,
-) -> Solution:
+    boundary: Boundary, *, heights: Mapping[str, float] | None = None, angle: float = 90.0,
+    tol: float | None = None, max_cycles: int = 30, initial: Grid | None = None,
+) -> Solution:  # fmt: skip
     """Solve Winslow's equations with sources that turn the lines at edges and hold first cells.
 
-    Parameters
-    ----------
-    boundary : quad or o.
-    heights : of the first cells by side, in its unit, 0 for any; the sides named are those under control.
-        None: south and north of a quad, the body of an o, of any height.
-    angle : in degrees between an edge's direction and the lines that leave it.
-    tol, max_cycles : of the last cycles, as in `meshonet.solvers.elliptic.solve.solve`.
-    initial : start from this grid instead of Winslow's solution.
+    `heights` of first cells by side, in the unit of the quad or o `boundary`, 0 for any, name the sides under
+    control; None: south and north of a quad, the body of an o. `angle` is in degrees between an edge's
+    direction and the lines that leave it. `tol`, `max_cycles` and `initial` are those of `solve`. Notes say
+    how near the angles came, and whether sources that folded cells were weakened.
 
-    Notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid they
-    are weakened, and a note says so. Raises InputError: a side that cannot be controlled, an angle out of
-    range, or as `solve`; SolverError: as `solve`.
+    Raises InputError: a side that cannot be controlled, an angle out of range, or as `solve`; SolverError.
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)
@@ -134,11 +121,7 @@ def _sum(edges: Sequence[ControlledEdge], boundary: Boundary) -> Controls:
 
 
 def _seek(nodes: Floats, boundary: Boundary, edges: Sequence[ControlledEdge], rounds: int) -> None:
-    """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right.
-
-    Nodes that are not finite or err three times as much as the best so far are taken back to these, and the
-    corrections are halved.
-    """
+    """Correct the sources of `edges`, and `nodes` with them, until angles and heights are right."""
     four = boundary.south, boundary.north, boundary.west, boundary.east
     work = planar_nodes(boundary.ni, boundary.nj)
     levels = Multigrid(work, four, boundary.periodic, controls=_sum(edges, boundary))
@@ -182,26 +165,19 @@ def _restore(edges: Sequence[ControlledEdge], sources: Sequence[Floats]) -> None
 
 
 def _settled(
-    boundary: Boundary,
-    start: Floats,
-    nodes: Floats,
-    edges: Sequence[ControlledEdge],
-    tol: float | None,
+    boundary: Boundary, start: Floats, nodes: Floats, edges: Sequence[ControlledEdge], tol: float | None,
     max_cycles: int,
-) -> tuple[Solution, float]:
+) -> tuple[Solution, float]:  # fmt: skip
     """Return the solution with the sources kept, and the part of them that folds no more than `start` is."""
     folded, most = count_folded(start), max(_error(start, edges), 5.0 * CLOSE)
     controls = _sum(edges, boundary)
     for part in (1.0, 0.5, 0.25):
         try:
             solution = solve(
-                boundary,
-                tol=tol,
-                max_cycles=max_cycles,
+                boundary, tol=tol, max_cycles=max_cycles,
                 initial=Grid.from_nodes(nodes if part == 1.0 else start, boundary.topology),
-                controls=controls.scaled(part),
-                method="steger-sorenson",
-            )
+                controls=controls.scaled(part), method="steger-sorenson",
+            )  # fmt: skip
         except SolverError:
             continue
         found = solution.grid.nodes

@@ -24,16 +24,9 @@ LIMIT = 1.0  # largest logarithm of a ratio of neighbouring steps that a source 
 
 
 class ControlledEdge:
-    """An edge under control.
+    """An edge (n, 2) under control, with so many nodes `across` to the opposite one; closed when `periodic`.
 
-    Parameters
-    ----------
-    side : ``south``, ``north``, ``west`` or ``east``.
-    edge : (n, 2) its nodes.
-    across : nodes from it to the opposite edge.
-    angle : in degrees, between the edge's own direction and the lines that leave it.
-    height : of the first cells, 0 for any.
-    periodic : the edge is closed.
+    Lines leave it at `angle`, in degrees to its own direction, with first cells of `height`, 0 for any.
     """
 
     def __init__(

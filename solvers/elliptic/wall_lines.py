@@ -1,7 +1,5 @@
 """The grid lines that leave a side of a grid."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

@@ -1,7 +1,5 @@
 """Windows of cells around groups of bad ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 The iterations themselves are compiled: preconditioned L-BFGS and, for few nodes, Newton's method.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -14,11 +12,11 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.kernels._native import Stiffness
 from meshonet.kernels._native import newton as newton_steps
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
+from meshonet.solvers.energy.clusters import windows
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
-from meshonet.solvers.energy.local_descent import descend_windows
 from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.repair import repair
-from meshonet.solvers.energy.untangle import unfold
+from meshonet.solvers.energy.untangle import STILL, unfold
 from meshonet.solvers.progress import cycle_ended, listened_to
 
 HARD = 1.1  # value of the functional around a body above which descents go on
@@ -26,28 +24,21 @@ WON = 3e-2  # relative decrease of the functional below which Newton's method en
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
+SKEWED = 1.5  # 1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it
+MARGIN_CELLS = 6  # cells around a group of skewed ones that move with them
+LARGEST_CELLS = 1500  # cells of a window at the most
+ITERATIONS = 30  # in a window at the most
 
 
 def descend(
-    nodes: Floats,
-    weights: Weights,
-    still: float,
-    most: int,
-    *,
-    periodic: bool = False,
-    first: int | None = None,
-    stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
-) -> tuple[int, bool]:
+    nodes: Floats, weights: Weights, still: float, most: int, *, periodic: bool = False,
+    first: int | None = None, stiffness: tuple[Stiffness, tuple[int, int]] | None = None,
+) -> tuple[int, bool]:  # fmt: skip
     """Minimise from planar `nodes` (ni, nj, 2) in place; return the iterations and whether the grid is valid.
 
-    Parameters
-    ----------
-    still : as `tol` of `solve`.
-    most : iterations at the most.
-    periodic : around a body: the last row of nodes is the first, and its nodes move like any others. Before
-        all others those of windows around skewed cells do (`windowed`).
-    first : end after so many iterations where the value is not `HARD` then.
-    stiffness : the Hessian on a coarse copy and its counts, which leads smooth moves.
+    `still` is the `tol` of `solve`, `most` the iterations at the most, `first` those where the value is not
+    `HARD` then. Around a body (`periodic`) the last row of nodes is the first and moves like any other. The
+    Hessian on a coarse copy and its counts (`stiffness`) lead smooth moves.
     """
     ni, nj = nodes.shape[:2]
     if min(ni, nj) < 3:
@@ -71,12 +62,10 @@ def descend(
 
 
 def newton(nodes: Floats, weights: Weights, most: int) -> int:
-    """Take steps of Newton's method from planar `nodes` (ni, nj, 2) of a quad, in place; return how many.
+    """Take up to `most` steps of Newton's method from planar `nodes` (ni, nj, 2) of a quad; return how many.
 
-    A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. From nodes
-    that local repair leaves folded none is taken.
-
-    `most`: steps at the most. They end after one that lowers the functional by less than `WON` of it.
+    A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. They end
+    after one that lowers the functional by less than `WON`; from nodes that stay folded none is taken.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0
@@ -117,3 +106,42 @@ def _made_valid(nodes: Floats, weights: Weights, periodic: bool) -> bool:
         return True
     small = not periodic and max(nodes.shape[:2]) <= UNFOLDED
     return small and unfold(nodes, weights)[0]
+
+
+def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
+    """Unfold planar `nodes` (ni, nj, 2) of an O grid in windows around poor cells, and minimise there.
+
+    Splines smear what corners of a wall do to the lines that leave them. There the functional is far from a
+    parabola, and descents of whole grids spend most of their iterations on a few cells.
+    """
+    skewed = skewness(nodes)
+    poor = np.argwhere(skewed > SKEWED)
+    if 2 * len(poor) > skewed.size:
+        poor = np.argwhere(skewed == np.inf)
+    if len(poor) == 0:
+        return
+    for window in windows(poor, MARGIN_CELLS, nodes.shape[:2], True, LARGEST_CELLS):
+        patch = window.cut(nodes, True)
+        m, n = patch.shape[:2]
+        if min(m, n) < 3:
+            continue
+        if count_folded(patch) and not unfold(patch, weights, aspect=aspect)[0]:
+            continue
+        eased = relief[window.rows(len(nodes), True)] if window.j0 == 0 else None
+        still = STILL * float(np.sqrt((m - 1) * (n - 1)))
+        Descent(patch, weights, aspect=aspect).run(still, ITERATIONS, relief=eased)
+        window.put(nodes, True, patch)
+
+
+def skewness(nodes: Floats) -> Floats:
+    """Return the largest 1/sin⁴ of the angles of each cell of `nodes` (ni, nj, 2), infinite where folded."""
+    z = nodes[..., 0] + 1j * nodes[..., 1]
+    along, across = np.diff(z, axis=0), np.diff(z, axis=1)
+    g, h = np.abs(along), np.abs(across)
+    least = np.full((len(z) - 1, z.shape[1] - 1), np.inf)
+    for south in (slice(None, -1), slice(1, None)):
+        for west in (slice(None, -1), slice(1, None)):
+            area = (np.conj(along[:, south]) * across[west]).imag
+            np.minimum(least, area / np.maximum(g[:, south] * h[west], 1e-300), out=least)
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.where(least > 0.0, least, 0.0) ** -4.0)

@@ -17,25 +17,21 @@ Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the b
 Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation).
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.corners import turning
 from meshonet.kernels._native import variational_energy
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Weights of the terms.
+    """Weights of the terms."""
 
-    `shape`: w, from 0 (harmonic) to 1 (angles only). `smoothness`: β. A fourth of the default is sharper, but
-    buckles on strongly skewed domains.
-    """
-
-    shape: float = 0.97
+    shape: float = 0.97  # w, from 0 (harmonic) to 1 (angles only)
+    # β. A fourth of the default is sharper, but buckles on strongly skewed domains.
     smoothness: float = 2.5e-3
 
 
@@ -59,10 +55,7 @@ def relief_of(wall: Floats) -> Floats:
     Where the domain takes up more than 320 degrees around a node, as at a trailing edge, the two corners
     there cannot both be good; they keep sin⁴ of half that angle: like a right one at best.
     """
-    edges = np.diff(wall, axis=0)
-    before = np.roll(edges, 1, axis=0)
-    turn = np.arctan2(_cross(before, edges), (before * edges).sum(axis=-1))
-    half = 0.5 * (np.pi - turn)
+    half = 0.5 * (np.pi - turning(wall[:-1], closed=True))
     share = np.where(half > 8.0 / 9.0 * np.pi, np.maximum(np.sin(half), 1e-3) ** 4, 1.0)
     return np.append(share, share[0])
 

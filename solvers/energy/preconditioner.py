@@ -5,8 +5,6 @@ products of sines (along eta, and along xi between fixed nodes) or of sines and 
 compiled descent applies them in the frame of each node, by products of matrices.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import lru_cache
 from typing import TypeAlias
@@ -22,14 +20,10 @@ MODES = 512  # modes along a direction that are kept; finer ones are all divided
 
 
 class Descent:
-    """Descents of the functional from planar nodes (ni, nj, 2), which are moved in place.
+    """Descents of the functional from planar nodes (ni, nj, 2), moved in place; those of the rim are fixed.
 
-    Parameters
-    ----------
-    nodes : those of the rim are fixed.
-    weights : of the functional.
-    periodic : around a body: the last row of nodes is the first, and its nodes move like any others.
-    aspect : a of the functional; None is that of `nodes`.
+    Around a body (`periodic`) the last row is the first and moves. `aspect` is a of the functional, None that
+    of `nodes`.
     """
 
     def __init__(
@@ -41,37 +35,24 @@ class Descent:
         self.minimiser = minimiser(nodes.shape[0], nodes.shape[1], periodic, aspect, weights)
 
     def run(
-        self,
-        still: float,
-        most: int,
-        *,
-        epsilon: float = 0.0,
-        relief: Floats | None = None,
+        self, still: float, most: int, *, epsilon: float = 0.0, relief: Floats | None = None,
         listener: Callable[[int, float, float], None] | None = None,
-    ) -> tuple[float, float, int]:
+    ) -> tuple[float, float, int]:  # fmt: skip
         """Descend; return the value of the functional, the smallest corner Jacobian and the iterations.
 
-        Parameters
-        ----------
-        still : move of a node, in its own cells, below which it stops.
-        most : iterations at the most.
-        epsilon : an area, by which Jacobians are regularised.
-        relief : as `meshonet.solvers.energy.functional.relief_of`.
-        listener : called with number, value and norm of the gradient at the start and after each iteration.
+        It stops when nodes move by less than `still` of their own cells, or after `most` iterations.
+        `epsilon` is an area by which Jacobians are regularised, `relief` that of `relief_of`; `listener` gets
+        number, value and norm of the gradient at the start and after each iteration.
         """
         return self.minimiser.run(self._z, *self._terms, epsilon, relief, still, REACH_CELLS, most, listener)
 
 
 def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights) -> VariationalDescent:
-    """Return the descent for ni x nj nodes.
+    """Return the descent for ni x nj nodes, the last row of which is the first when `periodic`.
 
-    On squares of steps 1, with a move (p, q) along (xi, eta) and a = 1, the second variation is about::
-
-        (1-w) (|∇p|² + |∇q|²) + 4 w (p_η² + q_ξ²) + 2 β (|∇ p_ξ|² + |∇ q_η|²)
-
-    with ∇ in units of the whole square in the last term. The coupling p_η q_ξ is left to the descent.
-
-    `periodic`: around a body: the last row of nodes is the first. `aspect`, `weights`: of the functional.
+    On squares of steps 1, with a move (p, q) along (xi, eta) and a = 1, the second variation is about (1-w)
+    (‖∇p‖² + ‖∇q‖²) + 4 w (p_η² + q_ξ²) + 2 β (‖∇p_ξ‖² + ‖∇q_η‖²), with ∇ in units of the whole square in the
+    last term. The coupling p_η q_ξ is left to the descent.
     """
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)

@@ -6,8 +6,6 @@ follows, and what is left is unfolded on windows. Only inner nodes move, so the 
 cannot be unfolded is given up after a second or two.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -53,10 +51,10 @@ class Patience:
 
 
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
-    """Unfold planar `nodes` (ni, nj, 2) in place; return how many cells stay folded.
+    """Unfold planar `nodes` (ni, nj, 2) in place, but for their rim; return how many cells stay folded.
 
-    `nodes`: the grid; its rim stays as it is. `periodic`: an O grid: column ni-1 repeats column 0, and both
-    move together. `margin`: cells around a group of folded ones that move with them, at first.
+    With `periodic` (O) the last row repeats the first, and both move. `margin` cells around folded ones move
+    at first.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:
@@ -170,10 +168,7 @@ def _few(cells: int, nodes: Floats) -> bool:
 
 
 def _kept(edge: Floats, opposite: Floats) -> NDArray[np.intp]:
-    """Return about every second index of two opposite edges (n, 2), the ends and sharp corners among them.
-
-    A copy that lost the tip of a spike would lead its lines through the spike.
-    """
+    """Return about every second index of two opposite edges (n, 2), the ends and sharp corners among them."""
     n = len(edge)
     corners = np.flatnonzero(np.maximum(np.abs(turning(edge)), np.abs(turning(opposite))) > SHARP)
     if len(corners) > n // 8:  # a rough edge: all its nodes are alike

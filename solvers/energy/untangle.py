@@ -1,7 +1,5 @@
 """A folded grid made valid by minimising the functional with regularised Jacobians, all nodes at once."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -12,25 +10,18 @@ from meshonet.solvers.energy.preconditioner import Descent
 STILL = 1e-3  # move of a node, in its own cells, below which minimising with one regularisation stops
 ITERATIONS = 60  # with one regularisation, at the most
 
-REGULARISATIONS = 30
-WITHOUT_GAIN = 3  # regularisations at the most, and those without gain after which unfolding is given up
+REGULARISATIONS = 30  # at the most
+WITHOUT_GAIN = 3  # regularisations without gain after which unfolding is given up
 
 
 def unfold(
-    nodes: Floats,
-    weights: Weights,
-    *,
-    periodic: bool = False,
-    aspect: float | None = None,
+    nodes: Floats, weights: Weights, *, periodic: bool = False, aspect: float | None = None,
     iterations: int = ITERATIONS,
-) -> tuple[bool, int]:
+) -> tuple[bool, int]:  # fmt: skip
     """Unfold planar `nodes` (ni, nj, 2) in place; return whether no cell is folded, and the iterations taken.
 
     ε is a cell's area at first and shrinks with the worst Jacobian, at least by half: large enough to let a
-    cell unfold, small enough to tell folded from valid.
-
-    `periodic`: the last row of nodes is the first, and its nodes move like any others. `aspect`: a of the
-    functional; None is that of `nodes`. `iterations`: with one regularisation, at the most.
+    cell unfold, small enough to tell folded from valid. `periodic` and `aspect` are those of `Descent`.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]

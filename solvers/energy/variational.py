@@ -5,8 +5,6 @@ unfolded first: by local repair, else as a whole. The Hessian of the coarsest le
 moves of finer ones.
 """
 
-from __future__ import annotations
-
 import time
 from dataclasses import replace
 
@@ -15,13 +13,15 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.quality.measure import angles, count_folded, widest_cell
 from meshonet.solvers.algebraic.resample.grids import divided, evaluate, thinned
+from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.kinks import sweep_kinks
+from meshonet.solvers.elliptic.multigrid import relax
 from meshonet.solvers.energy.descent import descend, in_cells, listener_of, stiffness_of
 from meshonet.solvers.energy.functional import AROUND, WAKE, Weights, value
 from meshonet.solvers.energy.preconditioner import Descent
-from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.solution import Solution
@@ -58,30 +58,23 @@ WEAKER = 3  # how often the edge length term may be made weaker, to a fourth eac
 EASY = 1.7  # value of the functional, 1 on squares, up to which a minimum is the only one
 WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}  # of the functional, by topology
 
+RELAXED = 400  # cells up to which line relaxation alone is the quickest way to Winslow's solution
+SWEEPS = 30  # sweeps there; they leave some thousandths of the change from the transfinite interpolation
+
 
 def solve(
-    boundary: Boundary,
-    *,
-    tol: float | None = None,
-    max_cycles: int = 200,
-    initial: Grid | None = None,
+    boundary: Boundary, *, tol: float | None = None, max_cycles: int = 200, initial: Grid | None = None,
     weights: Weights | None = None,
-) -> Solution:
+) -> Solution:  # fmt: skip
     """Minimise the functional of `meshonet.solvers.energy.functional` over the nodes inside `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c. Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is.
-    tol : stop when iterations move no node by more than this part of √cells steps, its own cells' steps; that
-        is about this part of the domain's size. None is 1e-4, and `FEW` or `FEW_AROUND` iterations suffice.
-    max_cycles : iterations on the finest level at the most.
-    initial : start from this grid, of the same node counts, instead of nested iteration; its boundary
-        nodes are replaced.
-    weights : of the functional.
+    Around a body (o) the nodes of the cut are unknowns; a wake (c) stays as it is. `tol` is the part of
+    √cells steps, about that of the domain's size, by which no node may move at the end; None is 1e-4, and
+    `FEW` or `FEW_AROUND` iterations suffice. `max_cycles` are iterations on the finest level; `initial`, of
+    the same counts, takes the place of nested iteration. Where no start could be unfolded a note says so, and
+    the grid is folded.
 
-    Returns the grid and the iterations on the finest level. It is valid wherever a start could be unfolded; a
-    note says when none could, and the grid is then folded. Raises InputError: `initial` of other node counts;
-    `tol` or `max_cycles` not positive.
+    Raises InputError: `initial` of other node counts; `tol` or `max_cycles` not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()
@@ -106,13 +99,9 @@ def solve(
 
 
 def _nested(
-    boundary: Boundary,
-    weights: Weights,
-    still: float,
-    limits: tuple[int, int],
-    easy: float = EASY,
+    boundary: Boundary, weights: Weights, still: float, limits: tuple[int, int], easy: float = EASY,
     few: tuple[int, int] | None = None,
-) -> tuple[Floats, Weights, int, bool]:
+) -> tuple[Floats, Weights, int, bool]:  # fmt: skip
     """Return nodes, the weights that made them, iterations on the finest level, whether it is valid.
 
     The `limits` are those of iterations there: in general, and where there are more than `NEXT` nodes; `few`
@@ -154,11 +143,7 @@ def _nested(
 def _coarsest(
     boundary: Boundary, weights: Weights, still: float, most: int, easy: float, first: int | None
 ) -> tuple[Floats, Weights, int, bool]:
-    """Return what `_nested` does, for the coarsest level, from Winslow's solution.
-
-    On strongly curved domains the edge length term alone can make angles worse than Winslow's: it is then
-    made weaker until they are not.
-    """
+    """Return what `_nested` does, for the coarsest level, from Winslow's solution."""
     start = winslow_start(boundary)
     limits = [value + 1e-9 for value in angles(start)]
     periodic = boundary.periodic
@@ -174,14 +159,26 @@ def _coarsest(
     return best
 
 
+def winslow_start(boundary: Boundary) -> Floats:
+    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2).
+
+    Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
+    """
+    if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
+        nodes = tfi(boundary).nodes
+        relax(nodes, SWEEPS)
+        if np.isfinite(nodes).all():
+            return nodes
+    from meshonet.solvers.elliptic.solve import solve as winslow
+
+    try:
+        return winslow(boundary, tol=1e-3, initial=tfi(boundary)).grid.nodes
+    except SolverError:
+        return tfi(boundary).nodes
+
+
 def _descended(
-    start: Floats,
-    weights: Weights,
-    still: float,
-    most: int,
-    periodic: bool,
-    easy: float,
-    first: int | None,
+    start: Floats, weights: Weights, still: float, most: int, periodic: bool, easy: float, first: int | None
 ) -> tuple[Floats, int, bool]:
     """Return the minimum reached from `start` on the coarsest level, iterations, whether it is valid.
 

@@ -5,8 +5,6 @@ field, and so their first cells are as high as a tenth of the chord. Marched fro
 part of the smallest cell along the wall, and grow by one ratio to the far field.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -6,8 +6,6 @@ line than along all others. There the steps grow more slowly, and elsewhere fast
 much more than on average.
 """
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 

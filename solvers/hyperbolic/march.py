@@ -10,8 +10,6 @@ The equations stand in ``kernels/hyperbolic/march.c``. The far field is where th
 or a C, with the area of the far field of the boundary.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from dataclasses import replace
@@ -25,9 +23,8 @@ from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march, redistribute
-from meshonet.solvers.hyperbolic.front import Front
+from meshonet.solvers.hyperbolic.front import Front, distance_to_march
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
-from meshonet.solvers.hyperbolic.march_distance import distance_to_march
 from meshonet.solvers.hyperbolic.settings import (
     ATTEMPTS,
     OPEN_ATTEMPTS,
@@ -47,27 +44,19 @@ AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a le
 
 
 def hyperbolic(
-    boundary: Boundary,
-    *,
-    wall_spacing: float,
-    growth: float | None = None,
-    free_rows: bool = False,
+    boundary: Boundary, *, wall_spacing: float, growth: float | None = None, free_rows: bool = False,
     constant: int = 1,
-) -> Solution:
-    """Return an O or C grid marched from the wall of `boundary`.
+) -> Solution:  # fmt: skip
+    """Return an O or C grid marched from the wall of `boundary`, which is met bitwise.
 
-    Parameters
-    ----------
-    boundary : ``o`` or ``c``; its south is met bitwise, its far field says how far to march, and its `nj` how
-        many rows to take. The ends of a C's rows move along its west and east, taken as straight.
-    wall_spacing : distance of the first node from the wall in chords (`Boundary.chord`), met to 1e-8 of it.
-    growth : the largest ratio of neighbouring cells from the wall outwards; None takes what the rows need.
-    constant : so many first rows are equally high.
-    free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
+    The far field of `boundary` says how far to march, its `nj` how many rows to take, unless they are
+    `free_rows`: as many as `growth` needs, the largest ratio of neighbouring cells. The ends of a C's rows
+    move along its west and east, taken as straight. `wall_spacing` is the height of first cells in chords,
+    met to 1e-8 of it; so many first rows are `constant`. The solution has the boundary that the march ended
+    at, and may be folded when every attempt was.
 
-    `boundary` of the solution is the one that the march ended at. The grid may be folded when every
-    attempt was. Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not
-    suffice; SolverError: no attempt gave finite nodes.
+    Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not suffice;
+    SolverError: no attempt gave finite nodes.
     """
     begun = time.perf_counter()
     check_layers(wall_spacing, growth)
@@ -130,12 +119,7 @@ def _rows(cells: int, first: float, distance: float, growth: float | None, free:
 def _marched(
     front: Front, cells: int, first: float, settings: MarchSettings, constant: int, *, even: bool
 ) -> Floats | None:
-    """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None.
-
-    Steps grow as `level_steps` has it, or (not `even`) by one ratio. The march keeps areas, so that levels
-    come to lie closer where lines spread: the distance to march is that around a circle of the body's size,
-    and is corrected by marching again.
-    """
+    """Return nodes (ni, cells + 1, 2) whose far field is as large as that of `front`, or None."""
     start = front.start()
     n = len(start)
     levels = np.empty((2, cells + 1, n))
@@ -169,10 +153,7 @@ def _marched(
 
 
 def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
-    """Make first cells as high as `heights` (ni,), moving nodes along their lines, less away from the wall.
-
-    The correction of row j fades like exp(-(j - 1)/m), slower than cells grow, so that rows keep their order.
-    """
+    """Make first cells as high as `heights` (ni,), moving nodes along lines, less away from the wall."""
     rows = nodes.shape[1]
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
@@ -181,11 +162,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
 
 
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:
-    """Make the first `constant` cells of every line as high as its first one, in place; less along a wake.
-
-    The march keeps areas, so that heights change by a few per cent where lines spread. Nodes move along their
-    lines, taken as straight between them, less and less beyond the equal cells.
-    """
+    """Make the first `constant` cells of every line as high as its first one, in place; less along a wake."""
     away = np.arange(nodes.shape[1])
     fade = np.exp(-np.maximum(away - constant, 0.0) / FADE_ROWS)
     fade[-1] = 0.0
@@ -216,13 +193,10 @@ def _solution(boundary: Boundary, nodes: Floats, first: float, begun: float) -> 
     )
     facts = {"method": "hyperbolic", "wall_spacing": first}
     return Solution(
-        Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts),
-        "hyperbolic",
-        seconds={"grid": time.perf_counter() - begun},
-        notes=(_first_cell_note(boundary, nodes, first),),
-        boundary=edges,
-        first_cells={"south": first},
-    )
+        Grid.from_nodes(nodes, boundary.topology, parts, boundary.name, facts), "hyperbolic",
+        seconds={"grid": time.perf_counter() - begun}, notes=(_first_cell_note(boundary, nodes, first),),
+        boundary=edges, first_cells={"south": first},
+    )  # fmt: skip
 
 
 def _first_cell_note(boundary: Boundary, nodes: Floats, first: float) -> str:

@@ -1,7 +1,5 @@
 """Settings of the march, and those that are tried in turn while cells are folded."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 
@@ -10,24 +8,17 @@ RISING = 0.75  # part of the levels over which the dissipation rises
 
 @dataclass(frozen=True)
 class MarchSettings:
-    """How levels are smoothed.
+    """How levels are smoothed."""
 
-    Parameters
-    ----------
-    dissipation : coefficient of the smoothing along a level.
-    theta : the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is more robust.
-    sweeps : smoothing steps of the cells' areas along a level.
-    even : how far that smoothing evens the spacing of nodes out: 1 is more robust, 0 keeps angles.
-    tolerated : relative difference of neighbouring lengths along a level beyond which it evens more.
-    bend : coefficient of the smoothing that grows with the height.
-    """
-
-    dissipation: float
+    dissipation: float  # coefficient of the smoothing along a level
+    # the flux along the new level weighs 1 + theta; 0 is Euler's implicit rule, more is more robust
     theta: float
-    sweeps: int
+    sweeps: int  # smoothing steps of the cells' areas along a level
+    # how far that smoothing evens the spacing of nodes out: 1 is more robust, 0 keeps angles
     even: float = 1.0
+    # relative difference of neighbouring lengths along a level beyond which it evens more
     tolerated: float = math.inf
-    bend: float = 0.0
+    bend: float = 0.0  # coefficient of the smoothing that grows with the height
 
 
 ATTEMPTS = (

@@ -1,7 +1,5 @@
 """Heights of the first cells off each edge, and cells that grow from them by one ratio."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
@@ -19,22 +17,16 @@ from meshonet.kernels._native import layer_steps
 class Heights:
     """Heights of the first cells off the edges, 0 for any height.
 
-    Parameters
-    ----------
-    south, north, west, east : in the unit of the boundary.
-    constant : so many first cells have that height; those beyond grow by one ratio.
-    growth : largest ratio of neighbouring cells allowed, None for any up to 10.
-    free_rows : take as many rows off south and north as `growth` needs, instead of those of the boundary.
-
     Raises InputError: a height, a number of layers or a growth out of range.
     """
 
-    south: float = 0.0
+    south: float = 0.0  # in the unit of the boundary
     north: float = 0.0
     west: float = 0.0
     east: float = 0.0
-    constant: int = 1
-    growth: float | None = None
+    constant: int = 1  # so many first cells have that height; those beyond grow by one ratio
+    growth: float | None = None  # largest ratio of neighbouring cells allowed, None for any up to 10
+    # take as many rows off south and north as `growth` needs, instead of those of the boundary
     free_rows: bool = False
 
     def __post_init__(self) -> None:
@@ -97,17 +89,12 @@ def cells_needed(length: float, first: float, last: float, heights: Heights) -> 
     least = heights.constant * ((first > 0) + (last > 0)) + 1
     allowed = heights.growth or LARGEST
     count = least
-    while layer_ratio(count, length, first, last, heights.constant) > allowed * (1 + 1e-9):
+    while layer_steps(np.empty(count), length, first, last, heights.constant) > allowed * (1 + 1e-9):
         count = max(count + 1, int(1.02 * count))
         if count > 100_000:
             problem = f"cells growing by {allowed:g} do not fill {length:.3g}"
             raise InputError(problem, "allow more", parameter="growth")
     return count
-
-
-def layer_ratio(cells: int, length: float, first: float, last: float, constant: int) -> float:
-    """Return the largest ratio of neighbours when `cells` cells fill `length`, infinite when they cannot."""
-    return layer_steps(np.empty(cells), length, first, last, constant)
 
 
 def edge_in_layers(edge: Floats, count: int, first: float, last: float, heights: Heights) -> Floats:

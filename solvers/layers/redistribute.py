@@ -9,8 +9,6 @@ The lines that leave a wall stay the curves they are, and nodes are placed anew 
 by one map of their index, which keeps kinks of the walls on their nodes.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -58,14 +56,10 @@ def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution
         nodes, growth = _along_eta(nodes, boundary, heights)
     _make_exact(nodes, grid.periodic, heights)
     edges = replace(
-        boundary,
-        south=nodes[:, 0],
-        north=nodes[:, -1],
-        west=nodes[0],
-        east=nodes[-1],
+        boundary, south=nodes[:, 0], north=nodes[:, -1], west=nodes[0], east=nodes[-1],
         patches=boundary.patches if nodes.shape == grid.nodes.shape else _parts(boundary, nodes),
         sensors=None,
-    )
+    )  # fmt: skip
     first_cells = heights.by_side
     facts = {**grid.provenance, **{f"spacing_{side}": height for side, height in first_cells.items()}}
     note = f"first cells {heights}, at every node there"

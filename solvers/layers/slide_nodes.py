@@ -7,8 +7,6 @@ the leans are divided by that, wave by wave. It is done on few nodes; the map fr
 wall is smooth and serves any number.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -35,14 +33,11 @@ ROOM = 0.4  # relative change of a step between wall nodes, at the most, in a ro
 
 
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
-    """Return `boundary` with the nodes of south and north moved, and the controls to solve with.
+    """Return the quad `boundary` with the nodes of south and north moved, and the controls to solve with.
 
     The lines of an elliptic grid inside it leave both walls at right angles, except next to west and east
-    where these do not, and at kinks of the walls, which stay nodes. The control function φ(ξ) keeps uneven
-    spacing of the walls, as far as it is common to both; None where it is even.
-
-    `boundary`: quad; its walls are the curves through its nodes. Raises InputError: a topology other than
-    ``quad``.
+    where these do not, and at kinks of the walls, which stay nodes. The control function φ(ξ) keeps what
+    uneven spacing is common to both walls; None where it is even. Raises InputError for other topologies.
     """
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"
@@ -129,10 +124,7 @@ def _between(edge: Floats, places: Floats) -> Floats:
 
 
 def _leans(nodes: Floats, curves: tuple[Curve, Curve], arcs: list[Floats]) -> list[Floats]:
-    """Return the sine (m,) of the angle by which lines lean along each wall, away from its normal.
-
-    Less and less next to ends and kinks, where lines may not be able to stand upright.
-    """
+    """Return the sine (m,) of the angle to each wall's normal, less and less next to ends and kinks."""
     leans = []
     for curve, arc, side in zip(curves, arcs, ("south", "north"), strict=True):
         lean = leaning(lines_off(nodes, side), curve.tangent(arc))

@@ -4,8 +4,6 @@ A few nodes describe a smooth grid. So the boundary is thinned to the coarse cou
 and its grid is evaluated inside the full edges (`meshonet.solvers.algebraic.resample.grids`).
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -27,11 +25,8 @@ class Coarse(Wrapper):
 
     n: int
 
-    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return the solution of a boundary; raise InputError for a grid to start from."""
-        if start is not None:
-            problem = "a coarse solve has no use for a grid to start from"
-            raise InputError(problem, "drop {initial} or {coarse}")
+    def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002
+        """Return the solution of a boundary; a grid to start from is of no use, as a `GridRequest` says."""
         smooth = self.name not in METHODS or METHODS[self.name].sweeps
         return solve_coarse(boundary, self.inner, self.n, smooth=smooth)
 
@@ -41,16 +36,9 @@ def solve_coarse(
 ) -> Solution:
     """Solve with `solve` on at most n x n nodes and return the grid at the node counts of `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c.
-    solve : a function of boundary to solution.
-    n : coarse nodes along each direction that has more.
-    smooth : whether to end with sweeps of Winslow's equations at full resolution around kinks of the
-        boundary: always where these were solved or the grid came out folded, else where angles gain by them.
-
-    The edges of the grid equal those of `boundary` bitwise; residual and cycles are those of the coarse
-    solve. Raises InputError: fewer than 9 coarse nodes.
+    With `smooth` sweeps of Winslow's equations at full resolution end it around kinks of the boundary: always
+    where these were solved or the grid came out folded, else where angles gain by them. The edges equal those
+    of `boundary` bitwise; residual and cycles are those of the coarse solve. Raises InputError: n < 9.
     """
     if n < LEAST_NODES:
         raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")

@@ -1,7 +1,5 @@
 """No folded grid passes here in silence: it is repaired, or made by another method, or refused."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
@@ -19,11 +17,7 @@ REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
 
 
 def guard(
-    solution: Solution,
-    boundary: Boundary,
-    *,
-    allow_invalid: bool = False,
-    margin: int | None = None,
+    solution: Solution, boundary: Boundary, *, allow_invalid: bool = False, margin: int | None = None
 ) -> Solution:
     """Return a valid grid: that of `solution` when it is one, else that of the first way that works.
 

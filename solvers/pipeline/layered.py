@@ -8,9 +8,7 @@
     anything else ---------------- solve --------------------+
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
@@ -32,27 +30,18 @@ MARCHED = "a grid marched from the wall"
 
 @dataclass(frozen=True)
 class FirstCells:
-    """Heights of first cells, and the layers that begin with them.
+    """Heights of first cells, and the layers that begin with them."""
 
-    Parameters
-    ----------
-    height : off walls, or None: around a body in chords, off south and north of a four-sided domain in its
-        own unit.
-    sides : heights off single sides of four-sided domains, in their unit.
-    constant : so many first layers are equally high.
-    growth : largest ratio of neighbouring cells, or None.
-    free_rows : whether growth decides how many rows there are.
-    in_chords : the height is in chords everywhere; that of a four-sided domain is the extent of its south.
-    note : where the height comes from, when it was computed.
-    """
-
+    # off walls, or None: around a body in chords, off south and north of a four-sided domain in its own unit
     height: float | None = None
+    # heights off single sides of four-sided domains, in their unit
     sides: Mapping[str, float] = field(default_factory=dict)
-    constant: int = 1
-    growth: float | None = None
-    free_rows: bool = False
+    constant: int = 1  # so many first layers are equally high
+    growth: float | None = None  # largest ratio of neighbouring cells, or None
+    free_rows: bool = False  # whether growth decides how many rows there are
+    # the height is in chords everywhere; that of a four-sided domain is the extent of its south
     in_chords: bool = False
-    note: str = ""
+    note: str = ""  # where the height comes from, when it was computed
 
     def heights(self, boundary: Boundary) -> Heights:
         """Return the heights in the unit of `boundary`."""
@@ -69,26 +58,19 @@ class FirstCells:
 
 @dataclass(frozen=True)
 class Layered(Wrapper):
-    """`method`, and first cells of given heights at the walls of its grids.
+    """`method`, and first cells of given heights at the walls of its grids."""
 
-    Parameters
-    ----------
-    method : makes the grids with even rows.
-    cells : heights and layers.
-    turning : settings of ``steger-sorenson``, whose sources turn lines at walls.
-    full : `method` as it solves on all nodes; None when it is not to.
-    marched : topologies that are marched from the wall when there is a height off walls.
-    channels : make lines leave the walls of four-sided domains at right angles when there is such a height.
-    slide : move wall nodes of four-sided domains; None: in channels, when they were sampled here.
-    chosen : settings that are not the defaults; they are refused where they are of no use.
-    """
-
-    cells: FirstCells
+    cells: FirstCells  # heights and layers
+    # settings of ``steger-sorenson``, whose sources turn lines at walls
     turning: Mapping[str, Any] = field(default_factory=dict)
-    full: Method | None = None
+    full: Method | None = None  # `method` as it solves on all nodes; None when it is not to
+    # topologies that are marched from the wall when there is a height off walls
     marched: tuple[Topology, ...] = ()
+    # make lines leave the walls of four-sided domains at right angles when there is such a height
     channels: bool = False
+    # move wall nodes of four-sided domains; None: in channels, when they were sampled here
     slide: bool | None = None
+    # settings that are not the defaults; they are refused where they are of no use
     chosen: tuple[str, ...] = ()
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
@@ -112,9 +94,7 @@ class Layered(Wrapper):
         return self._in_layers(boundary, heights, start)
 
     def _march(self, boundary: Boundary, height: float) -> Solution:
-        self._refuse(self.chosen, MARCHED)
-        if self.slide:
-            self._refuse(("slide",), MARCHED, chosen=("slide",))
+        _refuse((*self.chosen, *["slide"] * bool(self.slide)), MARCHED)
         cells = self.cells
         settings = {"growth": cells.growth, "free_rows": cells.free_rows, "constant": cells.constant}
         solution = method_named("hyperbolic", wall_spacing=height, **settings).solve([boundary])[0]
@@ -145,7 +125,8 @@ class Layered(Wrapper):
                 return self._upright(solution, boundary, heights, start)
             return solution
         if channel:
-            self._refuse(("model", "polish", "answer"), "a channel with given wall nodes")
+            networks = [each for each in ("model", "polish", "answer") if each in self.chosen]
+            _refuse(networks, "a channel with given wall nodes")
         if self.full is not None and (channel or self.name == "steger-sorenson"):
             return self._turned(boundary, heights, start)
         return self.inner(boundary, start)
@@ -164,10 +145,7 @@ class Layered(Wrapper):
     def _upright(
         self, solution: Solution, boundary: Boundary, heights: Heights, start: Grid | None
     ) -> Solution:
-        """Return `solution`, its wall nodes slid; where lines still lean, sources turn them.
-
-        Where that does not do, sources with the nodes of `boundary` as they were, if those do better.
-        """
+        """Return `solution`, its wall nodes slid, or where lines lean the better of two turned by sources."""
         from meshonet.solvers.elliptic.steger_sorenson import largest_lean
 
         slid = solution.boundary
@@ -186,8 +164,8 @@ class Layered(Wrapper):
             method_named("steger-sorenson", **self.turning, heights=heights.by_side), boundary, start
         )
 
-    def _refuse(self, settings: Iterable[str], what: str, chosen: Sequence[str] | None = None) -> None:
-        """Raise InputError when one of `settings` was given, which are of no use to `what`."""
-        for setting in settings:
-            if setting in (self.chosen if chosen is None else chosen):
-                raise InputError(f"{{{setting}}} is of no use to {what}", f"drop {{{setting}}}")
+
+def _refuse(settings: Iterable[str], what: str) -> None:
+    """Raise InputError for the first of the `settings`, which are of no use to `what`."""
+    for setting in settings:
+        raise InputError(f"{{{setting}}} is of no use to {what}", f"drop {{{setting}}}")

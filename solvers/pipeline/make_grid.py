@@ -1,7 +1,5 @@
 """Shapes in, valid grids out: sample, solve, check, measure; many at a time where that is faster."""
 
-from __future__ import annotations
-
 import contextlib
 import time
 from collections import deque
@@ -59,8 +57,8 @@ class Result:
 def make_grid(shape: Shape, request: GridRequest) -> Result:
     """Return the grid of `shape` that `request` describes.
 
-    Raises InputError: the shape, or the request for it, cannot be met; NoValidGridError: cells are folded,
-    and that was not allowed; SolverError: the method diverged.
+    Raises InputError: they do not go together; NoValidGridError: cells are folded, and that was not allowed;
+    SolverError: the method diverged.
     """
     result = next(make_grids([shape], request))
     if isinstance(result, Exception):
@@ -118,10 +116,7 @@ def _sampled(shape: Shape, request: GridRequest) -> Boundary:
 
 
 def _finer(sampling: Sampling, shape: Shape, boundary: Boundary, k: int) -> Sampling:
-    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those along a wake included.
-
-    The nodes of boundaries are distributed as before.
-    """
+    """Return `sampling` with `k` times the cells of the `boundary` of `shape`, those of a wake included."""
     wakes = [patch.stop - patch.start for patch in boundary.patches if patch.name == "wake"]
     made = boundary.topology == "c" and wakes and not isinstance(shape, Boundary)
     nodes = k * wakes[0] + 1 if made else sampling.wake_nodes

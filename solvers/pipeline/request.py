@@ -193,15 +193,10 @@ class GridRequest:
         full = None if self.refine or isinstance(self.coarse, int) else base
         own = full is not None and base.name in ("winslow", "steger-sorenson")
         return Layered(
-            method,
-            self.first_cells(),
-            {**(self.settings if own else {}), **self._angle()},
-            full,
+            method, self.first_cells(), {**(self.settings if own else {}), **self._angle()}, full,
             marched=TOPOLOGIES if self.method == "hyperbolic" else ("o", "c") if automatic else (),
-            channels=automatic,
-            slide=self.slide,
-            chosen=self._chosen(),
-        )
+            channels=automatic, slide=self.slide, chosen=self._chosen(),
+        )  # fmt: skip
 
     def _base(self) -> Method:
         """Return the method with its settings, on all nodes."""

@@ -1,7 +1,5 @@
 """Which method makes a grid, and on how many nodes, when that is left open."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.arrays import Topology
@@ -21,10 +19,7 @@ Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of t
 
 @dataclass(frozen=True)
 class Auto(OneByOne):
-    """A method for each topology.
-
-    `quad`, `o`, `c`: that solve boundaries of these topologies.
-    """
+    """A method for each topology."""
 
     quad: Method
     o: Method
@@ -57,11 +52,9 @@ class AroundWake(OneByOne):
     """C grids: marched with a first cell of its own choice, or where that does not suit variational.
 
     Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
-
-    `note`: begins the notes, before the method's name.
     """
 
-    note: str = ""
+    note: str = ""  # begins the notes, before the method's name
     name: str = "auto"
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:  # noqa: ARG002

@@ -9,8 +9,6 @@ The nodes of each boundary are among those of the next finer one. A solution is 
 as a coarse one is (`meshonet.solvers.algebraic.resample.grids`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -36,17 +34,10 @@ class Sequenced(Wrapper):
 def solve_refined(
     boundary: Boundary, solve: Callable[..., Solution], levels: int, initial: Grid | None = None
 ) -> Solution:
-    """Solve on every 2^levels-th node of `boundary`, and again on twice as many cells until on all of them.
+    """Solve on every 2^levels-th node of `boundary`, from `initial`, and again on twice the cells to all.
 
-    Parameters
-    ----------
-    boundary : with cells along xi and eta that 2^levels divides.
-    solve : a function of boundary to solution that takes ``initial``, a grid to start from.
-    levels : how often cells are halved.
-    initial : what the coarsest solve starts from.
-
-    Its seconds are those of all solves, and a note has the counts of each. Raises InputError: counts that
-    cannot be halved.
+    `solve` takes ``initial``, a grid to start from. The solution has the seconds of all, and a note the
+    counts of each. Raises InputError: counts that cannot be halved.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

@@ -6,8 +6,8 @@ from solver_shapes import circle, folded, ring
 
 from meshonet.geometry.arrays import as_planar
 from meshonet.solvers.algebraic.tfi import tfi
+from meshonet.solvers.energy.descent import SKEWED, descend_windows, skewness
 from meshonet.solvers.energy.functional import AROUND, aspect_of, relief_of
-from meshonet.solvers.energy.local_descent import SKEWED, descend_windows, skewness
 
 
 def test_skewness_is_that_of_the_angle() -> None:

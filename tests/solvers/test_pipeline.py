@@ -36,7 +36,7 @@ def test_wrappers_have_the_name_of_their_method_and_combine() -> None:
     for wrapped in (Coarse(method, 17), Sequenced(method, 1)):
         assert wrapped.name == "winslow"
     with pytest.raises(InputError, match="a coarse solve has no use for a grid to start from; drop initial"):
-        Coarse(method, 17).solve([arch(33, 17)], [interpolate(arch(33, 17)).grid])
+        grid_request("winslow", coarse=17, initial=interpolate(arch(33, 17)).grid)
     fine = method.solve([arch(33, 17)])[0].grid
     again = Sequenced(method, 1).solve([arch(33, 17)])[0].grid
     np.testing.assert_allclose(again.nodes, fine.nodes, atol=1e-7)

@@ -9,7 +9,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.kernels._native import layer_lines, layer_steps
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve
-from meshonet.solvers.layers.first_cells import Heights, cells_needed, edge_in_layers, layer_ratio
+from meshonet.solvers.layers.first_cells import Heights, cells_needed, edge_in_layers
 from meshonet.solvers.layers.redistribute import spread, worst_first_cell
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
@@ -48,7 +48,7 @@ def test_one_end_is_a_geometric_series() -> None:
 
 
 def test_what_does_not_fit_has_no_ratio() -> None:
-    assert layer_ratio(4, 1.0, 0.6, 0.6, 1) == np.inf
+    assert layer_steps(np.empty(4), 1.0, 0.6, 0.6, 1) == np.inf
     assert cells_needed(7.0, 1.0, 0.0, Heights(south=1.0, growth=2.0)) == 3
 
 

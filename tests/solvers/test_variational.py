@@ -36,9 +36,8 @@ from meshonet.solvers.energy import descent as descent_module
 from meshonet.solvers.energy import variational as module
 from meshonet.solvers.energy.descent import descend, stiffness_of
 from meshonet.solvers.energy.functional import Weights, aspect_of
-from meshonet.solvers.energy.start import winslow_start
 from meshonet.solvers.energy.untangle import unfold
-from meshonet.solvers.energy.variational import solve
+from meshonet.solvers.energy.variational import solve, winslow_start
 from meshonet.solvers.pipeline.coarse import solve_coarse
 
 

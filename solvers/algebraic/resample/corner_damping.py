@@ -9,8 +9,6 @@ second derivatives B add between, and K the share left at each node::
     L X Lᵀ + C (K∘B X) Lᵀ + L (K∘X Bᵀ) Cᵀ + C (K∘B X Bᵀ) Cᵀ
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 
@@ -29,7 +27,7 @@ NEAR, FAR = 4.0, 10.0
 def openings(z: Any, xp: Any) -> Any:
     """Return how much is taken out at the four corners (.., 2, 2), 0 to 1, of grids `z` (.., m, n), complex.
 
-    `xp`: numpy or torch.
+    `xp` is numpy or torch.
     """
     west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
     beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)

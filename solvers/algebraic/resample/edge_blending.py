@@ -10,8 +10,6 @@ with h the mean of the edge's steps to both sides of the line and d_1 the line's
 shares are linear.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 REACH = 2.0  # steps of the edge over which its mismatch is blended

@@ -4,8 +4,6 @@ Inside the full edges splines through the coarse nodes are evaluated (`quad`); a
 own course instead (`o_grid`).
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Topology, planar_nodes

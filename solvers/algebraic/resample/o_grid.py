@@ -9,8 +9,6 @@ with s the share of a line's length and S periodic splines along xi. What few no
 only near them.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -11,8 +11,6 @@ are made straight around these, as far as it takes: between straight lines, cell
 are valid.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

@@ -10,8 +10,6 @@ with the third derivative continuous at the second and the last but one knot ("n
 de Boor, A Practical Guide to Splines (1978), chapter IV.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np
@@ -22,10 +20,9 @@ from meshonet.geometry.arrays import Floats
 
 @lru_cache(maxsize=16)
 def bending(m: int, periodic: bool) -> Floats:
-    """Return the matrix (m, m) that takes values at m uniform knots to the second derivatives there.
+    """Return the matrix (m, m) that takes values at m >= 2 uniform knots to the second derivatives there.
 
-    `m`: knots, at least 2; the last repeats the first when `periodic`. 2 give a straight line, 3 a parabola.
-    `periodic`: the spline is.
+    The last knot repeats the first when `periodic`. 2 knots give a straight line, 3 a parabola.
     """
     if m == 2 or (periodic and m == 3):
         return np.zeros((m, m))
@@ -50,24 +47,14 @@ def between(values: Floats, n: int) -> Floats:
     m = values.shape[-1]
     if n == m:
         return values
-    first, t = _uniform(m, n)
-    if t is None:
-        return np.ascontiguousarray(values[..., first])
+    first, weights = places(m, n)
+    t = weights[:, 1]
+    if not t[:-1].any():  # every place is a knot
+        return np.ascontiguousarray(values[..., np.append(first[:-1], m - 1)])
     before = values[..., first]
     result = before + t * (values[..., first + 1] - before)
     result[..., -1] = values[..., -1]
     return np.ascontiguousarray(result)
-
-
-@lru_cache(maxsize=16)
-def _uniform(m: int, n: int) -> tuple[NDArray[np.intp], Floats | None]:
-    """Return for n uniform places among m the one before and the way to the next; None: all are places."""
-    at = np.arange(n) * ((m - 1) / (n - 1))
-    first = np.minimum(at.astype(np.intp), m - 2)
-    t = np.asarray(at - first, dtype=np.float64)
-    if t[:-1].any():
-        return first, t
-    return np.append(first[:-1], m - 1), None
 
 
 @lru_cache(maxsize=16)
