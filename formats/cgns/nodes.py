@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.formats.hdf5.check import DEFLATE_LIMIT
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError
 
@@ -26,8 +27,6 @@ NAME_LENGTH = 32
 
 _TYPES = {"int8": "C1", "int32": "I4", "int64": "I8", "float32": "R4", "float64": "R8"}
 _DATA = " data"
-_DENSEST = 1032
-"""Most that deflate can shrink; a claim beyond it is a lie."""
 
 
 def is_adf(head: bytes) -> bool:
@@ -80,7 +79,7 @@ def array(node: Node, ndim: int) -> NDArray[Any]:
     if data.dtype.kind not in "fiu" or data.ndim != ndim:
         problem = f"node holds {data.dtype} with {data.ndim} axes"
         raise InputError(problem, f"it must be numbers with {ndim}", place=place)
-    if data.size * data.dtype.itemsize > _DENSEST * max(data.id.get_storage_size(), 1):
+    if data.size * data.dtype.itemsize > DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
         problem = f"node claims shape {data.shape} but holds next to nothing"
         raise InputError(problem, "write the file again", place=place)
     return np.asarray(data[()])
