@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from operator import call
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from meshonet.formats.hdf5.check import Checked, checked
 from meshonet.formats.mesh.recover_topology import usable
@@ -52,7 +52,7 @@ def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Call
 
 def _boundary(data: Checked, k: int) -> Boundary:
     with data.place(k):
-        edges = {side: data.sample(side, k) for side in SIDES}
+        edges: dict[str, Any] = {side: data.sample(side, k) for side in SIDES}
         patches, name, origin = _patches(data, k), data.text("names", k), _origin(data, k)
         return Boundary(**edges, topology=data.topology, patches=patches, name=name, origin=origin)
 
