@@ -58,8 +58,9 @@ def is_geojson(head: bytes) -> bool:
 
 def _format(name: str, endings: str, description: str, functions: str, **more: Any) -> Format:
     """Return a record; `functions`, ``module:field``, are loaded when they are called."""
-    fields: dict[str, Any] = {word.partition(":")[2]: later(f"meshonet.formats.{word}") for word in functions.split()}
-    return Format(name, tuple(endings.split()), description, **fields, **more)
+    for function in functions.split():
+        more[function.partition(":")[2]] = later(f"meshonet.formats.{function}")
+    return Format(name, tuple(endings.split()), description, **more)
 
 
 _FORMATS = (

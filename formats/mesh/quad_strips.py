@@ -10,13 +10,8 @@ from meshonet.formats.mesh.unstructured import Indices
 def line_across(quads: Indices, start: int, count: int) -> list[int]:
     """Return the nodes from boundary node `start` straight across to the other boundary, or nothing.
 
-    Straight on means, at a node where four cells meet, into the edge that has no cell in common with the one
-    come from. Where cells meet otherwise there is no such line.
-
-    Parameters
-    ----------
-    quads : (m, 4) node numbers.
-    count : of all nodes.
+    Straight on means, at a node where four `quads` (m, 4) meet, into the edge that has no cell in common with
+    the one come from. Where cells meet otherwise there is no such line. `count` is that of all nodes.
     """
     order = np.argsort(quads.ravel(), kind="stable") // 4
     begin = np.concatenate([[0], np.cumsum(np.bincount(quads.ravel(), minlength=count))])

@@ -32,11 +32,10 @@ MOST_EDGES = 400_000
 
 @dataclass(frozen=True)
 class Surface:
-    """What a mesh says of its boundary.
+    """What a mesh of points (n, 2) says of its boundary.
 
     Parameters
     ----------
-    points : (n, 2).
     edges : (k, 2) point numbers by name; an empty name stands for none. Without any, those edges count that
         one cell alone has.
     cells : (m, 3 or 4) point numbers, kind by kind.
@@ -88,9 +87,7 @@ def _nested(loops: list[Loop], points: Floats) -> tuple[Loop, Loop] | None:
     """Return (inner, outer), both clockwise, of two curves of which one lies in the box of the other."""
     inner, outer = sorted(loops, key=lambda loop: abs(polygon_area(points[loop.nodes])))
     within, around = points[inner.nodes], points[outer.nodes]
-    if not (
-        (within.min(axis=0) > around.min(axis=0)).all() and (within.max(axis=0) < around.max(axis=0)).all()
-    ):
+    if (within.min(axis=0) <= around.min(axis=0)).any() or (within.max(axis=0) >= around.max(axis=0)).any():
         return None
     turned = [loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop for loop in (inner, outer)]
     return turned[0], turned[1]
@@ -169,10 +166,7 @@ def _labelled(shape: Shape, loops: list[Loop], points: Floats) -> Shape:
 
 
 def flat(points: Floats) -> Floats:
-    """Return x and y (n, 2) of points (n, 2 or 3) that lie in a plane z = constant.
-
-    Raises InputError: they do not.
-    """
+    """Return x, y (n, 2) of points (n, 2 or 3); InputError where they lie in no plane z = constant."""
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]
         if not np.ptp(z) <= 1e-6 * max(float(np.ptp(points[:, :2])), 1e-300):
