@@ -94,9 +94,8 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
             plain = ":" not in record.name
             return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
     able = ", ".join(record.name for record in formats() if getattr(record, f"write_{kind}") is not None)
-    raise InputError(
-        f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
-    )
+    problem = f"{claimed[0].name} cannot hold {kind}"
+    raise InputError(problem, f"write one of {able}", source=printable(path_text))
 
 
 def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:

@@ -44,9 +44,8 @@ class Picture:
             remedy = "use x0,x1,y0,y1 with x0 < x1 and y0 < y1, e.g. 0.9,1.1,-0.1,0.1"
             raise InputError(f"{box!r} is not a box", remedy, parameter="zoom")
         if self.every is not None and self.every < 1:
-            raise InputError(
-                f"every {self.every}-th line cannot be drawn", "use 1 or more", parameter="every"
-            )
+            problem = f"every {self.every}-th line cannot be drawn"
+            raise InputError(problem, "use 1 or more", parameter="every")
 
     def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
         """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 TOGETHER = 1 << 17
 """Bytes of small samples that are read in one go."""
 
-DEFLATE_LIMIT = 1032
+_DEFLATE_LIMIT = 1032
 """Most that deflate, the densest of HDF5's own filters, can shrink; a claim beyond it is a lie."""
 _MOST_SEARCHED = 1 << 28
 """Bytes of files that are searched for heaps: that must stay a small part of reading."""
@@ -83,7 +83,7 @@ class Checked:
     def _check_blocks(self, file: h5py.File) -> None:
         import h5py
 
-        group = file.get("blocks") if isinstance(file.get("blocks", getlink=True), h5py.HardLink) else None
+        group = own(file, "blocks")
         self.blocks = len(group) if isinstance(group, h5py.Group) else 0
         if not self.blocks:
             raise InputError("has no blocks", "store their nodes as blocks/0, blocks/1 ...")
@@ -159,8 +159,7 @@ class Checked:
     def _dataset(self, name: str) -> h5py.Dataset:
         import h5py
 
-        link = self._file.get(name, getlink=True)
-        data = self._file.get(name) if isinstance(link, h5py.HardLink) else None
+        data = own(self._file, name)
         if not isinstance(data, h5py.Dataset):
             remedy = "store south, north, west and east (and nodes for grids)"
             raise InputError(f"has no dataset {name!r}", remedy)
@@ -175,10 +174,22 @@ class Checked:
             wanted = " or ".join(map(str, ndim))
             problem = f"dataset {name!r} is {data.dtype} with {data.ndim} axes"
             raise InputError(problem, f"store float64 with {wanted} axes")
-        if data.size * data.dtype.itemsize > DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
-            problem = f"dataset {name!r} claims shape {data.shape} but holds next to nothing"
-            raise InputError(problem, "write it again")
+        check_stored(data, f"dataset {name!r}")
         return tuple(int(n) for n in data.shape)
+
+
+def own(group: h5py.Group, name: str) -> Any:
+    """Return the member of `group` of that name, or None where it lies elsewhere or is not there."""
+    import h5py
+
+    return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
+
+
+def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
+    """Raise InputError where `data`, called `what`, claims more than can be in the bytes that it holds."""
+    if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
+        problem = f"{what} claims shape {data.shape} but holds next to nothing"
+        raise InputError(problem, "write the file again", place=place)
 
 
 def connections_from(text: str) -> tuple[Connection, ...]:

@@ -39,13 +39,11 @@ def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Call
     """Yield functions that read one sample each: what they raise does not end the generator."""
     with checked(source) as data:
         if read is _grid and "nodes" not in data and not data.blocks:
-            raise InputError(
-                "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
-            )
+            remedy = "make grids of them first: meshonet solve-pde IN -o OUT.h5"
+            raise InputError("holds boundaries, not grids", remedy)
         if read is _boundary and data.blocks:
-            raise InputError(
-                f"holds grids of {data.blocks} blocks, not boundaries", "give a grid of one block"
-            )
+            problem = f"holds grids of {data.blocks} blocks, not boundaries"
+            raise InputError(problem, "give a grid of one block")
         for k in data.kept(source.split):
             yield partial(read, data, k)
 
@@ -82,9 +80,8 @@ def _patches(data: Checked, k: int) -> tuple[Patch, ...]:
     try:
         return tuple(_patch(*row) for row in json.loads(data.text("parts", k) or "[]"))
     except (ValueError, TypeError, RecursionError):
-        raise InputError(
-            "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
-        ) from None
+        problem = "its parts are not a JSON list of [name, side, start, stop]"
+        raise InputError(problem, "remove the dataset 'parts'") from None
 
 
 def _patch(

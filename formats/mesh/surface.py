@@ -13,7 +13,6 @@ import numpy as np
 
 from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.mesh.loops import Loop, closed_loops
-from meshonet.formats.mesh.quad_strips import line_across
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
@@ -110,8 +109,40 @@ def _cut(inner: Loop, outer: Loop, surface: Surface) -> list[int]:
     """Return the nodes from the first of `inner` to the far field along the cells, where they lead there."""
     if len(surface.cells) != 1 or surface.cells[0].shape[1] != 4:
         return []
-    cut = line_across(surface.cells[0], int(inner.nodes[0]), len(surface.points))
+    cut = _line_across(surface.cells[0], int(inner.nodes[0]), len(surface.points))
     return cut if cut and cut[-1] in outer.nodes else []
+
+
+def _line_across(quads: Indices, start: int, count: int) -> list[int]:
+    """Return the nodes from boundary node `start` straight across to the other boundary, or nothing.
+
+    Straight on means, where four of the `quads` (m, 4) meet, into the edge that has no cell in common with
+    the one come from. `count` is that of all nodes.
+    """
+    order = np.argsort(quads.ravel(), kind="stable") // 4
+    begin = np.concatenate([[0], np.cumsum(np.bincount(quads.ravel(), minlength=count))])
+
+    def around(node: int) -> list[list[int]]:
+        return quads[order[begin[node] : begin[node + 1]]].tolist()
+
+    def beside(node: int, cell: list[int]) -> tuple[int, int]:
+        at = cell.index(node)
+        return cell[at - 1], cell[(at + 1) % 4]
+
+    line, cells = [start], around(start)
+    if len(cells) != 2:
+        return []
+    shared = set(beside(start, cells[0])) & set(beside(start, cells[1]))
+    while len(shared) == 1 and len(line) <= count:
+        line.append(shared.pop())
+        cells = around(line[-1])
+        if len(cells) == 2:
+            return line
+        ahead = [cell for cell in cells if line[-2] not in cell]
+        if len(cells) != 4 or len(ahead) != 2:
+            return []
+        shared = set(beside(line[-1], ahead[0])) & set(beside(line[-1], ahead[1]))
+    return []
 
 
 def _o_parts(inner: Loop, outer: Loop) -> tuple[Patch, ...]:

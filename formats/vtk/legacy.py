@@ -111,9 +111,8 @@ def read_grids(source: Source) -> Iterator[Grid]:
     try:
         nodes, facts = _read(cursor)
     except (ValueError, OverflowError, IndexError) as error:
-        raise InputError(
-            printable(str(error))[:100], "write the file again", place=f"byte {cursor.at}"
-        ) from None
+        problem = printable(str(error))[:100]
+        raise InputError(problem, "write the file again", place=f"byte {cursor.at}") from None
     except InputError as error:
         error.place = error.place or f"byte {cursor.at}"
         raise

@@ -37,15 +37,9 @@ _HEAD = """\
 
 
 def write(
-    path: Path,
-    grid: Grid,
-    cell_data: Mapping[str, NDArray[Any]] | None = None,
-    heights: Heights = (0.0,),
+    path: Path, grid: Grid, cell_data: Mapping[str, NDArray[Any]] | None = None, heights: Heights = (0.0,)
 ) -> None:
-    """Write one grid, with `cell_data` (ni-1, nj-1) by name, and a plane of its nodes at each of `heights`.
-
-    Raises InputError: a cell array of another shape.
-    """
+    """Write one grid, a plane of its nodes at each of `heights`, with `cell_data` (ni-1, nj-1) by name."""
     planes = len(heights)
     cells = {name: _cell_values(name, values, grid) for name, values in (cell_data or {}).items()}
     with path.open("wb") as stream:
