@@ -36,10 +36,7 @@ class Conversion:
     coarsen: int = 1
 
     def heights(self) -> Heights:
-        """Return z of each plane, none for a flat grid.
-
-        Raises InputError: a height that is not positive, planes without a height.
-        """
+        """Return z of each plane, none for a flat grid; InputError for a height that is not positive."""
         if self.extrude is None:
             if self.planes is not None:
                 raise InputError("there is no height", "give {extrude} as well", parameter="planes")
@@ -77,18 +74,15 @@ class Conversion:
         return source != "-" and format_of(open_source(source), from_format).read_grids is None
 
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
-        """Return what writes grids extruded to `output`, None for flat ones.
-
-        Raises InputError: the format holds flat grids only.
-        """
+        """Return what writes grids extruded to `output`, None for flat ones; InputError for a flat format."""
         heights = self.heights()
         if not heights:
             return None
-        found = format_for_output(output, to_format)
-        write = found.write_grids
-        if write is None or not found.extrudes:
+        record = format_for_output(output, to_format)
+        write = record.write_grids
+        if write is None or not record.extrudes:
             able = ", ".join(each.name for each in formats() if each.extrudes)
-            raise InputError(f"{found.name} holds flat grids only", f"write one of {able}", source=output)
+            raise InputError(f"{record.name} holds flat grids only", f"write one of {able}", source=output)
         return lambda path, grids: write(path, grids, heights)
 
 

@@ -77,7 +77,7 @@ class Format:
         functions: dict[str, Any] = {"write_grids": self.write_grids}
         if self.reads_options:
             functions["read_grids"] = self.read_grids
-        bound = {name: partial(function, options=words) for name, function in functions.items()}
+        bound: Any = {name: partial(function, options=words) for name, function in functions.items()}
         return replace(self, name=f"{self.name}:{ordered}", **bound)
 
     def _options(self, text: str) -> Options:

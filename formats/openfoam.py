@@ -7,7 +7,7 @@ looks at a mesh, a bare one is written. https://doc.openfoam.com/2312/tools/proc
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -165,16 +165,12 @@ def _write_faces(folder: Path, faces: Faces, points: int) -> None:
 
 def _write_boundary(path: Path, faces: Faces) -> None:
     """Write names, types and face counts of the patches."""
-
-    def entries() -> Iterator[str]:
-        start = len(faces.neighbour)
-        for patch in faces.patches:
-            yield f"    {patch.name}\n    {{\n        type            {patch.kind};\n"
-            yield f"        nFaces          {patch.size};\n        startFace       {start};\n    }}\n"
-            start += patch.size
-
-    text = f"{_head('polyBoundaryMesh', 'boundary')}{len(faces.patches)}\n(\n{''.join(entries())})\n"
-    path.write_text(text, encoding="ascii")
+    text, start = f"{_head('polyBoundaryMesh', 'boundary')}{len(faces.patches)}\n(\n", len(faces.neighbour)
+    for patch in faces.patches:
+        text += f"    {patch.name}\n    {{\n        type            {patch.kind};\n"
+        text += f"        nFaces          {patch.size};\n        startFace       {start};\n    }}\n"
+        start += patch.size
+    path.write_text(f"{text})\n", encoding="ascii")
 
 
 def _head(kind: str, name: str, note: str = "", place: str = "constant/polyMesh") -> str:

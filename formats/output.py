@@ -11,7 +11,6 @@ import stat
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError
@@ -33,13 +32,8 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
     The path lies beside the destination, so that the last step is one atomic rename; for ``-``
     (standard output) and for devices and pipes it lies in the system's temporary folder and its bytes
     are copied out at the end. On any exception, KeyboardInterrupt and SystemExit included, it is
-    removed and the destination is as it was.
-
-    Parameters
-    ----------
-    destination : path, or ``-``.
-    make_folder : make the destination's folder when it is missing.
-    beside : whether other files will be written beside the path, which a stream has no room for.
+    removed and the destination is as it was. `make_folder` makes the destination's folder when it is missing;
+    `beside` says that other files will be written beside the path, which a stream has no room for.
 
     Raises InputError: the destination is a folder, its folder is missing or may not be written, the disc is
     full.
@@ -104,7 +98,6 @@ def _swapped(first: Path, second: Path) -> bool:
 
 
 def _remove(path: Path) -> None:
-    """Remove a file or a folder, if there is one."""
     if path.is_dir() and not path.is_symlink():
         import shutil
 
@@ -123,9 +116,8 @@ def _naming(name: str, only: set[int] | None = None) -> Iterator[None]:
         if only is not None and error.errno not in only and not short:
             raise
         why = error.strerror or str(error)
-        raise InputError(
-            f"cannot be written ({why})", "free space or choose another place", source=name
-        ) from error
+        remedy = "free space or choose another place"
+        raise InputError(f"cannot be written ({why})", remedy, source=name) from error
 
 
 def final_name(part: Path) -> str:
@@ -140,11 +132,8 @@ def check_place(destination: Path, name: str) -> None:
     if target.is_dir():
         raise InputError("is a folder", "name a file in it", source=name)
     if not target.parent.is_dir():
-        raise InputError(
-            "its folder does not exist",
-            f"make it: mkdir -p {printable(str(destination.parent))}",
-            source=name,
-        )
+        remedy = f"make it: mkdir -p {printable(str(destination.parent))}"
+        raise InputError("its folder does not exist", remedy, source=name)
 
 
 def _part_beside(destination: Path, name: str, make_folder: bool) -> Path:
@@ -199,7 +188,7 @@ def _alive(process: int) -> bool:
     except ProcessLookupError:
         return False
     except (PermissionError, OverflowError):
-        return True
+        pass
     return True
 
 
@@ -220,19 +209,16 @@ def _is_stream(path: Path) -> bool:
 
 
 def _copy_out(part: Path, destination: str) -> None:
+    import shutil
+
     with part.open("rb") as finished:
         if destination != "-":
             with Path(destination).open("wb") as stream:
-                _copy(finished, stream)
+                shutil.copyfileobj(finished, stream)
             return
         try:
-            _copy(finished, sys.stdout.buffer)
+            shutil.copyfileobj(finished, sys.stdout.buffer)
             sys.stdout.buffer.flush()
         except BrokenPipeError:
             # the reader (head, say) had enough; the interpreter's own flush at exit must not complain either
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _copy(finished: BinaryIO, stream: BinaryIO) -> None:
-    while piece := finished.read(1 << 20):
-        stream.write(piece)

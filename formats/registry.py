@@ -31,7 +31,7 @@ _DESIGNATION = "naca:"
 def format_named(name: str) -> Format:
     """Return the format of a name: its own, with options (``gmsh:4.1,ascii``), an old name, or an ending.
 
-    Raises InputError: no such format, or no such option of it; the message lists those there are.
+    Raises InputError where there is no such format or option; the message lists those there are.
     """
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
@@ -56,10 +56,7 @@ def formats() -> tuple[Format, ...]:
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
-    """Return the format of a source to be read.
-
-    Raises InputError: neither the ending nor the content tells.
-    """
+    """Return the format of a source to be read; InputError where neither its ending nor its content tells."""
     if fmt:
         return format_named(fmt)
     claimed = _by_suffix(source.suffix)
@@ -71,10 +68,8 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
             return record
     if claimed:
         return claimed[-1]
-    what = f"ending {source.suffix!r} is" if source.suffix else "content is"
-    raise InputError(
-        f"its {what} not of a known format", f"name it with {{from_format}}; {_known()}", source=source.name
-    )
+    problem = f"its {f'ending {source.suffix!r}' if source.suffix else 'content'} is not of a known format"
+    raise InputError(problem, f"name it with {{from_format}}; {_known()}", source=source.name)
 
 
 def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
@@ -83,9 +78,8 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
     Raises InputError: the ending is not known, or the format cannot be written with what `kind` says.
     """
     if not path_text:
-        raise InputError(
-            "the output has no name", "name a file, or - for standard output", parameter="output"
-        )
+        remedy = "name a file, or - for standard output"
+        raise InputError("the output has no name", remedy, parameter="output")
     suffix = Path(path_text).suffix.lower()
     if fmt or path_text == "-":
         claimed: tuple[Format, ...] = (format_named(fmt or "hdf5"),)
@@ -93,19 +87,15 @@ def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grid
         claimed = _by_suffix(suffix)
         if not claimed:
             what = f"ending {suffix!r} is not known" if suffix else "name has no ending to tell the format by"
-            raise InputError(
-                f"its {what}",
-                f"choose the format with {{to_format}}; {_known()}",
-                source=printable(path_text),
-            )
+            remedy = f"choose the format with {{to_format}}; {_known()}"
+            raise InputError(f"its {what}", remedy, source=printable(path_text))
     for record in claimed:
         if getattr(record, f"write_{kind}") is not None:
             plain = ":" not in record.name
             return record.with_options(record.suffix_options.get(suffix, "")) if plain else record
     able = ", ".join(record.name for record in formats() if getattr(record, f"write_{kind}") is not None)
-    raise InputError(
-        f"{claimed[0].name} cannot hold {kind}", f"write one of {able}", source=printable(path_text)
-    )
+    problem = f"{claimed[0].name} cannot hold {kind}"
+    raise InputError(problem, f"write one of {able}", source=printable(path_text))
 
 
 def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
@@ -139,21 +129,15 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     Raises InputError: as `read_shapes`; also a file that holds boundaries only.
     """
     if _is_designation(text):
-        raise InputError(
-            "is an airfoil, not a grid",
-            f"make a grid of it first: meshonet infer {text} -o grid.vts",
-            source=text,
-        )
+        remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
+        raise InputError("is an airfoil, not a grid", remedy, source=text)
     source = open_source(text)
     record = _selectable(source, format_of(source, fmt))
     if record.read_grids is not None:
         return _Records(source, partial(record.read_grids, source))
     if record.read_shapes is not None:
-        raise InputError(
-            "holds a boundary, not a grid",
-            f"make a grid of it first: meshonet infer {source.name} -o grid.vts",
-            source=source.name,
-        )
+        remedy = f"make a grid of it first: meshonet infer {source.name} -o grid.vts"
+        raise InputError("holds a boundary, not a grid", remedy, source=source.name)
     raise _unreadable(record, source)
 
 
@@ -186,11 +170,8 @@ class _Records(Iterator[T]):
 
 def _selectable(source: Source, record: Format) -> Format:
     if source.split and record.name != "hdf5":
-        raise InputError(
-            f"{record.name} files do not say which samples are to {source.split}",
-            f"leave #{source.split} out",
-            source=source.name,
-        )
+        problem = f"{record.name} files do not say which samples are to {source.split}"
+        raise InputError(problem, f"leave #{source.split} out", source=source.name)
     return record
 
 

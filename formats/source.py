@@ -38,14 +38,14 @@ class Source:
     @property
     def stem(self) -> str:
         """File name without folder and ending; what a shape is called when its file does not say."""
-        return (
-            printable(self.path.stem) if self.path else "stdin" if self.name == "-" else Path(self.name).stem
-        )
+        if self.path:
+            return printable(self.path.stem)
+        return "stdin" if self.name == "-" else Path(self.name).stem
 
     @property
     def suffix(self) -> str:
         """File ending in lower case, dot included, or nothing."""
-        return self.path.suffix.lower() if self.path else Path(self.name).suffix.lower()
+        return (self.path or Path(self.name)).suffix.lower()
 
     @property
     def size(self) -> int:
@@ -75,7 +75,6 @@ def open_source(text: str) -> Source:
     """Return the source that a user named: a path, or ``-`` for standard input.
 
     ``FILE#test`` and ``FILE#train`` mean those samples of a dataset, unless there is a file of that name.
-
     Standard input and pipes are read to their end, since formats need to look back and forth.
 
     Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
@@ -117,9 +116,8 @@ def _missing(text: str) -> InputError:
     name, mark, kept = text.rpartition("#")
     if not (mark and Path(name).is_file()):
         return InputError("no such file", "check the path", source=printable(text))
-    problem = (
-        f"no such file, and of {printable(name)} there is only {' or '.join(f'#{part}' for part in SPLITS)}"
-    )
+    splits = " or ".join(f"#{split}" for split in SPLITS)
+    problem = f"no such file, and of {printable(name)} there is only {splits}"
     return InputError(problem, f"leave #{printable(kept)} out", source=printable(text))
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from functools import partial
+from typing import Any
 
 from meshonet.formats.format import Format, later
 from meshonet.formats.plot3d import CHOICES
 
-_HERE = "meshonet.formats"
+_DRAW = "meshonet.formats.figure.figure:write_grids"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 _MESHIO = {
@@ -55,184 +56,100 @@ def is_geojson(head: bytes) -> bool:
     return head.lstrip()[:1] == b"{" and b'"type"' in head
 
 
+def _format(name: str, endings: str, description: str, functions: str, **more: Any) -> Format:
+    """Return a record; `functions`, ``module:field``, are loaded when they are called."""
+    for function in functions.split():
+        more[function.partition(":")[2]] = later(f"meshonet.formats.{function}")
+    return Format(name, tuple(endings.split()), description, **more)
+
+
 _FORMATS = (
-    Format(
-        "hdf5",
-        (".h5", ".hdf5"),
-        "HDF5 dataset of boundaries or grids",
-        read_shapes=later(f"{_HERE}.hdf5.read:read_shapes"),
-        read_grids=later(f"{_HERE}.hdf5.read:read_grids"),
-        write_grids=later(f"{_HERE}.hdf5.write:write_grids"),
-        write_boundaries=later(f"{_HERE}.hdf5.write:write_boundaries"),
-        sniff=is_hdf5,
-        names_patches=True,
-        many=True,
-        one_size=True,
+    _format(
+        "hdf5", ".h5 .hdf5", "HDF5 dataset of boundaries or grids",
+        "hdf5.read:read_shapes hdf5.read:read_grids hdf5.write:write_grids hdf5.write:write_boundaries",
+        sniff=is_hdf5, names_patches=True, many=True, one_size=True,
     ),
-    Format(
-        "vts",
-        (".vts",),
-        "VTK XML structured grid",
-        read_grids=later(f"{_HERE}.vtk.vts_read:read_grids"),
-        write_grids=later(f"{_HERE}.vtk.vts:write_grids"),
-        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")),
-        extrudes=True,
-        names_patches=True,
+    _format(
+        "vts", ".vts", "VTK XML structured grid", "vtk.vts_read:read_grids vtk.vts:write_grids",
+        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), extrudes=True, names_patches=True,
     ),
-    Format(
-        "vtm",
-        (".vtm",),
-        "VTK multi-block file: an index and a folder of .vts",
-        read_grids=later(f"{_HERE}.vtk.vtm:read_grids"),
-        write_grids=later(f"{_HERE}.vtk.vtm:write_grids"),
+    _format(
+        "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts",
+        "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
-        extrudes=True,
-        names_patches=True,
-        many=True,
-        beside=True,
+        extrudes=True, names_patches=True, many=True, beside=True,
     ),
-    Format(
-        "vtk",
-        (".vtk",),
-        "legacy VTK structured grid",
-        read_grids=later(f"{_HERE}.vtk.legacy:read_grids"),
-        write_grids=later(f"{_HERE}.vtk.legacy:write_grids"),
-        sniff=is_legacy_vtk,
-        extrudes=True,
-        names_patches=True,
-        choices=(("binary", "ascii"),),
+    _format(
+        "vtk", ".vtk", "legacy VTK structured grid", "vtk.legacy:read_grids vtk.legacy:write_grids",
+        sniff=is_legacy_vtk, extrudes=True, names_patches=True, choices=(("binary", "ascii"),),
     ),
-    Format(
-        "vtu",
-        (".vtu",),
-        "VTK XML unstructured grid, seams merged, patches by number",
-        write_grids=later(f"{_HERE}.vtk.vtu:write_grids"),
-        extrudes=True,
+    _format(
+        "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
+        "vtk.vtu:write_grids", extrudes=True,
     ),
-    Format(
-        "gmsh",
-        (".msh",),
-        "Gmsh mesh, patches as physical groups; read as a boundary",
-        read_shapes=later(f"{_HERE}.gmsh.read:read_shapes"),
-        write_grids=later(f"{_HERE}.gmsh.msh:write_grids"),
-        sniff=partial(holds, (b"$MeshFormat",)),
-        extrudes=True,
-        names_patches=True,
-        choices=(("binary", "ascii"), ("2.2", "4.1")),
+    _format(
+        "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",
+        "gmsh.read:read_shapes gmsh.msh:write_grids", sniff=partial(holds, (b"$MeshFormat",)),
+        extrudes=True, names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")),
     ),
-    Format(
-        "cgns",
-        (".cgns",),
-        "CGNS structured zones in HDF5, with boundary conditions and families",
-        read_grids=later(f"{_HERE}.cgns.read:read_grids"),
-        write_grids=later(f"{_HERE}.cgns.write:write_grids"),
-        sniff=is_cgns,
-        extrudes=True,
-        names_patches=True,
-        many=True,
+    _format(
+        "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
+        "cgns.read:read_grids cgns.write:write_grids",
+        sniff=is_cgns, extrudes=True, names_patches=True, many=True,
     ),
-    Format(
-        "openfoam",
-        (".foam",),
-        "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-        write_grids=later(f"{_HERE}.openfoam:write_grids"),
-        extrudes=True,
-        names_patches=True,
-        fills_folder=True,
+    _format(
+        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
+        "openfoam:write_grids", extrudes=True, names_patches=True, fills_folder=True,
     ),
-    Format(
-        "geo",
-        (".geo",),
-        "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
-        write_grids=later(f"{_HERE}.gmsh.geo:write_grids"),
-        names_patches=True,
+    _format(
+        "geo", ".geo", "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
+        "gmsh.geo:write_grids", names_patches=True,
     ),
-    Format(
-        "nmf",
-        (".nmf",),
-        "NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
-        write_grids=later(f"{_HERE}.plot3d.nmf:write_grids"),
-        extrudes=True,
-        names_patches=True,
+    _format(
+        "nmf", ".nmf", "NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
+        "plot3d.nmf:write_grids", extrudes=True, names_patches=True,
     ),
-    Format(
-        "su2",
-        (".su2",),
-        "SU2 mesh, text, patches as markers; read as a boundary",
-        read_shapes=later(f"{_HERE}.su2:read_shapes"),
-        write_grids=later(f"{_HERE}.su2:write_grids"),
-        sniff=partial(holds, (b"NDIME", b"=")),
-        extrudes=True,
-        names_patches=True,
+    _format(
+        "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
+        "su2:read_shapes su2:write_grids", sniff=partial(holds, (b"NDIME", b"=")),
+        extrudes=True, names_patches=True,
     ),
-    Format(
-        "plot3d",
-        (".p3d", ".xyz", ".fmt", ".x", ".dat", ".bin", ".ufmt", ".unf"),
+    _format(
+        "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
         "Plot3D: text, C binary (.bin) or Fortran records (.ufmt)",
-        read_grids=later(f"{_HERE}.plot3d.read:read_grids"),
-        write_grids=later(f"{_HERE}.plot3d.write:write_grids"),
-        sniff=later(f"{_HERE}.plot3d.read:sniff"),
-        extrudes=True,
-        many=True,
-        choices=CHOICES,
-        reads_options=True,
+        "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
+        extrudes=True, many=True, choices=CHOICES, reads_options=True,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
-    Format(
-        "dxf",
-        (".dxf",),
-        "DXF drawing, layers as names (needs the extra dxf)",
-        read_shapes=later(f"{_HERE}.outlines.dxf:read_shapes"),
-        sniff=is_dxf,
-        many=True,
+    _format(
+        "dxf", ".dxf", "DXF drawing, layers as names (needs the extra dxf)", "outlines.dxf:read_shapes",
+        sniff=is_dxf, many=True,
     ),
-    Format(
-        "wkt",
-        (".wkt",),
-        "outlines as well-known text",
-        read_shapes=later(f"{_HERE}.outlines.vector:read_wkt"),
-        sniff=is_wkt,
-        many=True,
+    _format(
+        "wkt", ".wkt", "outlines as well-known text", "",
+        read_shapes=later("meshonet.formats.outlines.vector:read_wkt"), sniff=is_wkt, many=True,
     ),
-    Format(
-        "geojson",
-        (".geojson", ".json"),
-        "outlines as GeoJSON",
-        read_shapes=later(f"{_HERE}.outlines.vector:read_geojson"),
-        sniff=is_geojson,
-        many=True,
+    _format(
+        "geojson", ".geojson .json", "outlines as GeoJSON", "",
+        read_shapes=later("meshonet.formats.outlines.vector:read_geojson"), sniff=is_geojson, many=True,
     ),
-    Format(
-        "airfoil",
-        (".dat",),
-        "airfoil coordinates, Selig or Lednicer",
-        read_shapes=later(f"{_HERE}.text.airfoil_dat:read_shapes"),
-        sniff=later(f"{_HERE}.text.airfoil_dat:sniff"),
+    _format(
+        "airfoil", ".dat", "airfoil coordinates, Selig or Lednicer",
+        "text.airfoil_dat:read_shapes text.airfoil_dat:sniff",
     ),
-    Format(
-        "points",
-        (".csv", ".txt", ".xy"),
-        "points of a closed curve or of four edges",
-        read_shapes=later(f"{_HERE}.text.points:read_shapes"),
-        sniff=later(f"{_HERE}.text.points:sniff"),
+    _format(
+        "points", ".csv .txt .xy", "points of a closed curve or of four edges",
+        "text.points:read_shapes text.points:sniff",
     ),
-    *(
-        Format(kind, (f".{kind}",), words, write_grids=later(f"{_HERE}.figure.figure:write_grids", kind=kind))
-        for kind, words in (
-            ("png", "picture of a grid"),
-            ("svg", "picture of a grid, lines as vectors"),
-            ("pdf", "picture of a grid, lines as vectors"),
-        )
-    ),
-    Format(
-        "meshio",
-        tuple(_MESHIO),
-        "surfaces of viewers, decks of solid mechanics, without patches",
-        write_grids=later(f"{_HERE}.meshio_export:write_grids"),
+    _format("png", ".png", "picture of a grid", "", write_grids=later(_DRAW, kind="png")),
+    _format("svg", ".svg", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="svg")),
+    _format("pdf", ".pdf", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="pdf")),
+    _format(
+        "meshio", " ".join(_MESHIO), "surfaces of viewers, decks of solid mechanics, without patches",
+        "meshio_export:write_grids", suffix_options=_MESHIO,
         choices=(tuple(dict.fromkeys(_MESHIO.values())),),
-        suffix_options=_MESHIO,
     ),
-)
+)  # fmt: skip
 
 TABLE = {record.name: record for record in _FORMATS}
 """Formats by name. Where several share an ending, writing takes the first that can, and reading asks each

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.formats.hdf5.check import check_stored, own
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError
 
@@ -26,8 +27,6 @@ NAME_LENGTH = 32
 
 _TYPES = {"int8": "C1", "int32": "I4", "int64": "I8", "float32": "R4", "float64": "R8"}
 _DATA = " data"
-_DENSEST = 1032
-"""Most that deflate can shrink; a claim beyond it is a lie."""
 
 
 def is_adf(head: bytes) -> bool:
@@ -60,29 +59,23 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
     import h5py
 
     for name in node:
-        if isinstance(node.get(name, getlink=True), h5py.HardLink):
-            below = node.get(name)
-            if isinstance(below, h5py.Group) and _attribute(below, "label") == label:
-                yield str(name), below
+        below = own(node, name)
+        if isinstance(below, h5py.Group) and _attribute(below, "label") == label:
+            yield str(name), below
 
 
 def array(node: Node, ndim: int) -> NDArray[Any]:
-    """Return a node's numbers once their type, rank and stored size are plausible.
-
-    Raises InputError: there are none, or they claim more than the file holds.
-    """
+    """Return a node's numbers; InputError where there are none or their type, rank or size is wrong."""
     import h5py
 
     place = printable(str(node.name))
-    data = node.get(_DATA) if isinstance(node.get(_DATA, getlink=True), h5py.HardLink) else None
+    data = own(node, _DATA)
     if not isinstance(data, h5py.Dataset) or data.is_virtual or data.external:
         raise InputError("node has no data of its own", "write the file again", place=place)
     if data.dtype.kind not in "fiu" or data.ndim != ndim:
         problem = f"node holds {data.dtype} with {data.ndim} axes"
         raise InputError(problem, f"it must be numbers with {ndim}", place=place)
-    if data.size * data.dtype.itemsize > _DENSEST * max(data.id.get_storage_size(), 1):
-        problem = f"node claims shape {data.shape} but holds next to nothing"
-        raise InputError(problem, "write the file again", place=place)
+    check_stored(data, "node", place)
     return np.asarray(data[()])
 
 

@@ -32,10 +32,10 @@ def read_grids(source: Source) -> Iterator[Grid]:
     if is_adf(source.head(64)):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")
     with opened(source) as file:
-        found = [item for _, base in children(file, "CGNSBase_t") for item in children(base, "Zone_t")]
-        structured = [(name, zone) for name, zone in found if _kind(zone) == "Structured"]
+        zones = [item for _, base in children(file, "CGNSBase_t") for item in children(base, "Zone_t")]
+        structured = [(name, zone) for name, zone in zones if _kind(zone) == "Structured"]
         if not structured:
-            problem = "its zones are unstructured" if found else "holds no CGNS zone"
+            problem = "its zones are unstructured" if zones else "holds no CGNS zone"
             raise InputError(problem, "give a CGNS file with a structured zone")
         for name, zone in structured:
             try:
@@ -65,7 +65,7 @@ def _coordinates(zone: Node) -> list[Floats]:
     if np.prod(dims, dtype=float) > _MOST_NODES:
         raise InputError(f"its size {dims} is not plausible", "write the file again")
     arrays = dict(children(next(iter(children(zone, "GridCoordinates_t")), ("", zone))[1], "DataArray_t"))
-    found = []
+    coordinates = []
     for label in ("CoordinateX", "CoordinateY", "CoordinateZ"):
         if label not in arrays:
             continue
@@ -73,10 +73,10 @@ def _coordinates(zone: Node) -> list[Floats]:
         if values.shape != dims:
             problem = f"{label} has {values.shape} values and the zone {dims} nodes"
             raise InputError(problem, "write the zone without rind planes")
-        found.append(np.asarray(values, np.float64).reshape((*dims, 1)[:3]))
-    if len(found) < 2:
+        coordinates.append(np.asarray(values, np.float64).reshape((*dims, 1)[:3]))
+    if len(coordinates) < 2:
         raise InputError("has no CoordinateX and CoordinateY", "write Cartesian coordinates")
-    return found
+    return coordinates
 
 
 def _conditions(zone: Node, grid: Grid) -> Iterator[Patch]:
@@ -84,15 +84,9 @@ def _conditions(zone: Node, grid: Grid) -> Iterator[Patch]:
     for _, group in children(zone, "ZoneBC_t"):
         for name, condition in children(group, "BC_t"):
             family = next((text(node) for _, node in children(condition, "FamilyName_t")), name)
-            span = next(
-                (
-                    array(node, 2)
-                    for label, node in children(condition, "IndexRange_t")
-                    if label == "PointRange"
-                ),
-                None,
-            )
-            if span is None or span.shape[0] != 2 or span.shape[1] not in (2, 3):
+            ranges = dict(children(condition, "IndexRange_t"))
+            span = array(ranges["PointRange"], 2) if "PointRange" in ranges else np.empty((0, 0))
+            if span.shape not in ((2, 2), (2, 3)):
                 continue
             (i0, j0), (i1, j1) = (np.sort(span, axis=0)[:, :2].astype(np.int64) - 1).tolist()
             if j0 == j1 and j0 in (0, grid.nj - 1) and 0 <= i0 < i1 < grid.ni:

@@ -7,14 +7,12 @@ pixel, each with the worst value in it, and only every k-th grid line is drawn.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshonet.formats.figure.layers import INK, Box, Part, body, in_view, outline, paint, rule
+from meshonet.formats.figure.layers import INK, Box, Colouring, Part, body, in_view, outline, paint, rule
 from meshonet.formats.format import only_one
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -29,39 +27,14 @@ _NAME = 48
 """Letters of a grid's name that fit above a view."""
 
 
-@dataclass(frozen=True)
-class Colouring:
-    """A value for each cell and how to show it.
-
-    Parameters
-    ----------
-    values : (ni-1, nj-1) a value a cell.
-    label : quantity and unit, for the colour bar.
-    limits : values at the two ends of the colours; None takes the 1st and 99th percentile in view.
-    worst_is_low : small values are the bad ones and keep the strong colours.
-    """
-
-    values: NDArray[Any]
-    label: str
-    limits: tuple[float, float] | None = None
-    worst_is_low: bool = False
-
-
 def draw(
     grid: Grid, colouring: Colouring | None = None, zoom: Box | None = None, every: int | None = None
 ) -> Figure:
-    """Return a figure of `grid`; of a grid around a small body, one view near it and one of the whole.
+    """Return a figure of `grid`, of its part in `zoom` if given: lines only, or cells coloured too.
 
-    Parameters
-    ----------
-    grid : what to draw.
-    colouring : values to colour the cells by; None draws lines only.
-    zoom : x0, x1, y0, y1 of the part to show, in one view.
-    every : draw every so many-th grid line; None chooses.
-
-    Raises InputError: a zoom that is empty or shows nothing, `every` below 1, values of the wrong shape.
+    Of a grid around a small body, one view near it and one of the whole. Each `every`-th grid line is drawn;
+    None chooses. Raises InputError for a zoom that shows nothing.
     """
-    _check(grid, colouring, zoom, every)
     views = [zoom] if zoom else _views(grid)
     parts = [_visible(grid, view) for view in views]
     figure, axes, bar = _frame([_ratio(view) for view in views], colouring is not None)
@@ -70,19 +43,15 @@ def draw(
     for ax, view, part in zip(axes, views, parts, strict=True):
         pixels = ax.get_window_extent().width / (view[1] - view[0])
         if colouring:
-            low = colouring.worst_is_low
-            mesh = paint(
-                ax, grid, colouring.values, part, pixels, limits, "YlGnBu_r" if low else "YlGnBu", low=low
-            )
+            mesh = paint(ax, grid, colouring, part, pixels, limits)
         steps = rule(ax, grid, part, pixels, every, faint=colouring is not None)
         outline(ax, grid)
         ax.set(xlim=view[:2], ylim=view[2:])
         if max(steps) > 1:
             _note(ax, _drawn_lines(*steps))
     if bar is not None and mesh is not None and colouring:
-        figure.colorbar(mesh, cax=bar, extend=_beyond(colouring, limits)).set_label(
-            colouring.label, color=INK, size=9
-        )
+        scale = figure.colorbar(mesh, cax=bar, extend=_beyond(colouring, limits))
+        scale.set_label(colouring.label, color=INK, size=9)
         bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
     title = f"{name}   {grid.ni} × {grid.nj} nodes".strip()
@@ -110,17 +79,6 @@ def write(
 def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
     """Draw the one grid of `grids`, lines only."""
     write(path, only_one(grids, f"a .{kind} file"), kind)
-
-
-def _check(grid: Grid, colouring: Colouring | None, zoom: Box | None, every: int | None) -> None:
-    if colouring is not None and colouring.values.shape != (grid.ni - 1, grid.nj - 1):
-        raise InputError(
-            f"cell values have shape {colouring.values.shape}", f"give ({grid.ni - 1}, {grid.nj - 1})"
-        )
-    if every is not None and every < 1:
-        raise InputError(f"every {every}-th line cannot be drawn", "use 1 or more")
-    if zoom is not None and not (np.isfinite(zoom).all() and zoom[0] < zoom[1] and zoom[2] < zoom[3]):
-        raise InputError(f"zoom {zoom} is empty", "give x0,x1,y0,y1 with x0 < x1 and y0 < y1")
 
 
 def _visible(grid: Grid, view: Box) -> Part:
@@ -159,18 +117,15 @@ def _limits(colouring: Colouring, part: Part) -> tuple[float, float]:
     if colouring.limits:
         return colouring.limits
     values = colouring.values[part.i0 : part.i1, part.j0 : part.j1][part.mask]
-    low, high = (
-        np.percentile(values[np.isfinite(values)], (1, 99)) if np.isfinite(values).any() else (0.0, 1.0)
-    )
+    finite = values[np.isfinite(values)]
+    low, high = np.percentile(finite, (1, 99)) if finite.size else (0.0, 1.0)
     return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
 
 
 def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
-    """Return at which ends of the colour bar values lie beyond it, as matplotlib says it."""
+    """Return at which ends values lie beyond the colour bar, in matplotlib's words."""
     below, above = bool((colouring.values < limits[0]).any()), bool((colouring.values > limits[1]).any())
-    return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[
-        below, above
-    ]
+    return ("neither", "min", "max", "both")[below + 2 * above]
 
 
 def _frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | None]:
@@ -202,22 +157,12 @@ def _frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | N
 
 def _note(ax: Axes, text: str) -> None:
     paper = {"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 2.0}
-    ax.text(
-        0.985,
-        0.015,
-        text,
-        transform=ax.transAxes,
-        ha="right",
-        va="bottom",
-        size=7,
-        color=INK,
-        bbox=paper,
-        zorder=5,
-    )
+    place: dict[str, Any] = {"transform": ax.transAxes, "ha": "right", "va": "bottom", "zorder": 5}
+    ax.text(0.985, 0.015, text, size=7, color=INK, bbox=paper, **place)
 
 
 def _drawn_lines(xi: int, eta: int) -> str:
-    """Return in words which lines are drawn: every `xi`-th and every `eta`-th, one of them above 1."""
+    """Return in words which lines are drawn."""
     if xi == eta:
         return f"every {_ordinal(xi)}line"
     return f"every {_ordinal(xi)}xi and {_ordinal(eta)}eta line"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -27,6 +28,23 @@ _SAMPLE = 200_000
 """Cells looked at to choose the distance of lines."""
 
 
+@dataclass(frozen=True)
+class Colouring:
+    """Values (ni-1, nj-1) of the cells and how to show them.
+
+    Parameters
+    ----------
+    label : quantity and unit, for the colour bar.
+    limits : values at the two ends of the colours; None takes the 1st and 99th percentile in view.
+    worst_is_low : small values are the bad ones and keep the strong colours.
+    """
+
+    values: NDArray[Any]
+    label: str
+    limits: tuple[float, float] | None = None
+    worst_is_low: bool = False
+
+
 class Part(NamedTuple):
     """The index ranges of cells in view, and which of them are: mask (i1-i0, j1-j0)."""
 
@@ -48,37 +66,19 @@ def in_view(grid: Grid, box: Box) -> Part | None:
 
 
 def paint(
-    ax: Axes,
-    grid: Grid,
-    values: NDArray[Any],
-    part: Part,
-    pixels: float,
-    limits: tuple[float, float],
-    colours: str,
-    *,
-    low: bool,
+    ax: Axes, grid: Grid, colouring: Colouring, part: Part, pixels: float, limits: tuple[float, float]
 ) -> QuadMesh:
-    """Colour the cells of `part` by `values` (ni-1, nj-1), a block of cells where they are below a pixel.
-
-    A block has the largest of its values, or with `low` the smallest, so that no bad cell is lost.
-    """
+    """Colour the cells of `part`, a block of cells where they are below a pixel, by the worst value in it."""
+    low = colouring.worst_is_low
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
-    shown = values[part.i0 : part.i1, part.j0 : part.j1]
+    shown = colouring.values[part.i0 : part.i1, part.j0 : part.j1]
     columns = _blocks(_extents(nodes, part.mask, 0) * pixels)
     rows = _blocks(_extents(nodes, part.mask, 1) * pixels)
     shown = _reduced(np.minimum if low else np.maximum, shown, columns, rows)
     shown = np.ma.masked_array(shown, ~_reduced(np.logical_or, part.mask, columns, rows))
     corners = nodes[np.ix_(columns, rows)]
-    return ax.pcolormesh(
-        corners[..., 0],
-        corners[..., 1],
-        shown,
-        cmap=colours,
-        vmin=limits[0],
-        vmax=limits[1],
-        rasterized=True,
-        zorder=1,
-    )
+    scale: dict[str, Any] = {"cmap": "YlGnBu_r" if low else "YlGnBu", "vmin": limits[0], "vmax": limits[1]}
+    return ax.pcolormesh(corners[..., 0], corners[..., 1], shown, rasterized=True, zorder=1, **scale)
 
 
 def rule(
@@ -98,11 +98,9 @@ def rule(
 
 def outline(ax: Axes, grid: Grid) -> None:
     """Draw the outer edges stronger, and fill the body that an O or C grid goes around."""
-    for edge in (grid.nodes[:, 0], grid.nodes[:, -1]):
+    ends = () if grid.periodic else (grid.nodes[0], grid.nodes[-1])
+    for edge in (grid.nodes[:, 0], grid.nodes[:, -1], *ends):
         ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
-    if not grid.periodic:
-        for edge in (grid.nodes[0], grid.nodes[-1]):
-            ax.plot(edge[:, 0], edge[:, 1], color=INK, linewidth=0.9, zorder=4)
     if grid.around_body:
         wall = body(grid)
         ax.fill(wall[:, 0], wall[:, 1], facecolor=_BODY, edgecolor=INK, linewidth=0.9, zorder=3)
@@ -143,11 +141,9 @@ def _extents(nodes: Floats, mask: NDArray[np.bool_], axis: int) -> Floats:
 
 
 def _blocks(sizes: Floats) -> NDArray[np.intp]:
-    """Return node indices, first and last included, that cut `sizes` (n,) at about every `_BLOCK`.
-
-    Size 0 means out of view; such layers never share a block with others, whose corners they would drag away.
-    """
+    """Return node indices, first and last included, that cut `sizes` (n,) at about every `_BLOCK`."""
     marks = np.floor(np.concatenate([[0.0], np.cumsum(np.minimum(sizes, _BLOCK))]) / _BLOCK)
+    # size 0 is out of view, and never in a block with others, whose corners it would drag away
     new = (np.diff(marks[:-1]) > 0) | np.diff(sizes > 0)
     return np.concatenate([[0], np.flatnonzero(new) + 1, [len(sizes)]])
 

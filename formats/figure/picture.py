@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,7 +27,7 @@ class Picture:
     zoom : x0, x1, y0, y1 of the part to show; None shows all.
     every : draw every so many-th grid line; None chooses by the resolution of the picture.
 
-    Raises InputError: a metric that is not known; a box without extent.
+    Raises InputError: a metric that is not known, a box without extent, `every` below 1.
     """
 
     metric: str | None = "max_angle"
@@ -37,14 +38,19 @@ class Picture:
         if self.metric not in (*NAMES, None):
             known = "use none or one of " + ", ".join(NAMES)
             raise InputError(f"metric {self.metric!r} is not known", known, parameter="metric")
-        if self.zoom is not None and not (self.zoom[0] < self.zoom[1] and self.zoom[2] < self.zoom[3]):
-            box = ",".join(f"{value:g}" for value in self.zoom)
+        x0, x1, y0, y1 = self.zoom or (0, 1, 0, 1)
+        if not (math.isfinite(x0 + x1 + y0 + y1) and x0 < x1 and y0 < y1):
+            box = f"{x0:g},{x1:g},{y0:g},{y1:g}"
             remedy = "use x0,x1,y0,y1 with x0 < x1 and y0 < y1, e.g. 0.9,1.1,-0.1,0.1"
             raise InputError(f"{box!r} is not a box", remedy, parameter="zoom")
+        if self.every is not None and self.every < 1:
+            problem = f"every {self.every}-th line cannot be drawn"
+            raise InputError(problem, "use 1 or more", parameter="every")
 
     def draw(self, kind: str, path: Path, grids: Iterable[Grid]) -> None:
         """Draw the one grid of `grids` to `path`, as ``png``, ``svg`` or ``pdf``."""
-        from meshonet.formats.figure.figure import Colouring, write
+        from meshonet.formats.figure.figure import write
+        from meshonet.formats.figure.layers import Colouring
 
         grid = only_one(grids, "a picture")
         colouring = None
@@ -61,7 +67,7 @@ def picture_format(output: str, to_format: str | None = None) -> Format:
 
     Raises InputError: `output` is no picture.
     """
-    found = format_for_output(output, to_format or ("png" if output == "-" else None))
-    if found.name not in KINDS:
-        raise InputError(f"{found.name} is no picture", "use .png, .svg or .pdf", source=output)
-    return found
+    record = format_for_output(output, to_format or ("png" if output == "-" else None))
+    if record.name not in KINDS:
+        raise InputError(f"{record.name} is no picture", "use .png, .svg or .pdf", source=output)
+    return record

@@ -32,13 +32,7 @@ class Nodes(NamedTuple):
 
 
 class _Stream:
-    """Numbers of a section, one after the other, whether it is text or binary.
-
-    Parameters
-    ----------
-    section : its bytes.
-    binary, order : as the file's head says.
-    """
+    """Numbers of a section, one after the other, whether it is text or binary."""
 
     def __init__(self, section: bytes, binary: bool, order: str) -> None:
         self._binary, self._order, self._at = binary, order, 0
@@ -51,7 +45,7 @@ class _Stream:
         """Return the next `count` numbers of a kind: ``i4``, ``u8`` or ``f8``."""
         dtype = np.dtype(self._order + kind)
         length = count * (dtype.itemsize if self._binary else 1)
-        if not 0 <= length <= len(self._data) - self._at:
+        if not 0 <= length <= self.left:
             raise InputError(f"should have {count} more numbers and is too short", _CUT)
         piece = self._data[self._at : self._at + length]
         self._at += length
@@ -79,6 +73,12 @@ class _Stream:
         """Numbers or bytes that are left."""
         return len(self._data) - self._at
 
+    def bounded(self, count: int) -> int:
+        """Return a count of blocks that can be in what is left."""
+        if not 0 <= count <= self.left:
+            raise InputError(f"should have {count} blocks and is too short", _CUT)
+        return count
+
 
 def nodes(section: bytes, version: str, binary: bool, order: str) -> Nodes:
     """Return the nodes of a section ``$Nodes``."""
@@ -95,9 +95,8 @@ def nodes(section: bytes, version: str, binary: bool, order: str) -> Nodes:
 
 
 def _blocks_of_nodes(stream: _Stream) -> Nodes:
-    blocks = int(stream.take("u8", 4)[0])
     tags, points = [np.empty(0, np.int64)], [np.empty((0, 3))]
-    for _ in range(_bounded(blocks, stream)):
+    for _ in range(stream.bounded(int(stream.take("u8", 4)[0]))):
         dimension, _, parametric = stream.take("i4", 3).tolist()
         count = stream.one("u8")
         tags.append(stream.take("u8", count).astype(np.int64))
@@ -114,13 +113,11 @@ def elements(
     """Return the elements of a section ``$Elements``; `tags` has the group of (dimension, entity) of 4.1."""
     stream = _Stream(section, binary, order)
     if version == "4.1":
-        found = list(_blocks_of_elements(stream, tags))
-    elif binary:
-        found = list(_blocks_22(stream))
+        blocks = _blocks_of_elements(stream, tags)
     else:
-        found = list(_lines_22(stream))
+        blocks = _blocks_22(stream) if binary else _lines_22(stream)
     merged: dict[tuple[int, int], list[Indices]] = {}
-    for kind, group, rows in found:
+    for kind, group, rows in blocks:
         merged.setdefault((kind, group), []).append(rows)
     return [(kind, group, np.concatenate(rows)) for (kind, group), rows in merged.items()]
 
@@ -128,8 +125,7 @@ def elements(
 def _blocks_of_elements(
     stream: _Stream, tags: dict[tuple[int, int], int]
 ) -> Iterator[tuple[int, int, Indices]]:
-    blocks = int(stream.take("u8", 4)[0])
-    for _ in range(_bounded(blocks, stream)):
+    for _ in range(stream.bounded(int(stream.take("u8", 4)[0]))):
         dimension, entity, kind = stream.take("i4", 3).tolist()
         count = stream.one("u8")
         width = _size(kind)
@@ -153,14 +149,12 @@ def _blocks_22(stream: _Stream) -> Iterator[tuple[int, int, Indices]]:
 
 def _lines_22(stream: _Stream) -> Iterator[tuple[int, int, Indices]]:
     """Yield elements of text: number, kind, count of tags, tags, nodes; of different lengths."""
-    count = _bounded(stream.line(), stream)
+    count = stream.bounded(stream.line())
     flat = stream.take("i8", stream.left)
     numbers, at = flat.tolist(), 0
     starts: dict[tuple[int, int, int], list[int]] = {}
     for _ in range(count):
-        if at + 3 > len(numbers):
-            raise InputError(f"should have {count} elements and is too short", _CUT)
-        kind, tag_count = numbers[at + 1], numbers[at + 2]
+        kind, tag_count = numbers[at + 1 : at + 3] if at + 3 <= len(numbers) else (15, -1)
         end = at + 3 + tag_count + _size(kind)
         if tag_count < 0 or end > len(numbers):
             raise InputError(f"should have {count} elements and is too short", _CUT)
@@ -181,7 +175,7 @@ def physical_tags(section: bytes, binary: bool, order: str) -> dict[tuple[int, i
     stream = _Stream(section, binary, order)
     counts = stream.take("u8", 4).tolist()
     for dimension, count in enumerate(counts):
-        for _ in range(_bounded(count, stream)):
+        for _ in range(stream.bounded(count)):
             tag = stream.one("i4")
             stream.take("f8", 3 if dimension == 0 else 6)
             groups = stream.take("i4", stream.one("u8")).tolist()
@@ -197,12 +191,6 @@ def _whole(values: Floats) -> Indices:
     if not (np.abs(values) < 2**53).all():
         raise InputError("has no number that can be a count or a tag in its place", "write the file again")
     return values.astype(np.int64)
-
-
-def _bounded(count: int, stream: _Stream) -> int:
-    if not 0 <= count <= stream.left:
-        raise InputError(f"should have {count} blocks and is too short", _CUT)
-    return int(count)
 
 
 def _size(kind: int) -> int:

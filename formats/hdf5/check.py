@@ -40,25 +40,11 @@ _TEXT = np.dtype([("length", "<u4"), ("heap", "<u8"), ("index", "<u4")])
 
 
 class Checked:
-    """What `checked` hands out.
-
-    Parameters
-    ----------
-    file : an open HDF5 file.
-    source : its bytes.
-
-    Attributes
-    ----------
-    count : number of samples n.
-    version : of the layout; `meshonet.formats.hdf5` has both.
-    topology : the one all samples share; ``blocks`` in version 2.
-    blocks : count of blocks in version 2, else 0.
-    connections : of all samples in version 2.
-    """
+    """An open dataset: `count` samples of one `topology`, in version 2 of `blocks` blocks."""
 
     def __init__(self, file: h5py.File, source: Source) -> None:
         self._file, self._source = file, source
-        self._text_cache: dict[str, Any] = {}
+        self._texts: dict[str, Any] = {}
         self._rows: dict[str, tuple[int, Floats]] = {}  # first row and rows that were read together
         kind = _attribute(file, "format")
         if kind not in ("meshonet-boundary", "meshonet-grid"):
@@ -75,10 +61,8 @@ class Checked:
         elif self.version == "2" and kind == "meshonet-grid":
             self._check_blocks(file)
         else:
-            raise InputError(
-                f"has layout version {self.version!r}",
-                "this program reads version 1, and version 2 of grids: get a newer one",
-            )
+            remedy = "this program reads version 1, and version 2 of grids: get a newer one"
+            raise InputError(f"has layout version {self.version!r}", remedy)
         if self.count == 0:
             raise InputError("holds no samples", "write at least one")
         if "parameters" in self and self._shape("parameters", 2)[0] != self.count:
@@ -90,17 +74,16 @@ class Checked:
         nj = self._shape("west", 3)[1]
         wanted = {"south": (ni, 2), "north": (ni, 2), "west": (nj, 2), "east": (nj, 2), "nodes": (ni, nj, 2)}
         for name in SIDES if kind == "meshonet-boundary" else (*SIDES, "nodes"):
-            shape = self._shape(name, len(wanted[name]) + 1)
-            if shape != (self.count, *wanted[name]):
-                raise InputError(
-                    f"dataset {name!r} has shape {shape}",
-                    f"it must be {(self.count, *wanted[name])} as 'south' and 'west' say",
-                )
+            due = self.count, *wanted[name]
+            shape = self._shape(name, len(due))
+            if shape != due:
+                remedy = f"it must be {due} as 'south' and 'west' say"
+                raise InputError(f"dataset {name!r} has shape {shape}", remedy)
 
     def _check_blocks(self, file: h5py.File) -> None:
         import h5py
 
-        group = file.get("blocks") if isinstance(file.get("blocks", getlink=True), h5py.HardLink) else None
+        group = own(file, "blocks")
         self.blocks = len(group) if isinstance(group, h5py.Group) else 0
         if not self.blocks:
             raise InputError("has no blocks", "store their nodes as blocks/0, blocks/1 ...")
@@ -114,17 +97,12 @@ class Checked:
         return name in self._file
 
     def kept(self, split: str) -> list[int]:
-        """Return the samples of a split, or all of them.
-
-        Raises InputError: the dataset has none of that split.
-        """
-        found = [k for k in range(self.count) if not split or self.text("split", k) == split]
-        if not found:
-            raise InputError(
-                f"no sample is marked {split!r}",
-                "mark samples where they are made, by {family} and {split}",
-            )
-        return found
+        """Return the samples of a split, or all of them; InputError where there are none."""
+        kept = [k for k in range(self.count) if not split or self.text("split", k) == split]
+        if not kept:
+            remedy = "mark samples where they are made, by {family} and {split}"
+            raise InputError(f"no sample is marked {split!r}", remedy)
+        return kept
 
     def sample(self, name: str, k: int) -> Floats:
         """Return row `k` of a checked numeric dataset as float64."""
@@ -147,26 +125,23 @@ class Checked:
         """Return text `k` of dataset `name`, empty when there is none."""
         import h5py
 
-        if name not in self._text_cache:
+        if name not in self._texts:
             data = self._dataset(name) if name in self else None
             if data is not None and (data.ndim != 1 or h5py.check_string_dtype(data.dtype) is None):
                 raise InputError(f"dataset {name!r} is not a list of texts", "store strings, one a sample")
             if data is not None:
                 _check_texts(data, self._source)
-            self._text_cache[name] = data
-        data = self._text_cache[name]
+            self._texts[name] = data
+        data = self._texts[name]
         if data is None or k >= len(data):
             return ""
-        value = data[k]
-        text = value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
+        text = _text(data[k])
         return printable(text) if name in ("names", "split") else text
 
     def parameter_names(self) -> tuple[str, ...]:
         """Return the names that go with the columns of 'parameters'."""
         names = np.atleast_1d(self._dataset("parameters").attrs.get("names", []))
-        return tuple(
-            printable(n.decode("utf-8", "replace") if isinstance(n, bytes) else str(n)) for n in names
-        )
+        return tuple(printable(_text(name)) for name in names)
 
     @contextlib.contextmanager
     def place(self, k: int) -> Iterator[None]:
@@ -184,12 +159,10 @@ class Checked:
     def _dataset(self, name: str) -> h5py.Dataset:
         import h5py
 
-        link = self._file.get(name, getlink=True)
-        data = self._file.get(name) if isinstance(link, h5py.HardLink) else None
+        data = own(self._file, name)
         if not isinstance(data, h5py.Dataset):
-            raise InputError(
-                f"has no dataset {name!r}", "store south, north, west and east (and nodes for grids)"
-            )
+            remedy = "store south, north, west and east (and nodes for grids)"
+            raise InputError(f"has no dataset {name!r}", remedy)
         if data.is_virtual or data.external:
             raise InputError(f"dataset {name!r} lies in another file", "store it in this one")
         return data
@@ -199,14 +172,24 @@ class Checked:
         data = self._dataset(name)
         if data.dtype.kind not in "fiu" or data.ndim not in ndim:
             wanted = " or ".join(map(str, ndim))
-            raise InputError(
-                f"dataset {name!r} is {data.dtype} with {data.ndim} axes", f"store float64 with {wanted} axes"
-            )
-        if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
-            raise InputError(
-                f"dataset {name!r} claims shape {data.shape} but holds next to nothing", "write it again"
-            )
+            problem = f"dataset {name!r} is {data.dtype} with {data.ndim} axes"
+            raise InputError(problem, f"store float64 with {wanted} axes")
+        check_stored(data, f"dataset {name!r}")
         return tuple(int(n) for n in data.shape)
+
+
+def own(group: h5py.Group, name: str) -> Any:
+    """Return the member of `group` of that name, or None where it lies elsewhere or is not there."""
+    import h5py
+
+    return group.get(name) if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
+
+
+def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
+    """Raise InputError where `data`, called `what`, claims more than can be in the bytes that it holds."""
+    if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
+        problem = f"{what} claims shape {data.shape} but holds next to nothing"
+        raise InputError(problem, "write the file again", place=place)
 
 
 def connections_from(text: str) -> tuple[Connection, ...]:
@@ -214,10 +197,8 @@ def connections_from(text: str) -> tuple[Connection, ...]:
     try:
         rows = json.loads(text or "[]")
         return tuple(
-            Connection(
-                block, side, _range(span), donor, donor_side, _range(donor_span), tuple(ways), _motion(move)
-            )
-            for block, side, span, donor, donor_side, donor_span, ways, move in rows
+            Connection(k, side, _range(span), donor, face, _range(other), tuple(ways), _motion(move))
+            for k, side, span, donor, face, other, ways, move in rows
         )
     except (ValueError, TypeError, KeyError, RecursionError):
         raise InputError("its connections are not those of blocks", "write the dataset again") from None
@@ -249,9 +230,8 @@ def opened(source: Source) -> Iterator[h5py.File]:
             target = source.path or stack.enter_context(source.open())
             file = stack.enter_context(h5py.File(target, "r", locking="best-effort"))
         except Exception as error:  # a damaged file makes h5py raise almost anything
-            raise InputError(
-                f"is not readable as HDF5 ({_short(error)})", "check that the file is whole"
-            ) from error
+            problem = f"is not readable as HDF5 ({_short(error)})"
+            raise InputError(problem, "check that the file is whole") from error
         try:
             yield file
         except InputError:
@@ -265,7 +245,10 @@ def _damaged(error: Exception, place: str = "") -> InputError:
 
 
 def _attribute(file: h5py.File, name: str) -> str:
-    value = file.attrs.get(name, "")
+    return _text(file.attrs.get(name, ""))
+
+
+def _text(value: object) -> str:
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)
 
 
@@ -288,11 +271,8 @@ def _check_heaps(source: Source) -> None:
                 step = 16 + (size + 7) // 8 * 8 if index else size
                 at = at + step if step >= 16 else end + 1
             if not at <= end <= len(data):
-                raise InputError(
-                    "HDF5 data is damaged (a heap of texts)",
-                    "write the file again",
-                    place=f"byte {heap.start()}",
-                )
+                problem = "HDF5 data is damaged (a heap of texts)"
+                raise InputError(problem, "write the file again", place=f"byte {heap.start()}")
 
 
 def _check_texts(data: h5py.Dataset, source: Source) -> None:

@@ -8,7 +8,7 @@ is done.
 from __future__ import annotations
 
 import contextlib
-import os
+import io
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,42 +17,23 @@ if TYPE_CHECKING:
     import h5py
 
 
-class _Disc:
-    """The file that HDF5 writes to, as it wants Python's files to be.
+class _Disc(io.FileIO):
+    """The file that HDF5 writes to."""
 
-    Parameters
-    ----------
-    path : file to make.
-    """
+    error: OSError | None = None
 
-    def __init__(self, path: Path) -> None:
-        self._file = path.open("w+b", buffering=0)
-        self.error: OSError | None = None
-
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Go to a place."""
-        return self._file.seek(offset, whence)
-
-    def tell(self) -> int:
-        """Return the place."""
-        return self._file.tell()
-
-    def read(self, count: int = -1) -> bytes:
-        """Read; h5py knows files by this and uses `readinto`."""
-        return self._file.read(count) or b""
-
-    def readinto(self, buffer: memoryview) -> int:
+    def readinto(self, buffer: Any) -> int:
         """Read; what was never written is zero."""
-        count = self._file.readinto(buffer) or 0
+        count = super().readinto(buffer) or 0
         buffer[count:] = bytes(len(buffer) - count)
         return len(buffer)
 
-    def write(self, data: memoryview) -> int:
+    def write(self, data: Any) -> int:
         """Write all of `data`, or nothing once that has failed."""
         left = memoryview(data)
         while self.error is None and len(left):
             try:
-                left = left[self._file.write(left) :]
+                left = left[super().write(left) :]
             except OSError as error:
                 self.error = error
         return len(data)
@@ -61,35 +42,21 @@ class _Disc:
         """Set the length."""
         if self.error is None:
             try:
-                return self._file.truncate(size)
+                return super().truncate(size)
             except OSError as error:
                 self.error = error
         return size or 0
 
-    def flush(self) -> None:
-        """Do nothing: nothing is held back."""
-
-    def close(self) -> None:
-        """Close the file and raise what went wrong."""
-        try:
-            self._file.close()
-        except OSError as error:
-            self.error = self.error or error
-        if self.error is not None:
-            raise self.error
-
 
 @contextlib.contextmanager
 def created(path: Path, **options: Any) -> Iterator[h5py.File]:
-    """Give a new HDF5 file; `options` go to h5py.
-
-    Raises OSError: the disc is full, or another failure to write.
-    """
+    """Give a new HDF5 file, `options` being h5py's; raises OSError where it cannot be written."""
     import h5py
 
-    disc = _Disc(path)
-    try:
-        with h5py.File(disc, "w", **options) as file:
-            yield file
-    finally:
-        disc.close()
+    with _Disc(path, "w+") as disc:
+        try:
+            with h5py.File(disc, "w", **options) as file:
+                yield file
+        finally:
+            if disc.error is not None:
+                raise disc.error

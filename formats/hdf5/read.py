@@ -6,14 +6,12 @@ import json
 from collections.abc import Callable, Iterator
 from functools import partial
 from operator import call
-from typing import TypeVar
-
-import numpy as np
+from typing import Any, TypeVar
 
 from meshonet.formats.hdf5.check import Checked, checked
 from meshonet.formats.mesh.recover_topology import usable
 from meshonet.formats.source import Source
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import SIDES, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid, Origin
@@ -24,7 +22,7 @@ T = TypeVar("T")
 
 
 def read_shapes(source: Source) -> Iterator[Boundary]:
-    """Return an iterator over the boundaries; of a grid dataset, the grids' outer edges as they were stored.
+    """Return an iterator over the boundaries, for grids their outer edges as they were stored.
 
     It continues after a sample that is not right and raised InputError.
     """
@@ -32,10 +30,7 @@ def read_shapes(source: Source) -> Iterator[Boundary]:
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Return an iterator over the grids; it continues after a sample that is not right.
-
-    Raises InputError: the dataset holds boundaries only, or is not right.
-    """
+    """Return an iterator over the grids; it too continues after a sample that is not right."""
     return map(call, _samples(source, _grid))
 
 
@@ -43,23 +38,20 @@ def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Call
     """Yield functions that read one sample each: what they raise does not end the generator."""
     with checked(source) as data:
         if read is _grid and "nodes" not in data and not data.blocks:
-            raise InputError(
-                "holds boundaries, not grids", "make grids of them first: meshonet solve-pde IN -o OUT.h5"
-            )
+            remedy = "make grids of them first: meshonet solve-pde IN -o OUT.h5"
+            raise InputError("holds boundaries, not grids", remedy)
         if read is _boundary and data.blocks:
-            raise InputError(
-                f"holds grids of {data.blocks} blocks, not boundaries", "give a grid of one block"
-            )
+            problem = f"holds grids of {data.blocks} blocks, not boundaries"
+            raise InputError(problem, "give a grid of one block")
         for k in data.kept(source.split):
             yield partial(read, data, k)
 
 
 def _boundary(data: Checked, k: int) -> Boundary:
     with data.place(k):
-        south, north, west, east = (data.sample(side, k) for side in ("south", "north", "west", "east"))
-        name = data.text("names", k)
-        patches, origin = _patches(data, k), _origin(data, k)
-        return Boundary(south, north, west, east, data.topology, patches, name, origin=origin)
+        edges: dict[str, Any] = {side: data.sample(side, k) for side in SIDES}
+        patches, name, origin = _patches(data, k), data.text("names", k), _origin(data, k)
+        return Boundary(**edges, topology=data.topology, patches=patches, name=name, origin=origin)
 
 
 def _grid(data: Checked, k: int) -> Grid:
@@ -72,16 +64,6 @@ def _grid(data: Checked, k: int) -> Grid:
             blocks = (usable(data.sample(f"blocks/{m}", k)) for m in range(data.blocks))
             return Grid(tuple(map(Block, blocks)), named[0], data.connections, *named[1:])
         return Grid.from_nodes(usable(data.sample("nodes", k)), data.topology, *named)
-
-
-def read_parameters(source: Source) -> tuple[tuple[str, ...], Floats, tuple[str, ...]]:
-    """Return the names (p,), the parameters (n, p) and the split (n,) of a dataset; empty where absent."""
-    with checked(source) as data:
-        count = range(data.count)
-        if "parameters" not in data:
-            return (), np.empty((data.count, 0)), tuple(data.text("split", k) for k in count)
-        rows = np.array([data.sample("parameters", k) for k in count])
-        return data.parameter_names(), rows, tuple(data.text("split", k) for k in count)
 
 
 def _origin(data: Checked, k: int) -> Origin:
@@ -97,9 +79,8 @@ def _patches(data: Checked, k: int) -> tuple[Patch, ...]:
     try:
         return tuple(_patch(*row) for row in json.loads(data.text("parts", k) or "[]"))
     except (ValueError, TypeError, RecursionError):
-        raise InputError(
-            "its parts are not a JSON list of [name, side, start, stop]", "remove the dataset 'parts'"
-        ) from None
+        problem = "its parts are not a JSON list of [name, side, start, stop]"
+        raise InputError(problem, "remove the dataset 'parts'") from None
 
 
 def _patch(

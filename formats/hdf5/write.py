@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, astuple
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -16,7 +16,7 @@ from meshonet.formats.mesh.metadata import plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection
-from meshonet.geometry.blocks.grid import Grid, Origin
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
@@ -32,20 +32,13 @@ Kind = Literal["meshonet-boundary", "meshonet-grid"]
 
 
 class Writer:
-    """A dataset being written; all samples that were appended are in the file when it is left, however it is.
+    """A dataset being written, sample by sample (`writing`).
 
-    Parameters
-    ----------
-    path : file to make.
-    kind : what it will hold.
-    parameter_names : names of the numbers that go with each sample, if any do.
-
-    Raises InputError: when a sample differs from the first one in size or topology.
+    Raises InputError when a sample differs from the first one in size or topology.
     """
 
-    def __init__(self, path: Path, kind: Kind, parameter_names: Sequence[str] = ()) -> None:
-        self._made = created(path)
-        self._file = self._made.__enter__()
+    def __init__(self, file: h5py.File, kind: Kind) -> None:
+        self._file = file
         self._file.attrs.update(format=kind, version=1)
         self._data: dict[str, h5py.Dataset] = {}
         self._shapes: dict[str, tuple[int, ...]] = {}
@@ -53,49 +46,36 @@ class Writer:
         self._bytes = 0
         self._count = 0
         self._first: tuple[str, ...] = ()
-        if parameter_names:
-            self._name_parameters(parameter_names)
 
-    def __enter__(self) -> Writer:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        try:
-            self._flush()
-        finally:
-            self._made.__exit__(kind, error, trace)
-
-    def append(self, sample: Boundary | Grid, *, parameters: Floats | None = None, split: str = "") -> None:
-        """Add one sample.
-
-        Parameters
-        ----------
-        sample : a grid for a file of grids, else a boundary.
-        parameters : (p,) numbers that made it; None for those of its origin.
-        split : ``train``, ``test`` or nothing; that of its origin when empty.
-        """
+    def append(self, sample: Boundary | Grid) -> None:
+        """Add a grid to a file of grids, else a boundary."""
         self._check_size(sample)
         arrays = _arrays_of(sample)
         if self._count == 0 and isinstance(sample, Grid):
-            self._facts(sample.provenance)
-        if parameters is None and sample.origin.parameters:
-            parameters = self._parameters(sample.origin)
-        if parameters is not None:
-            arrays["parameters"] = parameters
-        self._check(arrays)
-        texts = {"names": sample.name, "split": split or sample.origin.split}
+            for key, fact in sample.provenance.items():  # as attributes too, for reading by eye
+                name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
+                simple = isinstance(fact, str | int | float)
+                self._file.attrs[name] = fact if simple else json.dumps(fact, default=plain)
+        if sample.origin.parameters:
+            names, numbers = zip(*sample.origin.parameters, strict=True)
+            arrays["parameters"] = np.array(numbers)
+            if self._count == 0:
+                self._shapes["parameters"] = (len(names),)
+                self._row("parameters").attrs["names"] = names
+        for name, values in arrays.items():
+            shape = self._shapes.setdefault(name, values.shape)
+            if values.shape != shape:
+                problem = f"{name} of sample {self._count} has shape {values.shape}"
+                raise InputError(problem, f"the first has {shape}")
+        texts = {"names": sample.name, "split": sample.origin.split}
         texts["parts"] = json.dumps([_row_of(patch, _is_of_blocks(sample)) for patch in sample.patches])
         if isinstance(sample, Grid) and sample.provenance:
             texts["provenance"] = json.dumps(sample.provenance, default=plain)
-        for name, values in arrays.items():
-            self._hold(name, values)
-        for name, text in texts.items():
-            self._hold(name, text)
+        for name, entry in (arrays | texts).items():
+            self._hold(name, entry)
         self._count += 1
         if self._bytes >= BLOCK:
-            self._flush()
+            self.flush()
 
     def _check_size(self, sample: Boundary | Grid) -> None:
         """Raise InputError when a sample is not as the first one, which the file's attributes describe."""
@@ -113,23 +93,6 @@ class Writer:
                 "one dataset has one size and topology: set {res} and {topology}, or write one file each",
             )
 
-    def _parameters(self, origin: Origin) -> Floats:
-        """Return the numbers of a sample; the first one's names are those of the dataset."""
-        if "parameters" not in self._data and self._count == 0:
-            self._name_parameters([name for name, _ in origin.parameters])
-        return np.array([value for _, value in origin.parameters])
-
-    def _name_parameters(self, names: Sequence[str]) -> None:
-        self._shapes["parameters"] = (len(names),)
-        self._row("parameters").attrs["names"] = list(names)
-
-    def _check(self, arrays: Mapping[str, Floats]) -> None:
-        for name, values in arrays.items():
-            shape = self._shapes.setdefault(name, values.shape)
-            if values.shape != shape:
-                problem = f"{name} of sample {self._count} has shape {values.shape}"
-                raise InputError(problem, f"the first has {shape}")
-
     def _hold(self, name: str, value: Floats | str) -> None:
         """Keep the entry of this sample for the next block; a text of nothing has none."""
         if isinstance(value, str):
@@ -141,7 +104,8 @@ class Writer:
             self._bytes += value.nbytes
         self._held.setdefault(name, []).append((self._count, value))
 
-    def _flush(self) -> None:
+    def flush(self) -> None:
+        """Write what is held back."""
         held, self._held, self._bytes = self._held, {}, 0
         for name, entries in held.items():
             data = self._row(name)
@@ -158,19 +122,20 @@ class Writer:
             text, shape = name in TEXTS, self._shapes.get(name, ())
             some = 64 if text else max(1, CHUNK // max(8 * int(np.prod(shape)), 1))
             kind: Any = h5py.string_dtype() if text else "f8"
-            most = (None, *shape)
-            self._data[name] = self._file.create_dataset(
-                name, (0, *shape), kind, maxshape=most, chunks=(some, *shape)
-            )
+            size = {"maxshape": (None, *shape), "chunks": (some, *shape)}
+            self._data[name] = self._file.create_dataset(name, (0, *shape), kind, **size)
         return self._data[name]
 
-    def _facts(self, facts: Mapping[str, Any]) -> None:
-        """Repeat the first sample's provenance as attributes of the file."""
-        for key, value in facts.items():
-            name = f"meshonet_{key}" if key in ("format", "version", "topology") else key
-            self._file.attrs[name] = (
-                value if isinstance(value, str | int | float) else json.dumps(value, default=plain)
-            )
+
+@contextlib.contextmanager
+def writing(path: Path, kind: Kind) -> Iterator[Writer]:
+    """Give the writer of a new dataset; what was appended is in the file however the block is left."""
+    with created(path) as file:
+        writer = Writer(file, kind)
+        try:
+            yield writer
+        finally:
+            writer.flush()
 
 
 def write_boundaries(path: Path, boundaries: Iterable[Boundary]) -> None:
@@ -184,8 +149,8 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
 
 
 def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
-    with Writer(path, kind) as writer:
-        empty = True
+    empty = True
+    with writing(path, kind) as writer:
         for sample in samples:
             writer.append(sample)
             empty = False

@@ -17,9 +17,7 @@ from meshonet.geometry.shapes.outline import Outline
 def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outline | Airfoil:
     """Return the airfoil or the outline through `points` (n, 2), repeated neighbours left out.
 
-    Parameters
-    ----------
-    places : (n,) where each point stands in its source, for messages.
+    `places` says where each point stands in its source, for messages.
     """
     keep = np.concatenate([[True], (np.diff(points, axis=0) != 0).any(axis=1)])
     if len(points) > 1 and np.array_equal(points[0], points[-1]):
@@ -33,10 +31,7 @@ def closed_curve(points: Floats, name: str, places: Sequence[str] = ()) -> Outli
 
 
 def _ends_in_one_edge(points: Floats) -> bool:
-    """Say whether a curve (n, 2) looks like an airfoil: slender, its corners all at one end of its length.
-
-    One corner that turns by more than 90 degrees, or the two of a base.
-    """
+    """Say whether a curve (n, 2) is slender, one corner or the two of a base at one end of its length."""
     if len(points) < 10:
         return False
     turn = np.abs(turning(points, closed=True))

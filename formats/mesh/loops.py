@@ -14,13 +14,7 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True)
 class Loop:
-    """A closed curve.
-
-    Parameters
-    ----------
-    nodes : (n,) point numbers, in order; the last one is joined to the first.
-    names : (n,) name of the edge behind each.
-    """
+    """A closed curve: point numbers (n,) in order, the last one joined to the first, and each edge's name."""
 
     nodes: Indices
     names: tuple[str, ...]
@@ -40,12 +34,7 @@ class Loop:
 
 
 def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[Loop]:
-    """Return the closed curves of named edges, each from its first edge on and in its direction.
-
-    Parameters
-    ----------
-    edges : (k, 2) point numbers by name.
-    points : (n, 2), for messages.
+    """Return the closed curves of named edges (k, 2), each from its first edge on and in its direction.
 
     Raises InputError: a point where one edge ends, or more than two meet.
     """
@@ -55,11 +44,8 @@ def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[Loop]:
     for node in np.flatnonzero((met != 0) & (met != 2))[:1]:
         x, y = points[node]
         problem = "one edge ends" if met[node] == 1 else f"{met[node]} edges meet"
-        raise InputError(
-            f"{problem} at ({x:.6g}, {y:.6g})",
-            "the boundary has to consist of closed curves",
-            place="boundary",
-        )
+        remedy = "the boundary has to consist of closed curves"
+        raise InputError(f"{problem} at ({x:.6g}, {y:.6g})", remedy, place="boundary")
     order = np.argsort(ends.ravel(), kind="stable")
     twin = np.empty(len(order), np.int64)  # the other place where the same point stands
     twin[order[0::2]], twin[order[1::2]] = order[1::2], order[0::2]

@@ -31,11 +31,7 @@ def facts_of(grid: Grid) -> dict[str, list[str]]:
 def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "") -> Grid:
     """Return the grid of `nodes` (ni, nj, 2) and the facts of its file; without a topology it is recovered.
 
-    Parameters
-    ----------
-    nodes : as in the file.
-    facts : by name, as `facts_of` makes them; other names are passed over.
-    name : what to call the grid when the facts do not say.
+    `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
     """
     name = printable(facts["name"][0]) if facts.get("name") else name
     if not facts.get("topology"):
@@ -46,9 +42,8 @@ def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "")
     except (ValueError, RecursionError):
         provenance = {}
     topology = known_topology(facts["topology"][0])
-    return Grid.from_nodes(
-        usable(nodes), topology, parts, name, provenance if isinstance(provenance, dict) else {}
-    )
+    provenance = provenance if isinstance(provenance, dict) else {}
+    return Grid.from_nodes(usable(nodes), topology, parts, name, provenance)
 
 
 def plain(value: object) -> object:
@@ -61,7 +56,6 @@ def _part(text: str) -> Patch:
     try:
         side, start, stop, name = words[0], int(words[1]), int(words[2]), words[3]
     except (ValueError, IndexError):
-        raise InputError(
-            f"part {text[:60]!r} is not 'side start stop name'", "remove the field 'parts'"
-        ) from None
+        problem = f"part {text[:60]!r} is not 'side start stop name'"
+        raise InputError(problem, "remove the field 'parts'") from None
     return Patch(printable(name), side, start, stop)

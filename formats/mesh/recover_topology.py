@@ -21,16 +21,8 @@ def boundary_of(grid: Grid) -> Boundary:
     Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point.
     """
     nodes = grid.nodes
-    return Boundary(
-        south=nodes[:, 0],
-        north=nodes[:, -1],
-        west=nodes[0],
-        east=nodes[-1],
-        topology=grid.topology,
-        patches=grid.patches,
-        name=grid.name,
-        origin=grid.origin,
-    )
+    edges = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
+    return Boundary(*edges, grid.topology, grid.patches, grid.name, origin=grid.origin)
 
 
 def recovered(nodes: Floats, name: str = "") -> Grid:
@@ -39,13 +31,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
     Left-handed nodes get i reversed. Columns 0 and ni-1 that are the same, to a millionth of the first
     step, make an O grid; rows 0 and nj-1 that are the same too, once turned by a quarter so that i runs
     around. The smaller of the two loops is the body and becomes the south side. A side that comes back
-    along its own first nodes becomes the south side of a C grid.
-
-    Parameters
-    ----------
-    nodes : (ni, nj, 2).
-
-    Raises InputError: a coordinate is not finite, or so large that areas are not.
+    along its own first nodes becomes the south side of a C grid. `nodes` are (ni, nj, 2), and `usable`.
     """
     nodes = right_handed(usable(nodes))
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):
@@ -72,10 +58,8 @@ def usable(nodes: Floats) -> Floats:
     if not -LARGEST < nodes.min() <= nodes.max() < LARGEST:  # NaN passes through min and compares false
         place = tuple(np.argwhere(~(np.abs(nodes) < LARGEST))[0].tolist())
         node = ", ".join(f"{name}={k}" for name, k in zip("ijk", place[:-1], strict=False))
-        raise InputError(
-            f"node {node} has {'xyz'[place[-1]]} = {nodes[place]:.6g}",
-            "check the file for wrong numbers",
-        )
+        problem = f"node {node} has {'xyz'[place[-1]]} = {nodes[place]:.6g}"
+        raise InputError(problem, "check the file for wrong numbers")
     return nodes
 
 
@@ -89,10 +73,7 @@ def right_handed(nodes: Floats) -> Floats:
 
 
 def known_topology(text: str) -> Topology:
-    """Return `text` as a topology.
-
-    Raises InputError: it is none.
-    """
+    """Return `text` as a topology; InputError where it is none."""
     for topology in TOPOLOGIES:
         if text == topology:
             return topology

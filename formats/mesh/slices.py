@@ -18,9 +18,7 @@ _ROWS = 16
 def planar(coordinates: Sequence[Floats]) -> Floats:
     """Return nodes (ni, nj, 2) of a plane grid, the constant index and the constant coordinate dropped.
 
-    Parameters
-    ----------
-    coordinates : x, y[, z], each (n1, n2, n3), any unit; memory order does not matter.
+    `coordinates` are x, y[, z], each (n1, n2, n3), any unit; memory order does not matter.
 
     Raises InputError: the grid is truly three-dimensional, or its plane is curved.
     """
@@ -34,9 +32,8 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
     for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
         first = [_plane(c, axis, 0) for c in coordinates]
         if min(first[0].shape) < 2:
-            raise InputError(
-                f"a grid of {counts} nodes has no cells", "give at least 2 nodes in two directions"
-            )
+            problem = f"a grid of {counts} nodes has no cells"
+            raise InputError(problem, "give at least 2 nodes in two directions")
         if dims[axis] == 1:
             return _nodes(_without_constant(first, counts))
         kept = list(range(len(coordinates)))
@@ -46,10 +43,8 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
             kept = _unshifted(first, [_plane(c, axis, index) for c in coordinates], kept)
         if kept:
             return _nodes([first[k] for k in kept])
-    raise InputError(
-        f"a grid of {counts} nodes is three-dimensional",
-        "give a plane one: one plane, or copies of one, in some direction",
-    )
+    remedy = "give a plane one: one plane, or copies of one, in some direction"
+    raise InputError(f"a grid of {counts} nodes is three-dimensional", remedy)
 
 
 def _plane(values: Floats, axis: int, index: int) -> Floats:
@@ -78,19 +73,13 @@ def _without_constant(plane: list[Floats], counts: str) -> list[Floats]:
     spans = [float(np.ptp(c)) for c in plane]
     flat = [k for k in (2, 1, 0) if not spans[k] > _SAME * max(spans)]
     if not flat:
-        raise InputError(
-            f"the {counts} nodes lie on a curved or tilted surface", "give a grid in a coordinate plane"
-        )
+        problem = f"the {counts} nodes lie on a curved or tilted surface"
+        raise InputError(problem, "give a grid in a coordinate plane")
     return [c for k, c in enumerate(plane) if k != flat[0]]
 
 
 def _unshifted(first: list[Floats], next_plane: list[Floats], among: list[int]) -> list[int]:
-    """Return the two coordinates in which two planes agree when the third only steps; else nothing.
-
-    Parameters
-    ----------
-    among : the coordinates in which earlier planes agreed; all of them at first, nothing once they differed.
-    """
+    """Return the two coordinates, `among` those in which earlier planes agreed, that two planes share."""
     size = max(float(np.ptp(c)) for c in first)
     for k in (2, 1, 0):
         kept = [m for m in range(len(first)) if m != k]

@@ -13,7 +13,6 @@ import numpy as np
 
 from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.mesh.loops import Loop, closed_loops
-from meshonet.formats.mesh.quad_strips import line_across
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
@@ -32,11 +31,10 @@ MOST_EDGES = 400_000
 
 @dataclass(frozen=True)
 class Surface:
-    """What a mesh says of its boundary.
+    """What a mesh of points (n, 2) says of its boundary.
 
     Parameters
     ----------
-    points : (n, 2).
     edges : (k, 2) point numbers by name; an empty name stands for none. Without any, those edges count that
         one cell alone has.
     cells : (m, 3 or 4) point numbers, kind by kind.
@@ -88,9 +86,7 @@ def _nested(loops: list[Loop], points: Floats) -> tuple[Loop, Loop] | None:
     """Return (inner, outer), both clockwise, of two curves of which one lies in the box of the other."""
     inner, outer = sorted(loops, key=lambda loop: abs(polygon_area(points[loop.nodes])))
     within, around = points[inner.nodes], points[outer.nodes]
-    if not (
-        (within.min(axis=0) > around.min(axis=0)).all() and (within.max(axis=0) < around.max(axis=0)).all()
-    ):
+    if (within.min(axis=0) <= around.min(axis=0)).any() or (within.max(axis=0) >= around.max(axis=0)).any():
         return None
     turned = [loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop for loop in (inner, outer)]
     return turned[0], turned[1]
@@ -113,8 +109,40 @@ def _cut(inner: Loop, outer: Loop, surface: Surface) -> list[int]:
     """Return the nodes from the first of `inner` to the far field along the cells, where they lead there."""
     if len(surface.cells) != 1 or surface.cells[0].shape[1] != 4:
         return []
-    cut = line_across(surface.cells[0], int(inner.nodes[0]), len(surface.points))
+    cut = _line_across(surface.cells[0], int(inner.nodes[0]), len(surface.points))
     return cut if cut and cut[-1] in outer.nodes else []
+
+
+def _line_across(quads: Indices, start: int, count: int) -> list[int]:
+    """Return the nodes from boundary node `start` straight across to the other boundary, or nothing.
+
+    Straight on means, where four of the `quads` (m, 4) meet, into the edge that has no cell in common with
+    the one come from. `count` is that of all nodes.
+    """
+    order = np.argsort(quads.ravel(), kind="stable") // 4
+    begin = np.concatenate([[0], np.cumsum(np.bincount(quads.ravel(), minlength=count))])
+
+    def around(node: int) -> list[list[int]]:
+        return quads[order[begin[node] : begin[node + 1]]].tolist()
+
+    def beside(node: int, cell: list[int]) -> tuple[int, int]:
+        at = cell.index(node)
+        return cell[at - 1], cell[(at + 1) % 4]
+
+    line, cells = [start], around(start)
+    if len(cells) != 2:
+        return []
+    shared = set(beside(start, cells[0])) & set(beside(start, cells[1]))
+    while len(shared) == 1 and len(line) <= count:
+        line.append(shared.pop())
+        cells = around(line[-1])
+        if len(cells) == 2:
+            return line
+        ahead = [cell for cell in cells if line[-2] not in cell]
+        if len(cells) != 4 or len(ahead) != 2:
+            return []
+        shared = set(beside(line[-1], ahead[0])) & set(beside(line[-1], ahead[1]))
+    return []
 
 
 def _o_parts(inner: Loop, outer: Loop) -> tuple[Patch, ...]:
@@ -169,10 +197,7 @@ def _labelled(shape: Shape, loops: list[Loop], points: Floats) -> Shape:
 
 
 def flat(points: Floats) -> Floats:
-    """Return x and y (n, 2) of points (n, 2 or 3) that lie in a plane z = constant.
-
-    Raises InputError: they do not.
-    """
+    """Return x, y (n, 2) of points (n, 2 or 3); InputError where they lie in no plane z = constant."""
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]
         if not np.ptp(z) <= 1e-6 * max(float(np.ptp(points[:, :2])), 1e-300):

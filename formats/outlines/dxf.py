@@ -56,9 +56,8 @@ def read_shapes(source: Source) -> Iterator[Shape]:
         raise
     except Exception as error:  # whatever a damaged drawing makes of it
         reason = printable(str(error).split("\n")[0])[:100] or type(error).__name__
-        raise InputError(
-            f"is no DXF drawing that can be read ({reason})", "save it again as ASCII DXF"
-        ) from None
+        problem = f"is no DXF drawing that can be read ({reason})"
+        raise InputError(problem, "save it again as ASCII DXF") from None
     if not lines:
         raise InputError("has no curves in its model space", "draw lines, polylines, arcs or splines")
     yield from shapes_of(_joined(lines), source.stem)
@@ -66,18 +65,19 @@ def read_shapes(source: Source) -> Iterator[Shape]:
 
 def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     """Return layer and points (n, 2) of each curve, chords in place of what is curved."""
-    corners = [np.array([(v.x, v.y) for v in curve.control_vertices()]) for _, curve in curves if len(curve)]
-    if not corners:
+    curves = [(layer, curve) for layer, curve in curves if len(curve)]
+    if not curves:
         return []
-    every = np.concatenate(corners)
+    every = np.array([(v.x, v.y) for _, curve in curves for v in curve.control_vertices()])
     extent = float(np.ptp(every, axis=0).max())
     if not (np.abs(every) < LARGEST).all() or extent == 0:
         raise InputError("its curves have no size, or one that is not finite", "check the drawing")
     lines, count = [], 0
     for layer, curve in curves:
-        if not len(curve):
-            continue
-        points = np.array([(v.x, v.y) for v in _chords(curve, extent)])
+        chords = curve.control_vertices()
+        if curve.has_curves:
+            chords = curve.flattening(_SAG * extent, segments=16)
+        points = np.array([(v.x, v.y) for v in chords])
         keep = np.append(True, (np.diff(points, axis=0) != 0).any(axis=1))
         count += len(points)
         if count > MOST_EDGES:
@@ -87,16 +87,13 @@ def _lines(curves: list[tuple[str, Any]]) -> list[tuple[str, Floats]]:
     return lines
 
 
-def _chords(curve: Any, extent: float) -> Any:
-    return curve.flattening(_SAG * extent, segments=16) if curve.has_curves else curve.control_vertices()
-
-
 def _joined(lines: list[tuple[str, Floats]]) -> Surface:
     """Return the curves as edges between points, ends that meet being one point."""
     points = np.concatenate([line for _, line in lines])
     reach = _MEET * float(np.ptp(points, axis=0).max())
-    stops = np.cumsum([len(line) for _, line in lines])
-    starts = stops - [len(line) for _, line in lines]
+    counts = [len(line) for _, line in lines]
+    stops = np.cumsum(counts)
+    starts = stops - counts
     same = np.arange(len(points))
     ends = np.concatenate([starts, stops - 1])
     order = ends[np.argsort(points[ends, 0], kind="stable")].tolist()

@@ -48,25 +48,17 @@ def read_geojson(source: Source) -> Iterator[Shape]:
         features = _features(json.loads(_text(source)))
     except (ValueError, RecursionError) as error:
         raise InputError(f"is not JSON ({_short(error)})", "give a GeoJSON file") from None
-    found: list[tuple[str, str, BaseGeometry]] = []
+    shapes: list[tuple[str, str, BaseGeometry]] = []
     for number, (name, geometry) in enumerate(features, start=1):
         place = f"feature {number}" if len(features) > 1 else ""
         if not isinstance(geometry, dict) or not isinstance(geometry.get("type"), str):
             raise InputError("is not a GeoJSON geometry (it names no type)", _ASK, place=place)
         try:
             with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
-                found.append((name or source.stem, place, shape(geometry)))
-        except (
-            ShapelyError,
-            ValueError,
-            TypeError,
-            KeyError,
-            AttributeError,
-            IndexError,
-            RecursionError,
-        ) as error:
+                shapes.append((name or source.stem, place, shape(geometry)))
+        except (ShapelyError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
             raise InputError(f"is not a GeoJSON geometry ({_short(error)})", _ASK, place=place) from None
-    yield from _named(found)
+    yield from _named(shapes)
 
 
 def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
@@ -74,7 +66,7 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
     from shapely import from_wkt
     from shapely.errors import ShapelyError
 
-    found: list[tuple[str, BaseGeometry]] = []
+    geometries: list[tuple[str, BaseGeometry]] = []
     with np.errstate(all="ignore"):  # shapely lets numpy warn of NaN and infinity; they are refused later
         try:
             return [("", from_wkt(text))]
@@ -84,15 +76,17 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
             if not line.strip() or line.lstrip().startswith("#"):
                 continue
             try:
-                found.append((f"line {number}", from_wkt(line)))
+                geometries.append((f"line {number}", from_wkt(line)))
             except ShapelyError as error:
                 raise InputError(f"is not WKT ({_short(error)})", _ASK, place=f"line {number}") from None
-    return found
+    return geometries
 
 
-def _named(found: list[tuple[str, str, BaseGeometry]]) -> Iterator[Shape]:
+def _named(geometries: list[tuple[str, str, BaseGeometry]]) -> Iterator[Shape]:
     """Yield the outlines of (name, place, geometry), numbered where several share a name."""
-    shapes = [(name, place, rings) for name, place, geometry in found for rings in _rings(geometry, place)]
+    shapes = [
+        (name, place, rings) for name, place, geometry in geometries for rings in _rings(geometry, place)
+    ]
     if not shapes:
         raise InputError("holds no geometry", _ASK)
     names = [name for name, _, _ in shapes]
@@ -131,11 +125,8 @@ def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
         raise InputError(f"has an empty {kind} or a {kind}, which is no outline", _ASK, place=place)
     holes = list(geometry.interiors) if kind == "Polygon" else []
     if len(holes) > 1:
-        raise InputError(
-            f"polygon has {len(holes)} holes",
-            "give one hole, which is a body in its far field, or each ring by itself",
-            place=place,
-        )
+        remedy = "give one hole, which is a body in its far field, or each ring by itself"
+        raise InputError(f"polygon has {len(holes)} holes", remedy, place=place)
     ring = geometry.exterior if kind == "Polygon" else geometry
     if ring.coords[0] != ring.coords[-1]:
         raise InputError("line is not closed", "repeat its first point at its end", place=place)

@@ -55,20 +55,16 @@ def _fitting(stream: bytes, order: str, numbers: str, records: int, tried: list[
 
     fitting = []
     for layout, size in itertools.product(layouts(integer), (8, 4)):
-        length = 4 * layout.header + layout.nodes * (size * layout.axes + 4 * int(layout.iblank))
-        if length == len(stream):
-            dtype = np.dtype(f"{order}f{size}")
-            fitting.append(
-                _candidate(layout, stream, dtype, f"{numbers}, {_NAMES[order]}, float{8 * size}", records)
-            )
+        if layout.length(size, 4) == len(stream):
+            words = f"{numbers}, {_NAMES[order]}, float{8 * size}"
+            fitting.append(_candidate(layout, stream, np.dtype(f"{order}f{size}"), words, records))
         elif 2 <= max(map(max, layout.dims)) <= 100_000 and not layout.iblank and size == 8:
             tried.append("x".join(map(str, layout.dims[0])))
     return fitting
 
 
 def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], numbers: str, records: int) -> Candidate:
-    sizes = [prod(dims) * (layout.axes * dtype.itemsize + 4 * int(layout.iblank)) for dims in layout.dims]
-    starts = list(itertools.accumulate(sizes, initial=4 * layout.header))
+    starts = layout.starts(dtype.itemsize, 4)
     # one record a plane, x y z of each plane together: the "planes" form, which matters for two planes
     headers = 2 if layout.counted else 1
     by_planes = layout.axes == 3 and len(layout.dims) == 1 and layout.dims[0][2] == 2 == records - headers
@@ -76,11 +72,9 @@ def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], numbers: str
     def block(k: int) -> Sequence[Floats]:
         nodes, at = prod(layout.dims[k]), starts[k]
         values: NDArray[Any] = np.frombuffer(stream, dtype, layout.axes * nodes, at)
-        rows = (
-            values.reshape(2, 3, -1).swapaxes(0, 1).reshape(3, -1)
-            if by_planes
-            else values.reshape(layout.axes, -1)
-        )
+        rows = values.reshape(layout.axes, -1)
+        if by_planes:
+            rows = values.reshape(2, 3, -1).swapaxes(0, 1).reshape(3, -1)
         with np.errstate(invalid="ignore"):  # a wrong reading meets signalling NaN
             arrays = list(rows.astype(np.float64))
         if layout.iblank:

@@ -28,15 +28,7 @@ _MOST_FLAGS = 1000
 
 @dataclass(frozen=True)
 class Layout:
-    """One way to read a file.
-
-    Parameters
-    ----------
-    counted : whether the number of blocks stands first.
-    axes : 2 or 3, numbers in each block's dims and coordinate arrays.
-    iblank : whether an integer a node follows the coordinates.
-    dims : of every block.
-    """
+    """One way to read a file: whether a count stands first, 2 or 3 axes, whether iblank follows, all dims."""
 
     counted: bool
     axes: int
@@ -48,10 +40,16 @@ class Layout:
         """Integers before the first coordinate."""
         return int(self.counted) + self.axes * len(self.dims)
 
-    @property
-    def nodes(self) -> int:
-        """Nodes of all blocks."""
-        return sum(prod(dims) for dims in self.dims)
+    def starts(self, real: int = 1, integer: int = 1) -> list[int]:
+        """Return where each block starts and the last one ends, of numbers of these sizes."""
+        node = self.axes * real + integer * int(self.iblank)
+        return list(
+            itertools.accumulate((node * prod(dims) for dims in self.dims), initial=integer * self.header)
+        )
+
+    def length(self, real: int = 1, integer: int = 1) -> int:
+        """Return the length of the file, of numbers of these sizes."""
+        return self.starts(real, integer)[-1]
 
 
 def layouts(integer: Header) -> Iterator[Layout]:
@@ -83,10 +81,8 @@ class Candidate:
 
     Parameters
     ----------
-    layout : the layout.
     arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
-    numbers : the number type and byte order, for messages.
-    kind : options of the format for these.
+    numbers, kind : the number type and byte order, for messages and as options of the format.
     """
 
     layout: Layout
@@ -97,13 +93,8 @@ class Candidate:
     @property
     def traits(self) -> frozenset[str]:
         """The options of the format that describe it."""
-        layout = self.layout
-        words = {
-            "multi" if layout.counted else "single",
-            f"{layout.axes}d",
-            "iblank" if layout.iblank else "no-iblank",
-        }
-        return self.kind | words
+        count = "multi" if self.layout.counted else "single"
+        return self.kind | {count, f"{self.layout.axes}d", "iblank" if self.layout.iblank else "no-iblank"}
 
     def iblank(self, block: int) -> dict[str, int]:
         """Return how many nodes of a block have which value, nothing where there is no iblank array."""
@@ -111,16 +102,12 @@ class Candidate:
             return {}
         values, counts = np.unique(self.arrays(block)[-1], return_counts=True)
         if len(values) > _MOST_FLAGS:
-            raise InputError(
-                f"iblank has {len(values)} different values", "write 0, 1, 2 or numbers of blocks"
-            )
+            problem = f"iblank has {len(values)} different values"
+            raise InputError(problem, "write 0, 1, 2 or numbers of blocks")
         return {f"{value:.0f}": int(count) for value, count in zip(values, counts, strict=True)}
 
     def plane(self, block: int) -> Floats:
-        """Return nodes (ni, nj, 2) of a block.
-
-        Raises InputError: the block is not plane.
-        """
+        """Return nodes (ni, nj, 2) of a block; InputError where it is not plane."""
         dims = (*self.layout.dims[block], 1)[:3]
         arrays = self.arrays(block)[: self.layout.axes]
         return planar([np.asarray(values).reshape(dims, order="F") for values in arrays])

@@ -25,14 +25,8 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
     """Yield the grid of every block, right-handed, its topology recovered from its nodes.
 
-    Where there is an iblank array, the provenance says how many nodes have which value.
-
-    Parameters
-    ----------
-    options : what is known of the layout; the rest is found out.
-
-    Raises InputError: no layout fits the file's length, or none that is as told; a block is three-
-    dimensional.
+    Where there is an iblank array, the provenance says how many nodes have which value. `options` say what
+    is known of the layout. Raises InputError where none fits the file's length, or a block is not plane.
     """
     data = source.read_bytes()
     every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)
@@ -52,10 +46,8 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
 
 def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:
     fitting = " or ".join(" ".join(sorted(candidate.traits)) for candidate in every[:3])
-    raise InputError(
-        f"is not {' '.join(sorted(wanted))}: it fits {fitting}",
-        "correct or leave out the options",
-    )
+    problem = f"is not {' '.join(sorted(wanted))}: it fits {fitting}"
+    raise InputError(problem, "correct or leave out the options")
 
 
 def sniff(head: bytes) -> bool:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from math import prod
 
 import numpy as np
 
@@ -32,24 +31,19 @@ def candidates(data: bytes) -> list[Candidate]:
         return int(number) if number.is_integer() and abs(number) < _MOST_NODES else None
 
     tried = list(layouts(integer))
-    fitting = [layout for layout in tried if _length(layout) == len(values)]
+    fitting = [layout for layout in tried if layout.length() == len(values)]
     if not fitting:
         raise _misfit(tried, len(values))
     return [_candidate(layout, values) for layout in fitting]
 
 
 def _candidate(layout: Layout, values: Floats) -> Candidate:
-    arrays = layout.axes + int(layout.iblank)
-    starts = np.cumsum([layout.header, *(arrays * prod(dims) for dims in layout.dims)])
+    starts = layout.starts()
 
     def block(k: int) -> Sequence[Floats]:
-        return list(values[starts[k] : starts[k + 1]].reshape(arrays, -1))
+        return list(values[starts[k] : starts[k + 1]].reshape(layout.axes + int(layout.iblank), -1))
 
     return Candidate(layout, block, "ASCII", frozenset({"ascii", "whole"}))
-
-
-def _length(layout: Layout) -> int:
-    return layout.header + layout.nodes * (layout.axes + int(layout.iblank))
 
 
 def _misfit(tried: list[Layout], found: int) -> InputError:
@@ -58,21 +52,17 @@ def _misfit(tried: list[Layout], found: int) -> InputError:
             "does not start with the dims of a Plot3D grid",
             "start it with [count of blocks] ni nj [nk], or name another format with {from_format}",
         )
-    near = min(
-        (layout for layout in tried if not layout.iblank), key=lambda layout: abs(_length(layout) - found)
-    )
+    plain = (layout for layout in tried if not layout.iblank)
+    near = min(plain, key=lambda layout: abs(layout.length() - found))
     dims = ", ".join("x".join(map(str, dims)) for dims in near.dims[:3])
     return InputError(
-        f"has {found} numbers and no Plot3D layout fits (nearest: dims {dims}, {_length(near)} numbers)",
+        f"has {found} numbers and no Plot3D layout fits (nearest: dims {dims}, {near.length()} numbers)",
         "the file is cut short or its dims are wrong: write it again",
     )
 
 
 def _numbers(data: bytes) -> Floats:
-    """Return every number of the file, repeats expanded.
-
-    The usual spelling is parsed in one go; only what that refuses is looked at word by word.
-    """
+    """Return every number of the file, repeats expanded; unusual spellings are read word by word."""
     plain = data.translate(_FREE_FORMAT)
     counts = None
     if b"*" in plain:

@@ -21,16 +21,9 @@ _LINE = 4
 
 
 class Block:
-    """One grid as Plot3D stores it: dims, and x, y[, z] with the first index fastest.
+    """One grid as Plot3D stores it: dims, and x, y[, z] the first index fastest; no heights, no z."""
 
-    Parameters
-    ----------
-    grid : the grid.
-    heights : z of each plane; none of them makes a two-dimensional block without z.
-    options : which index runs in z, whether there is an iblank array.
-    """
-
-    def __init__(self, grid: Grid, heights: tuple[float, ...], options: Options) -> None:
+    def __init__(self, grid: Grid, heights: Heights, options: Options) -> None:
         self.grid, self.heights, self.iblank = grid, heights, "iblank" in options
         self._span = 0 if "span-i" in options else 1 if "span-j" in options else 2
         dims = [grid.ni, grid.nj]
@@ -40,20 +33,15 @@ class Block:
 
     def arrays(self) -> Iterator[Floats]:
         """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
-        planes = max(1, len(self.heights))
         for axis in (0, 1):
-            flat = self.grid.nodes[..., axis].ravel(order="F")
-            yield flat if planes == 1 else self._repeated(flat)
+            plane = self.grid.nodes[..., axis]
+            if len(self.heights) > 1:
+                plane = np.broadcast_to(np.expand_dims(plane, self._span), self.dims)
+            yield plane.ravel(order="F")
         if self.heights:
             shape = [1, 1, 1]
-            shape[self._span] = planes
+            shape[self._span] = len(self.heights)
             yield np.broadcast_to(np.array(self.heights).reshape(shape), self.dims).ravel(order="F")
-
-    def _repeated(self, flat: Floats) -> Floats:
-        if self._span == 2:
-            return np.tile(flat, len(self.heights))
-        plane = np.expand_dims(flat.reshape((self.grid.ni, self.grid.nj), order="F"), self._span)
-        return np.broadcast_to(plane, self.dims).ravel(order="F")
 
     @property
     def nodes(self) -> int:
@@ -77,13 +65,11 @@ def write_grids(
     if not blocks:
         raise InputError("there is no grid to write", "check the input")
     if "single" in options and len(blocks) > 1:
-        raise InputError(
-            f"{len(blocks)} grids do not fit in a file without a count", "leave out the word single"
-        )
-    put = {"ascii": _put_text, "binary": _put_binary, "fortran": _put_fortran}
-    kind = next((kind for kind in put if kind in options), "ascii")
+        problem = f"{len(blocks)} grids do not fit in a file without a count"
+        raise InputError(problem, "leave out the word single")
+    put = _put_bytes if options & {"binary", "fortran"} else _put_text
     with path.open("wb") as stream:
-        put[kind](stream, blocks, options)
+        put(stream, blocks, options)
 
 
 def _put_text(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
@@ -105,30 +91,26 @@ def _put_lines(stream: BinaryIO, field: str, values: NDArray[Any]) -> None:
             write_rows(stream, " ".join([field] * width), part.reshape(-1, width))
 
 
-def _put_binary(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
-    """Write C binary."""
-    for record in _head(blocks, options):
-        stream.write(record)
-    for block in blocks:
-        for data in _body(block, options):
-            stream.write(data)
+def _put_bytes(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
+    """Write C binary, or Fortran records: count, dims, one record a block, each between its length twice."""
+    framed = "fortran" in options
 
+    def frame(size: int) -> bytes:
+        return struct.pack(_order(options) + "i", size) if framed else b""
 
-def _put_fortran(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:
-    """Write Fortran records: count, dims, one record a block."""
-    word = struct.Struct(_order(options) + "i")
     for record in _head(blocks, options):
-        stream.write(word.pack(len(record)) + record + word.pack(len(record)))
+        stream.write(frame(len(record)) + record + frame(len(record)))
     for block in blocks:
         size = block.nodes * (len(block.dims) * _real(options).itemsize + 4 * int(block.iblank))
-        if size >= 1 << 31:
-            raise InputError(
-                "a block of 2 GiB or more does not fit in a Fortran record", "write it as plot3d:binary"
-            )
-        stream.write(word.pack(size))
-        for data in _body(block, options):
-            stream.write(data)
-        stream.write(word.pack(size))
+        if framed and size >= 1 << 31:
+            problem = "a block of 2 GiB or more does not fit in a Fortran record"
+            raise InputError(problem, "write it as plot3d:binary")
+        stream.write(frame(size))
+        for values in block.arrays():
+            stream.write(values.astype(_real(options), copy=False).data)
+        if block.iblank:
+            stream.write(np.ones(block.nodes, _order(options) + "i4").data)
+        stream.write(frame(size))
 
 
 def _head(blocks: Sequence[Block], options: Options) -> Iterator[bytes]:
@@ -137,14 +119,6 @@ def _head(blocks: Sequence[Block], options: Options) -> Iterator[bytes]:
     if "single" not in options:
         yield struct.pack(f"{_order(options)}i", len(blocks))
     yield struct.pack(f"{_order(options)}{len(sizes)}i", *sizes)
-
-
-def _body(block: Block, options: Options) -> Iterator[memoryview]:
-    """Yield the coordinates and iblank of a block."""
-    for values in block.arrays():
-        yield values.astype(_real(options), copy=False).data
-    if block.iblank:
-        yield np.ones(block.nodes, _order(options) + "i4").data
 
 
 def _order(options: Options) -> str:

@@ -26,24 +26,13 @@ _ASK = "give an airfoil as lines of x y from the trailing edge round to it again
 
 
 def read_shapes(source: Source) -> Iterator[Airfoil]:
-    """Yield the airfoil of a file.
-
-    Raises InputError: no airfoil in it, with the line where there is one to name.
-    """
+    """Yield the airfoil of a file; InputError, with its line, where there is none."""
     yield parse(decode(source.read_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> Airfoil:
-    r"""Return the airfoil that the text of a coordinate file describes.
+    r"""Return the airfoil that the text of the file `source` describes; `stem` is its name where it has none.
 
-    Parameters
-    ----------
-    text : of the file.
-    source : what to call it in messages.
-    stem : the airfoil's name where the text has none.
-
-    Examples
-    --------
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'
     """
@@ -103,11 +92,8 @@ def _data(lines: list[Line]) -> tuple[list[Line], list[int], Line | None]:
     blocks = [block for block in fits if block]
     while len(blocks) > 1 and len(blocks[-1]) < 3 and _far_or_told(blocks, lines):
         blocks.pop()  # numbers in the prose behind the data
-    rows: list[Line] = []
-    starts = []
-    for block in blocks:
-        starts.append(len(rows))
-        rows += block
+    rows = [line for block in blocks for line in block]
+    starts = np.cumsum([0, *map(len, blocks[:-1])]).tolist()
     return _without_heading(_without_mark(rows), starts, usual)
 
 
@@ -169,20 +155,16 @@ def _without_heading(
 def _are_counts(line: Line, least: int, most: int) -> bool:
     """Say whether `line` can be Lednicer's: two whole numbers from 2 on whose sum lies in the given range."""
     upper, lower = line.values[:2]
-    return (
-        upper == int(upper)
-        and lower == int(lower)
-        and min(upper, lower) >= 2
-        and least <= upper + lower <= most
-    )
+    whole = upper == int(upper) and lower == int(lower)
+    return whole and min(upper, lower) >= 2 and least <= upper + lower <= most
 
 
 def _wrong_counts(counts: Line | None, points: int, upper: int) -> tuple[str, ...]:
     """Return a note when a file announces other counts of points than its two surfaces have."""
-    if counts is None or (upper or int(counts.values[0]), points) == (
-        counts.values[0],
-        sum(counts.values[:2]),
-    ):
+    if counts is None:
+        return ()
+    first, both = counts.values[0], sum(counts.values[:2])
+    if (upper or first) == first and points == both:
         return ()
     surfaces = f"{upper} and {points - upper} follow" if upper else f"{points} follow"
     return (f"line {counts.number} announces {counts.text.strip()} points and {surfaces}, which are read",)
@@ -193,12 +175,9 @@ def _columns(rows: list[Line]) -> tuple[Floats, list[int]]:
     width = min(len(line.values) for line in rows)
     values = np.array([line.values[:width] for line in rows])
     index = list(range(len(rows)))
-    if (
-        width > 2
-        and np.array_equal(values[:, 0], values[0, 0] + np.arange(len(rows)))
-        and values[0, 0] in (0, 1)
-    ):
-        values, width = values[:, 1:], width - 1  # numbered lines
+    numbered = values[0, 0] in (0, 1) and np.array_equal(values[:, 0], values[0, 0] + np.arange(len(rows)))
+    if width > 2 and numbered:
+        values, width = values[:, 1:], width - 1
     if width == 3 and np.ptp(values[:, 2]) > 0 and np.ptp(values[:, 1]) == 0:
         return values[:, [0, 2]], index  # x and z, in a plane of constant y
     runs = [_monotone(values[:, k]) for k in range(width)]
@@ -208,9 +187,8 @@ def _columns(rows: list[Line]) -> tuple[Floats, list[int]]:
     if width == 4 and runs[0] and runs[2]:
         return np.concatenate([values[:, :2], values[:, 2:]]), index + index
     if width > 3 and runs[0]:
-        raise InputError(
-            f"{width} columns, the first of them rising or falling", _ASK, place=f"line {rows[0].number}"
-        )
+        problem = f"{width} columns, the first of them rising or falling"
+        raise InputError(problem, _ASK, place=f"line {rows[0].number}")
     return values[:, :2], index
 
 
@@ -253,21 +231,15 @@ def _check_run(points: Floats, numbers: list[int]) -> None:
     extent = float(np.hypot(*np.ptp(points, axis=0)))
     n = len(points)
     if n >= 12:
-        detour = (
-            np.roll(length, 1)
-            + length
-            - 5 * np.hypot(*(np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)).T)
-        )
+        direct = np.hypot(*(np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)).T)
+        detour = np.roll(length, 1) + length - 5 * direct
         k = int(np.argmax(detour))
         others = np.delete(points, k, axis=0)
         most = 0.6 if k in (0, n - 1) else 0.3  # an edge may lie apart from the last points of both surfaces
         if detour[k] > most * float(np.hypot(*np.ptp(others, axis=0))):
             x, y = points[k]
-            raise InputError(
-                f"({x:g}, {y:g}) lies far from the points before and after it",
-                "correct or remove it",
-                place=f"line {numbers[k]}",
-            )
+            problem = f"({x:g}, {y:g}) lies far from the points before and after it"
+            raise InputError(problem, "correct or remove it", place=f"line {numbers[k]}")
     back = np.flatnonzero(np.hypot(*(points - points[0]).T) < 0.02 * extent)
     closed = [k for k in back.tolist() if 8 <= k < n - 7 and length[k] > 0.02 * extent]
     if closed or length.sum() > 3.5 * extent:

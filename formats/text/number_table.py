@@ -23,13 +23,8 @@ _ROWS = 1 << 13
 def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
     r"""Write every row of `rows` (n, m), its numbers in the places of the fields of `form`, and a line end.
 
-    Parameters
-    ----------
-    form : m fields ``%d`` for whole numbers, or ``%e`` for floats with 17 significant digits; no line end.
-    rows : (n, m).
+    These are m times ``%d`` for whole numbers, or ``%e`` for floats with 17 significant digits.
 
-    Examples
-    --------
     >>> from io import BytesIO
     >>> stream = BytesIO()
     >>> write_rows(stream, "4(%d %d)", np.array([[1, 20], [3, -4]]))
@@ -50,8 +45,6 @@ def write_rows(stream: BinaryIO, form: str, rows: NDArray[Any]) -> None:
 def parsed(text: bytes) -> Floats | None:
     """Return the numbers of blank-separated `text`, or None when there is something else in it.
 
-    Examples
-    --------
     >>> parsed(b"1 2.5 -3e2").tolist(), parsed(b"1 two")
     ([1.0, 2.5, -300.0], None)
     """

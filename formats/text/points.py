@@ -34,24 +34,13 @@ _JOIN = 1e-6
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shape of a file.
-
-    Raises InputError: no such shape in it, with the line where there is one to name.
-    """
+    """Yield the shape of a file; InputError, with its line, where there is none."""
     yield parse(decode(source.read_bytes()), source.name, source.stem)
 
 
 def parse(text: str, source: str, stem: str = "") -> Shape:
-    r"""Return the shape that the text of a list of points describes.
+    r"""Return the shape that the text of a list of points describes, called `stem` or else as `source`.
 
-    Parameters
-    ----------
-    text : of the file.
-    source : what to call it in messages.
-    stem : name of the shape; the source's without folder and ending when empty.
-
-    Examples
-    --------
     >>> square = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
     >>> square.name, square.topology
     ('square', 'quad')
@@ -68,11 +57,9 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
         if len(blocks) == 4 and min(map(len, blocks)) >= 2:
             return _with_notes(_four_edges(blocks, name), left_out(lines))
         if len(blocks) != 1:
-            raise InputError(
-                f"{len(blocks)} blocks of points",
-                "give one closed curve, or four edges divided by blank lines",
-                place=f"line {blocks[1][0].number}" if len(blocks) > 1 else "",
-            )
+            remedy = "give one closed curve, or four edges divided by blank lines"
+            place = f"line {blocks[1][0].number}" if len(blocks) > 1 else ""
+            raise InputError(f"{len(blocks)} blocks of points", remedy, place=place)
         return _with_notes(_closed_curve(blocks[0], name), left_out(lines))
     except InputError as error:
         error.source = error.source or source
@@ -114,8 +101,8 @@ def _four_edges(blocks: list[list[Line]], name: str) -> Boundary | Outline:
     if counts[0] == counts[2] and counts[1] == counts[3]:
         south, east, north, west = (edge[:, :2] for edge in chain)
         return Boundary(south, north[::-1], west[::-1], east, name=name)
-    a, b, c, d = (int(k) for k in np.concatenate([[0], np.cumsum(np.array(counts[:3]) - 1)]))
-    return Outline(ring[:, :2], name, corners=(a, b, c, d))
+    a, b, c = np.cumsum(np.array(counts[:3]) - 1).tolist()
+    return Outline(ring[:, :2], name, corners=(0, a, b, c))
 
 
 def _edge(block: list[Line]) -> Floats:
@@ -142,11 +129,9 @@ def _chained(edges: list[Floats]) -> list[Floats]:
         (k, way), gap = min(gaps.items(), key=lambda item: item[1])
         if gap > reach:
             x, y = end
-            raise InputError(
-                f"no other edge starts or ends at ({x:g}, {y:g}); the nearest is {gap:.3g} away",
-                "make the four edges meet",
-                place=f"line {edges[k][0 if way == 1 else -1, 2]:.0f}",
-            )
+            problem = f"no other edge starts or ends at ({x:g}, {y:g}); the nearest is {gap:.3g} away"
+            place = f"line {edges[k][::way][0, 2]:.0f}"
+            raise InputError(problem, "make the four edges meet", place=place)
         chain.append(edges[k][::way].copy())
         chain[-1][0, :2] = end
         left.remove(k)

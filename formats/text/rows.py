@@ -65,15 +65,13 @@ def decode(data: bytes) -> str:
     ('1 2', 'Stéfan')
     """
     if len(data) > MOST_BYTES:
-        raise InputError(
-            f"{len(data) // 2**20} MB are too much for a file of points", "give a file below 16 MB"
-        )
+        problem = f"{len(data) // 2**20} MB are too much for a file of points"
+        raise InputError(problem, "give a file below 16 MB")
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16", errors="replace")
     if b"\0" in data:
-        raise InputError(
-            "holds binary data, not text", "name its format with {from_format}, or give a text file"
-        )
+        remedy = "name its format with {from_format}, or give a text file"
+        raise InputError("holds binary data, not text", remedy)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -97,9 +95,8 @@ def _lines(text: str) -> tuple[Line, ...]:
     if found and not found[-1]:
         found.pop()
     if len(found) > MOST_LINES:
-        raise InputError(
-            f"{len(found)} lines are too many for a file of points", f"give at most {MOST_LINES}"
-        )
+        problem = f"{len(found)} lines are too many for a file of points"
+        raise InputError(problem, f"give at most {MOST_LINES}")
     return tuple(_line(number, line) for number, line in enumerate(found, start=1))
 
 
@@ -121,11 +118,8 @@ def table(lines: list[Line]) -> list[list[Line]]:
         elif (line.kind == "broken" and beside == ("row", "row")) or (
             line.kind == "damaged" and "row" in (_next_kind(kinds, k + 1, -1), _next_kind(kinds, k + 1, 1))
         ):
-            raise InputError(
-                f"{line.text.strip()[:40]!r} is no pair of numbers",
-                "correct or remove the line",
-                place=f"line {line.number}",
-            )
+            problem = f"{line.text.strip()[:40]!r} is no pair of numbers"
+            raise InputError(problem, "correct or remove the line", place=f"line {line.number}")
         elif line.kind != "gap" and blocks[-1]:
             blocks.append([])
     return blocks if blocks[-1] else blocks[:-1]
@@ -161,9 +155,7 @@ def _line(number: int, text: str) -> Line:
                 return Line(number, "row", pair, text)
     if not words:
         return Line(number, "blank", (), text)
-    if len(text) > 4000:
-        return Line(number, "text", (), text)
-    bare = _REMARK.sub("", text).strip()
+    bare = _REMARK.sub("", text).strip() if len(text) <= 4000 else ""
     if not bare:
         return Line(number, "text", (), text)
     return _difficult(number, text, _words(bare))

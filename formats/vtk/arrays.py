@@ -31,24 +31,14 @@ _MOST_SHRINKING = 1 << 15
 
 @dataclass(frozen=True)
 class Encoding:
-    """How a file stores its arrays.
+    """How a file stores its arrays."""
 
-    Parameters
-    ----------
-    order : ``<`` or ``>``, byte order.
-    header : ``u4`` or ``u8``, type of the length words before an array.
-    compressor : the file's attribute of that name, empty for none.
-    appended : bytes after the mark ``_``.
-    base64 : whether these are base64.
-    offsets : where the arrays in `appended` start, and its end, sorted.
-    """
-
-    order: str
-    header: str
-    compressor: str
-    appended: memoryview
-    base64: bool
-    offsets: tuple[int, ...]
+    order: str  # < or >
+    header: str  # u4 or u8, the type of the length words before an array
+    compressor: str  # the file's attribute of that name, empty for none
+    appended: memoryview  # what stands behind the mark _
+    base64: bool  # whether that is base64
+    offsets: tuple[int, ...]  # where the arrays in it start, and its end, sorted
 
 
 @dataclass(frozen=True)
@@ -119,9 +109,8 @@ def _sized(raw: memoryview, size: int | None, encoding: Encoding) -> memoryview:
     (claimed,) = _words(raw, 0, 1, encoding)
     start = int(encoding.header[1])
     if size not in (None, claimed) or len(raw) < start + claimed:
-        raise InputError(
-            f"should be {size} bytes, is said to be {claimed}, and {len(raw) - start} are left", CUT
-        )
+        left = len(raw) - start
+        raise InputError(f"should be {size} bytes, is said to be {claimed}, and {left} are left", CUT)
     return raw[start : start + claimed]
 
 
@@ -156,10 +145,8 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
         from lzma import LZMADecompressor
 
         return lambda packed, most: LZMADecompressor().decompress(packed, most)
-    raise InputError(
-        f"compressor {compressor[:60]!r} cannot be read",
-        "write it with zlib (vtkZLibDataCompressor) or none",
-    )
+    remedy = "write it with zlib (vtkZLibDataCompressor) or none"
+    raise InputError(f"compressor {compressor[:60]!r} cannot be read", remedy)
 
 
 def plane_points(grid: Grid, height: float, dtype: str) -> Iterator[NDArray[Any]]:

@@ -41,9 +41,8 @@ def write_grids(
     grid, text = only_one(grids, "a .vtk file"), "ascii" in options
     with path.open("wb") as stream:
         form = "ASCII" if text else "BINARY"
-        stream.write(
-            f"# vtk DataFile Version 3.0\nstructured grid\n{form}\nDATASET STRUCTURED_GRID\n".encode()
-        )
+        head = f"# vtk DataFile Version 3.0\nstructured grid\n{form}\nDATASET STRUCTURED_GRID\n"
+        stream.write(head.encode())
         _write_facts(stream, grid, text=text)
         stream.write(f"DIMENSIONS {grid.ni} {grid.nj} {len(heights)}\n".encode())
         stream.write(f"POINTS {grid.ni * grid.nj * len(heights)} double\n".encode())
@@ -102,11 +101,6 @@ class _Cursor:
         self.at += count
         return self.data[self.at - count : self.at]
 
-    @property
-    def place(self) -> str:
-        """Where the cursor is, for messages."""
-        return f"byte {self.at}"
-
 
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of a legacy ``.vtk`` file.
@@ -117,9 +111,10 @@ def read_grids(source: Source) -> Iterator[Grid]:
     try:
         nodes, facts = _read(cursor)
     except (ValueError, OverflowError, IndexError) as error:
-        raise InputError(printable(str(error))[:100], "write the file again", place=cursor.place) from None
+        problem = printable(str(error))[:100]
+        raise InputError(problem, "write the file again", place=f"byte {cursor.at}") from None
     except InputError as error:
-        error.place = error.place or cursor.place
+        error.place = error.place or f"byte {cursor.at}"
         raise
     yield grid_with(nodes, facts, source.stem)
 
@@ -144,9 +139,8 @@ def _read(cursor: _Cursor) -> tuple[Floats, dict[str, list[str]]]:
         elif key == "POINTS":
             break
     if min(dims) < 1 or dims[0] * dims[1] * dims[2] != int(words[1]):
-        raise InputError(
-            f"has {words[1][:20]!r} points and DIMENSIONS {'x'.join(map(str, dims))[:60]}", "make them agree"
-        )
+        shown = "x".join(map(str, dims))[:60]
+        raise InputError(f"has {words[1][:20]!r} points and DIMENSIONS {shown}", "make them agree")
     points = _numbers(cursor, words[2], 3 * int(words[1]), text=text).reshape(*dims[::-1], 3)
     return planar([points[..., k].T for k in range(3)]), facts
 
@@ -181,7 +175,7 @@ def _numbers(cursor: _Cursor, kind: str, count: int, *, text: bool) -> NDArray[A
 
 
 def _raw_line(cursor: _Cursor) -> str:
-    """Return the next line even when it is blank: an empty string."""
+    """Return the next line, blank or not."""
     end = cursor.data.find(b"\n", cursor.at)
     start, cursor.at = cursor.at, (end if end >= 0 else len(cursor.data)) + 1
     return cursor.data[start : cursor.at - 1].decode("latin-1").strip()

@@ -22,19 +22,24 @@ from meshonet.formats.vtk.arrays import escaped, plane_points
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_POINTS = '<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>'
+_HEAD = """\
+<?xml version="1.0"?>
+<VTKFile type="StructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+  <StructuredGrid WholeExtent="{extent}">
+{lines}
+      <Points>
+        <DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>
+      </Points>
+    </Piece>
+  </StructuredGrid>
+  <AppendedData encoding="raw">
+   _"""
 
 
 def write(
-    path: Path,
-    grid: Grid,
-    cell_data: Mapping[str, NDArray[Any]] | None = None,
-    heights: Heights = (0.0,),
+    path: Path, grid: Grid, cell_data: Mapping[str, NDArray[Any]] | None = None, heights: Heights = (0.0,)
 ) -> None:
-    """Write one grid, with `cell_data` (ni-1, nj-1) by name, and a plane of its nodes at each of `heights`.
-
-    Raises InputError: a cell array of another shape.
-    """
+    """Write one grid, a plane of its nodes at each of `heights`, with `cell_data` (ni-1, nj-1) by name."""
     planes = len(heights)
     cells = {name: _cell_values(name, values, grid) for name, values in (cell_data or {}).items()}
     with path.open("wb") as stream:
@@ -60,30 +65,12 @@ def _head(grid: Grid, planes: int, cells: Mapping[str, NDArray[Any]]) -> str:
     arrays = []
     for name, values in cells.items():
         kind = "Float64" if values.dtype.kind == "f" else "Int64"
-        arrays.append(
-            f'        <DataArray type="{kind}" Name="{escaped(name)}" format="appended" offset="{offset}"/>'
-        )
+        tag = f'DataArray type="{kind}" Name="{escaped(name)}" format="appended" offset="{offset}"'
+        arrays.append(f"        <{tag}/>")
         offset += 8 + values.nbytes
-    return "\n".join(
-        [
-            '<?xml version="1.0"?>',
-            '<VTKFile type="StructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
-            f'  <StructuredGrid WholeExtent="{extent}">',
-            *_field_data(grid),
-            f'    <Piece Extent="{extent}">',
-            "      <PointData/>",
-            "      <CellData>" if arrays else "      <CellData/>",
-            *arrays,
-            *(["      </CellData>"] if arrays else []),
-            "      <Points>",
-            f"        {_POINTS}",
-            "      </Points>",
-            "    </Piece>",
-            "  </StructuredGrid>",
-            '  <AppendedData encoding="raw">',
-            "   _",
-        ]
-    )
+    cell_data = ["      <CellData>", *arrays, "      </CellData>"] if arrays else ["      <CellData/>"]
+    lines = (*_field_data(grid), f'    <Piece Extent="{extent}">', "      <PointData/>", *cell_data)
+    return _HEAD.format(extent=extent, lines="\n".join(lines))
 
 
 def _field_data(grid: Grid) -> list[str]:
@@ -99,7 +86,6 @@ def _field_data(grid: Grid) -> list[str]:
 def _cell_values(name: str, values: NDArray[Any], grid: Grid) -> NDArray[Any]:
     """Return per-cell `values` as VTK lays them out: (nj-1, ni-1), i fastest, 8 bytes each."""
     if values.shape != (grid.ni - 1, grid.nj - 1):
-        raise InputError(
-            f"cell array {name!r} has shape {values.shape}", f"give ({grid.ni - 1}, {grid.nj - 1})"
-        )
+        problem = f"cell array {name!r} has shape {values.shape}"
+        raise InputError(problem, f"give ({grid.ni - 1}, {grid.nj - 1})")
     return np.ascontiguousarray(values.T, dtype="<f8" if values.dtype.kind == "f" else "<i8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,7 @@ import numpy as np
 from meshonet.formats.mesh.metadata import grid_with
 from meshonet.formats.mesh.slices import planar
 from meshonet.formats.source import Source, printable
-from meshonet.formats.vtk.arrays import Encoded, Encoding, decode
+from meshonet.formats.vtk.arrays import CUT, Encoded, Encoding, decode
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -53,12 +54,10 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
     if tag >= 0:
         mark = raw.find(b"_", raw.find(b">", tag))
         if mark < 0 or raw.find(b">", tag) < 0:
-            raise InputError(
-                "its appended data has no start mark '_'", "the file is cut short: write it again"
-            )
+            raise InputError("its appended data has no start mark '_'", CUT)
         start, end = mark + 1, raw.rfind(b"</AppendedData")
         if end < start:
-            raise InputError("its appended data has no end", "the file is cut short: write it again")
+            raise InputError("its appended data has no end", CUT)
         head = raw[:start] + raw[end:]
     if b"<!" in head.replace(b"<!--", b"") or b"\0" in head:
         # a document type can define entities that expand without bound; no VTK file has one
@@ -68,10 +67,8 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
     except (ParseError, ValueError, LookupError) as error:
         raise InputError(f"is not well-formed XML ({error})", "write the file again") from error
     if root.tag != "VTKFile" or root.get("type") != "StructuredGrid":
-        raise InputError(
-            f"is a VTK file of type {printable(root.get('type', '?'))[:60]}",
-            "give one of type StructuredGrid",
-        )
+        problem = f"is a VTK file of type {printable(root.get('type', '?'))[:60]}"
+        raise InputError(problem, "give one of type StructuredGrid")
     return root, start, end
 
 
@@ -80,9 +77,8 @@ def _encoding(root: Element, dataset: Element, raw: bytes, start: int, end: int)
     if header not in ("UInt32", "UInt64"):
         raise InputError(f"header_type {header[:40]!r} is not known", "write UInt32 or UInt64")
     appended = root.find("AppendedData")
-    offsets = [
-        int(a.get("offset", "-1")) for a in dataset.iter("DataArray") if a.get("offset", "x").isdecimal()
-    ]
+    words = [array.get("offset", "") for array in dataset.iter("DataArray")]
+    offsets = [int(word) for word in words if word.isdecimal()]
     return Encoding(
         order=">" if root.get("byte_order") == "BigEndian" else "<",
         header="u4" if header == "UInt32" else "u8",
@@ -102,13 +98,8 @@ def _points(piece: Element, encoding: Encoding) -> Floats:
     offset = array.get("offset", "0")
     if not offset.isdecimal():
         raise InputError(f"offset {offset[:40]!r} is not a number", "write the file again")
-    encoded = Encoded(
-        kind=array.get("type", ""),
-        count=3 * dims[0] * dims[1] * dims[2],
-        form=array.get("format", "ascii"),
-        text=array.text or "",
-        offset=int(offset),
-    )
+    kind, form, count = array.get("type", ""), array.get("format", "ascii"), 3 * math.prod(dims)
+    encoded = Encoded(kind, count, form, array.text or "", int(offset))
     try:
         values = decode(encoded, encoding)
     except InputError as error:
@@ -121,7 +112,7 @@ def _assembled(pieces: list[Element], whole: Extent, encoding: Encoding) -> Floa
     """Return the points of a grid stored in pieces, which overlap in their shared nodes."""
     dims = _dims(whole)
     parts = [(_extent(piece, "Extent"), _points(piece, encoding)) for piece in pieces]
-    if dims[0] * dims[1] * dims[2] > sum(points.size for _, points in parts):
+    if math.prod(dims) > sum(points.size for _, points in parts):
         raise InputError("its pieces do not cover WholeExtent", "write the whole grid in one file")
     points, missing = np.empty((*dims, 3)), np.ones(dims, bool)
     for extent, values in parts:
@@ -138,16 +129,13 @@ def _assembled(pieces: list[Element], whole: Extent, encoding: Encoding) -> Floa
 
 def _extent(element: Element, name: str) -> Extent:
     words = element.get(name, "").split()
+    shown = f"{name} {' '.join(words)[:60]!r}"
     try:
         i0, i1, j0, j1, k0, k1 = (int(word) for word in words)
     except ValueError:
-        raise InputError(
-            f"{name} {' '.join(words)[:60]!r} is not six integers", "write the file again"
-        ) from None
+        raise InputError(f"{shown} is not six integers", "write the file again") from None
     if i1 < i0 or j1 < j0 or k1 < k0 or (i1 - i0 + 1) * (j1 - j0 + 1) * (k1 - k0 + 1) > _MOST_NODES:
-        raise InputError(
-            f"{name} {' '.join(words)[:60]!r} is empty or absurdly large", "write the file again"
-        )
+        raise InputError(f"{shown} is empty or absurdly large", "write the file again")
     return i0, i1, j0, j1, k0, k1
 
 
@@ -165,18 +153,14 @@ def _child(element: Element, name: str) -> Element:
 
 
 def _texts(array: Element, encoding: Encoding) -> list[str]:
-    """Return the strings of a string array: bytes, each string ended by 0; none when it is not right.
-
-    Such arrays hold extras only, so a foreign one must not stop a grid from being read.
-    """
+    """Return the strings of an array, each ended by 0; none of a damaged one, which is no loss."""
     try:
         if array.get("format") == "ascii":
             codes = bytes(int(word) % 256 for word in (array.text or "").split())
         else:
             offset = int(array.get("offset", "0"))
-            codes = decode(
-                Encoded("Int8", None, array.get("format", ""), array.text or "", offset), encoding
-            ).tobytes()
+            encoded = Encoded("Int8", None, array.get("format", ""), array.text or "", offset)
+            codes = decode(encoded, encoding).tobytes()
     except (ValueError, InputError):
         return []
     return [text.decode("utf-8", "replace") for text in codes.split(b"\0")[:-1]]

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.figure.figure import Colouring, _drawn_lines, draw, write
+from meshonet.formats.figure.figure import _drawn_lines, draw, write
+from meshonet.formats.figure.layers import Colouring
+from meshonet.formats.figure.picture import Picture
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -143,24 +145,24 @@ def test_values_that_are_not_finite_are_left_blank(tmp_path: Path) -> None:
     assert picture[row, right].sum() < 1.0
 
 
-CHANNEL = channel()
 CASES = {
-    "shape": (
-        {"colouring": Colouring(np.zeros((7, 5)), "v")},
-        r"cell values have shape \(7, 5\); give \(6, 4\)",
-    ),
     "every": ({"every": 0}, "every 0-th line cannot be drawn; use 1 or more"),
-    "empty": ({"zoom": (1.0, 1.0, 0.0, 1.0)}, r"zoom \(1.0, 1.0, 0.0, 1.0\) is empty; give x0,x1,y0,y1"),
-    "nan": ({"zoom": (np.nan, 1.0, 0.0, 1.0)}, "is empty"),
-    "away": ({"zoom": (9.0, 10.0, 0.0, 1.0)}, "shows none of the grid; the grid spans x 0 to 2.1, y"),
+    "empty": ({"zoom": (1.0, 1.0, 0.0, 1.0)}, "zoom: '1,1,0,1' is not a box; use x0,x1,y0,y1"),
+    "nan": ({"zoom": (np.nan, 1.0, 0.0, 1.0)}, "is not a box"),
+    "infinite": ({"zoom": (0.0, np.inf, 0.0, 1.0)}, "is not a box"),
 }
 
 
 @pytest.mark.parametrize("case", CASES)
 def test_what_cannot_be_drawn_is_refused(case: str) -> None:
-    settings, told = CASES[case]
-    with pytest.raises(InputError, match=told):
-        draw(CHANNEL, **settings)  # type: ignore[arg-type]
+    settings, message = CASES[case]
+    with pytest.raises(InputError, match=message):
+        Picture(**settings)  # type: ignore[arg-type]
+
+
+def test_a_box_beside_the_grid_is_refused() -> None:
+    with pytest.raises(InputError, match=r"shows none of the grid; the grid spans x 0 to 2\.1, y"):
+        draw(channel(), zoom=(9.0, 10.0, 0.0, 1.0))
 
 
 @pytest.mark.parametrize(

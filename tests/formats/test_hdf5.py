@@ -11,11 +11,12 @@ import pytest
 from format_shapes import c_grid, channel, memory, ring
 
 from meshonet.formats.hdf5.check import Checked
-from meshonet.formats.hdf5.read import read_grids, read_parameters, read_shapes
-from meshonet.formats.hdf5.write import Writer, write_boundaries, write_grids
+from meshonet.formats.hdf5.read import read_grids, read_shapes
+from meshonet.formats.hdf5.write import write_boundaries, write_grids, writing
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid, Origin
 from meshonet.geometry.blocks.patches import Patch
@@ -97,7 +98,7 @@ def test_samples_are_in_the_file_as_they_are_appended(tmp_path: Path) -> None:
             yield ring(name=f"r{k}")
             counts.append(writer._count)
 
-    with Writer(tmp_path / "g.h5", "meshonet-grid") as writer:
+    with writing(tmp_path / "g.h5", "meshonet-grid") as writer:
         for grid in grids():
             writer.append(grid)
     assert counts == [1, 2, 3, 4]
@@ -126,22 +127,25 @@ def test_an_interrupted_dataset_has_what_was_appended(tmp_path: Path) -> None:
     assert back.name == "done"
 
 
+def sampled(*values: float, split: str = "") -> Boundary:
+    """Return a boundary made by the numbers height, width ..."""
+    names = ("height", "width", "depth")
+    return replace(boundary_of(channel()), origin=Origin(tuple(zip(names, values, strict=False)), split))
+
+
 def test_parameters_and_split_go_with_the_samples(tmp_path: Path) -> None:
-    with Writer(tmp_path / "b.h5", "meshonet-boundary", ("height", "width")) as writer:
-        for k, split in enumerate(("train", "test")):
-            writer.append(boundary_of(channel()), parameters=np.array([k, 2.5 * k]), split=split)
-    names, values, split = read_parameters(open_source(str(tmp_path / "b.h5")))
-    assert names == ("height", "width")
-    assert values.tolist() == [[0.0, 0.0], [1.0, 2.5]]
-    assert split == ("train", "test")
+    written = [sampled(0.0, 0.0, split="train"), sampled(1.0, 2.5, split="test")]
+    write_boundaries(tmp_path / "b.h5", written)
+    back = list(read_shapes(open_source(str(tmp_path / "b.h5"))))
+    assert [boundary.origin for boundary in back] == [boundary.origin for boundary in written]
     with h5py.File(tmp_path / "b.h5") as file:
         assert list(file["parameters"].attrs["names"]) == ["height", "width"]
 
 
 def test_a_dataset_without_parameters_has_none(tmp_path: Path) -> None:
     write_boundaries(tmp_path / "b.h5", [boundary_of(channel())])
-    names, values, split = read_parameters(open_source(str(tmp_path / "b.h5")))
-    assert (names, values.shape, split) == ((), (1, 0), ("",))
+    (back,) = read_shapes(open_source(str(tmp_path / "b.h5")))
+    assert back.origin == Origin()
 
 
 def test_the_same_grids_give_the_same_bytes(tmp_path: Path) -> None:
@@ -159,11 +163,8 @@ def test_a_sample_of_another_size_or_topology_is_refused(other: Grid, tmp_path: 
 
 
 def test_parameters_of_another_length_are_refused(tmp_path: Path) -> None:
-    with (
-        Writer(tmp_path / "b.h5", "meshonet-boundary", ("a", "b")) as writer,
-        pytest.raises(InputError, match=r"parameters of sample 0 has shape \(3,\); the first has \(2,\)"),
-    ):
-        writer.append(boundary_of(channel()), parameters=np.zeros(3))
+    with pytest.raises(InputError, match=r"parameters of sample 1 has shape \(3,\); the first has \(2,\)"):
+        write_boundaries(tmp_path / "b.h5", [sampled(1.0, 2.0), sampled(1.0, 2.0, 3.0)])
 
 
 def changed(change: str) -> bytes:
