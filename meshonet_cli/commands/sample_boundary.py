@@ -55,7 +55,8 @@ Split = Annotated[
     _option(
         "--split", metavar="HOW",
         help="Keep a sixth of the family for tests: interpolation (the middle of the range), extrapolation "
-        "(one end of it) or random. Kept in an .h5 file: train honours it, and FILE.h5#test reads it.",
+        "(one end of it) or random. The .h5 file records the split: train uses it, and FILE.h5#test reads "
+        "the test part.",
     ),
 ]
 Seed = Annotated[

@@ -32,7 +32,8 @@ TopologyOption = Annotated[
         metavar="auto|quad|o|c",
         show_default=True,
         help="Kind of grid: four-sided (quad), O around a body, or C around an airfoil and its wake (NI "
-        "counts both sides of the wake). auto takes C when a first cell is given and the edge is sharp.",
+        "counts both sides of the wake). auto takes C when a first cell is given and the trailing edge is "
+        "sharp.",
     ),
 ]
 SpacingOption = Annotated[
