@@ -33,7 +33,7 @@ Kind = Literal["meshonet-boundary", "meshonet-grid"]
 
 
 class Writer:
-    """A dataset being written; all samples that were appended are in the file when it is left, however it is.
+    """A dataset being written; when its block ends, by an error too, all appended samples are in the file.
 
     Parameters
     ----------

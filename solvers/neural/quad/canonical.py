@@ -74,7 +74,7 @@ class Canonical:
 
 
 def canonical(boundary: Boundary) -> Canonical:
-    """Return a quad or O boundary in its canonical frame; in its own if it cannot be rounded."""
+    """Return a quad or O boundary in its canonical frame, or unchanged if rounding would merge its nodes."""
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 
 
