@@ -38,10 +38,10 @@ class Format:
     names_patches : whether names of patches and the topology survive in it.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
-    beside : whether other files are written beside the file, so that a stream holds none.
-    fills_folder : whether the file is the mark of a folder whose other files are written with it, so that a
-        folder holds one and a stream none.
-    choices : rows of options, of each of which one word may stand behind the name.
+    beside : whether other files are written beside the file, so that it cannot be written to a stream.
+    fills_folder : whether the format is a folder of files of which this one only marks the place, so that a
+        folder holds one grid, and it cannot be written to a stream.
+    choices : rows of options; behind the name there may be one word of each row.
     variant : returns the format with options.
     suffix_options : the options that an ending stands for when a file is written.
     """

@@ -57,7 +57,7 @@ def draw(
     grid : what to draw.
     colouring : values to colour the cells by; None draws lines only.
     zoom : x0, x1, y0, y1 of the part to show, in one view.
-    every : draw every so many-th grid line; None chooses.
+    every : K, to draw every K-th grid line; None chooses it.
 
     Raises
     ------

@@ -39,7 +39,7 @@ def read_shapes(source: Source) -> Iterator[Shape]:
     Raises
     ------
     InputError
-        no such shape in it, with the line where there is one to name.
+        there is no such shape in it; the message names the line where it can.
     """
     yield parse(decode(source.read_bytes()), source.name, source.stem)
 

@@ -20,7 +20,7 @@ from meshonet.geometry.errors import InputError
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
-    """Return the grid of every `k`-th node along both directions, its patches along.
+    """Return the grid of every `k`-th node along both directions, with its patches.
 
     Raises
     ------

@@ -23,7 +23,7 @@ _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "
 
 
 def turned(grid: Grid) -> Grid:
-    """Return `grid` with node (i, j) at (j, ni-1-i), its patches along.
+    """Return `grid` turned, its patches too: node (i, j) comes to (j, ni-1-i).
 
     Raises
     ------

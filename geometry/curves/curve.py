@@ -136,7 +136,7 @@ class Curve:
         return np.asarray((d[..., 0] * bend[..., 1] - d[..., 1] * bend[..., 0]) / _norm(d) ** 3)
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points on the curve at `places`, 0 to below 1, of each interval, and an open one's end."""
+        """Return points at `places`, 0 to below 1, of each interval, and the end point of an open curve."""
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]
         a, b, c, d = self._cubic[:, i]

@@ -41,8 +41,8 @@ class Metric:
     Parameters
     ----------
     name, unit, short : for reports.
-    worst : which of its ends is the bad one.
-    cells : gives its value (ni-1, nj-1) for every cell of a grid; None for those of the compiled kernel.
+    worst : whether its least or its greatest value is the worst.
+    cells : gives its value (ni-1, nj-1) for every cell of a grid; None for metrics of the compiled kernel.
     """
 
     name: str

@@ -145,7 +145,7 @@ def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):
     ----------
     maps : `geometry.lift.Lift`.
     corner, ahead, behind : nodes of the wall; `w` the line's first point, in the strip.
-    start, limit : of the shift, which is the start where none is found.
+    start, limit : the first shift tried and the largest; where no better one is found it is the start.
     """
     cdef BodyLift lift
     cdef LineOff line

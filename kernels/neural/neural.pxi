@@ -88,7 +88,7 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
 
 
 def frame_take_out(planes, unit, factors):
-    """Fill `unit` with grids `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) with what that takes."""
+    """Fill `unit` with `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) of the scaling."""
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b
     cdef const double *p = reads(planes, (batch, 2, m, n))
     cdef double *to = fills(unit, (batch, 2, m, n))
@@ -101,7 +101,7 @@ def frame_take_out(planes, unit, factors):
 
 
 def frame_put_back(planes, moved, unit, factors):
-    """Add to `planes` by what grids have `moved` from where `frame_take_out` left them, at their own sizes."""
+    """Add to `planes` the displacements from `unit` to `moved`, scaled back to the grids' own sizes."""
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
     cdef double *p = fills(planes, (batch, 2, m, n))
     cdef const double *to = reads(moved, (batch, 2, m, n))
