@@ -18,9 +18,10 @@ SWEEPS = 30
 
 
 def winslow_start(boundary: Boundary) -> Floats:
-    """Return about Winslow's solution inside `boundary`, planar (ni, nj, 2).
+    """Return approximately Winslow's solution inside `boundary`, planar (ni, nj, 2).
 
-    Where its equations have no discrete one it is the transfinite interpolation, which may be folded.
+    Where Winslow's equations have no discrete solution it is the transfinite interpolation, which may be
+    folded.
     """
     if not boundary.around_body and (boundary.ni - 1) * (boundary.nj - 1) <= RELAXED:
         nodes = tfi(boundary).nodes

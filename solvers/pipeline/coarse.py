@@ -48,7 +48,8 @@ def solve_coarse(
     solve : a function of boundary to solution.
     n : coarse nodes along each direction that has more.
     smooth : whether to end with sweeps of Winslow's equations at full resolution around kinks of the
-        boundary: always where these were solved or the grid came out folded, else where angles gain by them.
+        boundary: always if the solution is Winslow's or the fine grid is folded, else where they improve
+        angles.
 
     Returns
     -------

@@ -254,7 +254,7 @@ class GridRequest:
 def grid_request(
     method: str = "best", *, res: int | tuple[int, int] | None = None, **parameters: Any
 ) -> GridRequest:
-    """Return the request with the parameters, each by its name: of the sampling, the request or the method.
+    """Return the request with the parameters, of the sampling, the request or the method.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How far inside the mismatch between coarse edges and full ones is blended.
+"""How far the mismatch between coarse and full edges is blended into the grid.
 
 Between the nodes of a coarse edge the full one has detail. A smooth grid forgets detail of the size of a
 coarse step within such a step, however thin the cells are along the edge; blended along whole lines, it

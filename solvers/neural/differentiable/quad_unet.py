@@ -25,8 +25,8 @@ class GroupConvolution(nn.Module):
 
     Parameters
     ----------
-    gain : of the random weights at the start, over He's.
-    around : the grid goes round along xi.
+    gain : spread of the first random weights, over He's.
+    around : whether the grid is periodic along xi.
     """
 
     places: Tensor
@@ -72,7 +72,7 @@ class QuadUNet(nn.Module):
     ----------
     widths : sets of eight channels on each level, the finest first; each level has every second node.
     blocks : residual blocks on each level, on the way down and on the way up.
-    around : of O grids, unrolled: the grid goes round along xi.
+    around : whether grids are unrolled O grids, periodic along xi.
     """
 
     seen: Tensor

@@ -53,7 +53,7 @@ class Edges:
         return Edges(south, north, between(self.west, nj), between(self.east, nj))
 
     def laws(self) -> Sides:
-        """Return the length up to each node over the whole edge's, (batch, n) for each side, 0 to 1."""
+        """Return the fraction of an edge's length up to each node, (batch, n) for each side, 0 to 1."""
         south, north, west, east = (_fraction(side) for side in self.sides)
         return south, north, west, east
 
