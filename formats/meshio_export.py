@@ -55,7 +55,7 @@ def _meshio(options: Options = frozenset()) -> Format:
     return Format(
         name="meshio",
         suffixes=tuple(_KINDS),
-        description="surfaces of viewers, decks of solid mechanics, without patches",
+        description="surface files for viewers and input files of solid mechanics, without patches",
         write_grids=later(f"{__name__}:write_grids", options=options),
         choices=(tuple(dict.fromkeys(_KINDS.values())),),
         variant=_meshio,
