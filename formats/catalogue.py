@@ -39,7 +39,7 @@ def _row(record: Format) -> tuple[str, ...]:
         _what(record.read_grids is not None, record.read_shapes is not None),
         _what(record.write_grids is not None, record.write_boundaries is not None),
         "yes" if record.names_patches else "",
-        "yes" if record.write_extruded is not None else "",
+        "yes" if record.extrudes else "",
         "yes" if record.many else "",
         record.description,
         " ".join("/".join(row) for row in record.choices),

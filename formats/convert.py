@@ -40,10 +40,7 @@ class Conversion:
     def heights(self) -> Heights:
         """Return z of each plane, none for a flat grid.
 
-        Raises
-        ------
-        InputError
-            a height that is not positive, planes without a height.
+        Raises InputError: a height that is not positive, planes without a height.
         """
         if self.extrude is None:
             if self.planes is not None:
@@ -84,18 +81,15 @@ class Conversion:
     def extruder(self, output: str, to_format: str | None) -> Callable[[Path, Iterable[Grid]], None] | None:
         """Return what writes grids extruded to `output`, None for flat ones.
 
-        Raises
-        ------
-        InputError
-            the format holds flat grids only.
+        Raises InputError: the format holds flat grids only.
         """
         heights = self.heights()
         if not heights:
             return None
         found = format_for_output(output, to_format)
-        write = found.write_extruded
-        if write is None:
-            able = ", ".join(each.name for each in formats() if each.write_extruded is not None)
+        write = found.write_grids
+        if write is None or not found.extrudes:
+            able = ", ".join(each.name for each in formats() if each.extrudes)
             raise InputError(f"{found.name} holds flat grids only", f"write one of {able}", source=output)
         return lambda path, grids: write(path, grids, heights)
 
@@ -105,10 +99,7 @@ def plot3d_variant(
 ) -> tuple[str | None, str | None]:
     """Return the formats to read and write, the Plot3D file among them in the variant of `words`.
 
-    Raises
-    ------
-    InputError
-        words that are not known, or no file in Plot3D.
+    Raises InputError: words that are not known, or no file in Plot3D.
     """
     if words is None:
         return from_format, to_format

@@ -1,4 +1,4 @@
-"""The record that describes a file format; every room of formats holds one or more."""
+"""The record that describes a file format; `meshonet.formats.table` holds one of each."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
 Heights: TypeAlias = tuple[float, ...]
-"""z of each plane of a grid that is repeated in z, increasing from 0."""
+"""z of each plane of a grid that is repeated in z, increasing from 0; none for a flat one."""
 Options: TypeAlias = frozenset[str]
 """Words behind a format's name, ``plot3d:big,float32``."""
 
@@ -27,22 +27,19 @@ class Format:
 
     Parameters
     ----------
-    name : what users call it.
-    suffixes : file endings, lower case with the dot.
-    description : a few words for help texts and tables.
+    name, suffixes, description : for users; file endings in lower case with the dot.
     read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
         outer edges then serve) or cannot be read.
     read_grids, write_grids, write_boundaries : None when the format cannot.
-    write_extruded : writes grids as layers of cells between planes at the given heights, two or more.
-    sniff : says from the first `HEAD_BYTES` bytes (all of a shorter file) whether a file looks like this.
+    sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
+    extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
-    beside : whether other files are written beside the file, so that it cannot be written to a stream.
-    fills_folder : whether the format is a folder of files of which this one only marks the place, so that a
-        folder holds one grid, and it cannot be written to a stream.
-    choices : rows of options; behind the name there may be one word of each row.
-    variant : returns the format with options.
+    beside : whether other files are written beside the file, so that a stream holds none.
+    fills_folder : whether the file marks a folder that is written with it: one a folder, none in a stream.
+    choices : rows of options, of each of which one word may stand behind the name.
+    reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
     suffix_options : the options that an ending stands for when a file is written.
     """
 
@@ -51,36 +48,37 @@ class Format:
     description: str
     read_shapes: Callable[[Source], Iterator[Shape]] | None = None
     read_grids: Callable[[Source], Iterator[Grid]] | None = None
-    write_grids: Callable[[Path, Iterable[Grid]], None] | None = None
+    write_grids: Callable[..., None] | None = None
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
-    write_extruded: Callable[[Path, Iterable[Grid], Heights], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
+    extrudes: bool = False
     names_patches: bool = False
     many: bool = False
     one_size: bool = False
     beside: bool = False
     fills_folder: bool = False
     choices: tuple[tuple[str, ...], ...] = ()
-    variant: Callable[[Options], Format] | None = None
+    reads_options: bool = False
     suffix_options: Mapping[str, str] = field(default_factory=dict)
 
     def with_options(self, text: str) -> Format:
         """Return the format with options: words divided by commas; those behind a colon replace earlier ones.
 
-        Raises
-        ------
-        InputError
-            a word that is not known, or two that exclude each other.
+        Raises InputError for a word that is not known, or two that exclude each other.
         """
         words: Options = frozenset()
         for group in text.split(":"):
             new = self._options(group)
             excluded = {word for row in self.choices if new & set(row) for word in row}
             words = words - excluded | new
-        if self.variant is None or not words:
+        if not words:
             return self
         ordered = ",".join(word for row in self.choices for word in row if word in words)
-        return replace(self.variant(words), name=f"{self.name}:{ordered}")
+        functions: dict[str, Any] = {"write_grids": self.write_grids}
+        if self.reads_options:
+            functions["read_grids"] = self.read_grids
+        bound = {name: partial(function, options=words) for name, function in functions.items()}
+        return replace(self, name=f"{self.name}:{ordered}", **bound)
 
     def _options(self, text: str) -> Options:
         words = [word.strip() for word in text.lower().split(",") if word.strip()]
@@ -108,13 +106,7 @@ def _call(function: str, /, *args: Any, **settings: Any) -> Any:
 
 
 def only_one(grids: Iterable[Grid], what: str) -> Grid:
-    """Return the single grid of `grids`, for a format whose files hold one.
-
-    Raises
-    ------
-    InputError
-        there is none, or more than one.
-    """
+    """Return the single grid of `grids`, of a file that holds one; InputError for none or several."""
     several = iter(grids)
     first = at_least_one(several)
     if next(several, None) is not None:
@@ -126,13 +118,7 @@ def only_one(grids: Iterable[Grid], what: str) -> Grid:
 
 
 def at_least_one(grids: Iterator[Grid]) -> Grid:
-    """Return the next of `grids`.
-
-    Raises
-    ------
-    InputError
-        there is none.
-    """
+    """Return the next of `grids`; InputError where there is none."""
     first = next(grids, None)
     if first is None:
         raise InputError("there is no grid to write", "check the input")

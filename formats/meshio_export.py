@@ -11,17 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.format import Format, Options, later, only_one
-from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured
+from meshonet.formats.format import Options, only_one
+from meshonet.formats.mesh.unstructured import Indices, Unstructured, in_space, unstructured
 from meshonet.geometry.blocks.grid import Grid
 
-_KINDS = {
-    ".stl": "stl", ".ply": "ply", ".obj": "obj", ".off": "off", ".inp": "abaqus", ".mesh": "medit",
-    ".avs": "avsucd", ".tec": "tecplot",
-    ".dato": "permas", ".post": "permas", ".mdpa": "mdpa", ".med": "med", ".vol": "netgen",
-    ".xdmf": "xdmf", ".xmf": "xdmf",
-}  # fmt: skip
-"""meshio's names of what it writes for each ending."""
 _TRIANGLES = {"stl", "off"}
 _SETTINGS: dict[str, dict[str, object]] = {
     "stl": {"binary": True}, "ply": {"binary": True}, "abaqus": {"float_fmt": ".16e"},
@@ -30,16 +23,15 @@ _SETTINGS: dict[str, dict[str, object]] = {
 }  # fmt: skip
 
 
-def write_grids(path: Path, grids: Iterable[Grid], *, options: Options) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the one grid of `grids` as `options`, one of meshio's names, says."""
     import meshio
 
     (kind,) = options or {"stl"}
     mesh = unstructured(only_one(grids, f"a file of {kind}"))
-    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
     cells, nodes = ("triangle", _triangles(mesh)) if kind in _TRIANGLES else ("quad", mesh.quads)
-    writer = getattr(meshio, kind).write
-    writer(str(path), meshio.Mesh(points, [(cells, nodes.astype(np.int32))]), **_SETTINGS.get(kind, {}))
+    made = meshio.Mesh(in_space(mesh.points), [(cells, nodes.astype(np.int32))])
+    getattr(meshio, kind).write(str(path), made, **_SETTINGS.get(kind, {}))
 
 
 def _triangles(mesh: Unstructured) -> Indices:
@@ -49,18 +41,3 @@ def _triangles(mesh: Unstructured) -> Indices:
     first, second = (np.hypot(*(corner[:, k] - corner[:, k + 2]).T) for k in (0, 1))
     turned = np.where((first <= second)[:, None], quads, np.roll(quads, -1, axis=1))
     return np.stack([turned[:, [0, 1, 2]], turned[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
-
-
-def _meshio(options: Options = frozenset()) -> Format:
-    return Format(
-        name="meshio",
-        suffixes=tuple(_KINDS),
-        description="surface files for viewers and input files of solid mechanics, without patches",
-        write_grids=later(f"{__name__}:write_grids", options=options),
-        choices=(tuple(dict.fromkeys(_KINDS.values())),),
-        variant=_meshio,
-        suffix_options=_KINDS,
-    )
-
-
-FORMATS = (_meshio(),)

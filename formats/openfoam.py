@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Format, Heights, only_one
-from meshonet.formats.mesh.boundary_patches import kinds
-from meshonet.formats.mesh.names import words
+from meshonet.formats.format import Heights, only_one
+from meshonet.formats.mesh.names import kinds, words
 from meshonet.formats.mesh.unstructured import Indices, Unstructured, layer_points, unstructured
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.formats.text.number_table import write_rows
@@ -62,12 +61,7 @@ class Faces:
     patches: tuple[Patch, ...]
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`, one unit of length thick."""
-    write_extruded(path, grids, (0.0, 1.0))
-
-
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0, 1.0)) -> None:
     """Write the one grid of `grids` around `path`, which is left empty, repeated in z.
 
     One cell thick, its two planes are a patch ``empty``; thicker, they are symmetry planes. The mesh that is
@@ -189,16 +183,3 @@ def _head(kind: str, name: str, note: str = "", place: str = "constant/polyMesh"
         f"FoamFile\n{{\n    version     2.0;\n    format      ascii;\n    class       {kind};\n{remark}"
         f'    location    "{place}";\n    object      {name};\n}}\n\n'
     )
-
-
-FORMATS = (
-    Format(
-        name="openfoam",
-        suffixes=(".foam",),
-        description="OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-        write_grids=write_grids,
-        write_extruded=write_extruded,
-        names_patches=True,
-        fills_folder=True,
-    ),
-)

@@ -41,10 +41,8 @@ def whole_file(destination: str, *, make_folder: bool = False, beside: bool = Fa
     make_folder : make the destination's folder when it is missing.
     beside : whether other files will be written beside the path, which a stream has no room for.
 
-    Raises
-    ------
-    InputError
-        the destination is a folder, its folder is missing or may not be written, the disc is full.
+    Raises InputError: the destination is a folder, its folder is missing or may not be written, the disc is
+    full.
 
     Examples
     --------

@@ -1,21 +1,17 @@
-"""Which format a file is in: by its name, by its ending, by its content.
-
-The table below is all that is known without loading a format's room, so that starting the program costs
-nothing for formats that are not used.
-"""
+"""Which format a file is in: by its name, by its ending, by its content."""
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Literal, NamedTuple, TypeVar
+from typing import Literal, TypeVar
 
 from meshonet.formats.format import Format
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import Source, open_source, printable
+from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet.geometry.shapes.shape import Shape
@@ -23,45 +19,6 @@ from meshonet.geometry.shapes.shape import Shape
 Kind = Literal["grids", "boundaries"]
 T = TypeVar("T")
 
-
-class Row(NamedTuple):
-    """A format's room and file endings; the endings repeat its record's, and a test holds them equal."""
-
-    room: str
-    suffixes: tuple[str, ...]
-
-
-TABLE: dict[str, Row] = {
-    "hdf5": Row("hdf5", (".h5", ".hdf5")),
-    "vts": Row("vtk", (".vts",)),
-    "vtm": Row("vtk", (".vtm",)),
-    "vtk": Row("vtk", (".vtk",)),
-    "vtu": Row("vtk", (".vtu",)),
-    "gmsh": Row("gmsh", (".msh",)),
-    "cgns": Row("cgns", (".cgns",)),
-    "openfoam": Row("openfoam", (".foam",)),
-    "geo": Row("gmsh", (".geo",)),
-    "nmf": Row("plot3d", (".nmf",)),
-    "su2": Row("su2", (".su2",)),
-    "plot3d": Row("plot3d", (".p3d", ".xyz", ".fmt", ".x", ".dat", ".bin", ".ufmt", ".unf")),
-    "dxf": Row("outlines", (".dxf",)),
-    "wkt": Row("outlines", (".wkt",)),
-    "geojson": Row("outlines", (".geojson", ".json")),
-    "airfoil": Row("text", (".dat",)),
-    "points": Row("text", (".csv", ".txt", ".xy")),
-    "png": Row("figure", (".png",)),
-    "svg": Row("figure", (".svg",)),
-    "pdf": Row("figure", (".pdf",)),
-    "meshio": Row(
-        "meshio_export",
-        (
-            ".stl", ".ply", ".obj", ".off", ".inp", ".mesh", ".avs", ".tec", ".dato",
-            ".post", ".mdpa", ".med", ".vol", ".xdmf", ".xmf",
-        ),
-    ),
-}  # fmt: skip
-"""Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
-whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
 
 _OLD_NAMES = {
     "gmsh41": "gmsh:4.1",
@@ -74,41 +31,34 @@ _DESIGNATION = "naca:"
 def format_named(name: str) -> Format:
     """Return the format of a name: its own, with options (``gmsh:4.1,ascii``), an old name, or an ending.
 
-    Raises
-    ------
-    InputError
-        no such format, or no such option of it; the message lists those there are.
+    Raises InputError: no such format, or no such option of it; the message lists those there are.
     """
     word, _, options = name.lower().lstrip(".").partition(":")
     if word in _OLD_NAMES:
         word, _, own = _OLD_NAMES[word].partition(":")
-        return _record(word).with_options(f"{own}:{options}")
+        return TABLE[word].with_options(f"{own}:{options}")
     if word in TABLE:
-        return _record(word).with_options(options)
-    for known, row in TABLE.items():
-        if f".{word}" in row.suffixes:
-            record = _record(known)
+        return TABLE[word].with_options(options)
+    for record in TABLE.values():
+        if f".{word}" in record.suffixes:
             return record.with_options(f"{record.suffix_options.get(f'.{word}', '')}:{options}")
     family, _, own = word.partition("-")
     if own and family in TABLE:  # as in plot3d-binary, which was a format of its own that read any other too
-        record = _record(family)
+        record = TABLE[family]
         variant = record.with_options(f"{own}:{options}")
         return variant if options else replace(variant, read_grids=record.read_grids)
     raise InputError(f"format {name!r} is not known", "use one of " + ", ".join(TABLE))
 
 
 def formats() -> tuple[Format, ...]:
-    """Return every format; loads their rooms, though not the libraries these call."""
-    return tuple(map(_record, TABLE))
+    """Return every format."""
+    return tuple(TABLE.values())
 
 
 def format_of(source: Source, fmt: str | None = None) -> Format:
     """Return the format of a source to be read.
 
-    Raises
-    ------
-    InputError
-        neither the ending nor the content tells.
+    Raises InputError: neither the ending nor the content tells.
     """
     if fmt:
         return format_named(fmt)
@@ -130,10 +80,7 @@ def format_of(source: Source, fmt: str | None = None) -> Format:
 def format_for_output(path_text: str, fmt: str | None = None, kind: Kind = "grids") -> Format:
     """Return the format to write `path_text` in; standard output is HDF5 unless `fmt` says otherwise.
 
-    Raises
-    ------
-    InputError
-        the ending is not known, or the format cannot be written with what `kind` says.
+    Raises InputError: the ending is not known, or the format cannot be written with what `kind` says.
     """
     if not path_text:
         raise InputError(
@@ -167,10 +114,8 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     The outer edges of a grid are boundaries, so a grid file serves too. Behind a record that cannot be read,
     for which it raises, the iterator goes on with those that formats can still reach.
 
-    Raises
-    ------
-    InputError
-        a source that cannot be opened, is of no known format, or is not right; named with its place.
+    Raises InputError: a source that cannot be opened, is of no known format, or is not right; named with its
+    place.
     """
     if _is_designation(text):
         if fmt:
@@ -191,10 +136,7 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
 def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     """Return the grids of a path or of ``-``; the iterator goes on behind a record as `read_shapes` does.
 
-    Raises
-    ------
-    InputError
-        as `read_shapes`; also a file that holds boundaries only.
+    Raises InputError: as `read_shapes`; also a file that holds boundaries only.
     """
     if _is_designation(text):
         raise InputError(
@@ -252,18 +194,14 @@ def _selectable(source: Source, record: Format) -> Format:
     return record
 
 
-def _record(name: str) -> Format:
-    room = importlib.import_module(f"meshonet.formats.{TABLE[name].room}")
-    records: tuple[Format, ...] = room.FORMATS
-    return next(record for record in records if record.name == name)
-
-
 def _by_suffix(suffix: str) -> tuple[Format, ...]:
-    return tuple(_record(name) for name, row in TABLE.items() if suffix and suffix in row.suffixes)
+    return tuple(record for record in TABLE.values() if suffix and suffix in record.suffixes)
 
 
 def _known() -> str:
-    return "known endings: " + " ".join(sorted({suffix for row in TABLE.values() for suffix in row.suffixes}))
+    return "known endings: " + " ".join(
+        sorted({word for record in TABLE.values() for word in record.suffixes})
+    )
 
 
 def _unreadable(record: Format, source: Source) -> InputError:

@@ -78,10 +78,7 @@ def open_source(text: str) -> Source:
 
     Standard input and pipes are read to their end, since formats need to look back and forth.
 
-    Raises
-    ------
-    InputError
-        no such file, a folder, a file that may not be read, nothing in it.
+    Raises InputError: no such file, a folder, a file that may not be read, nothing in it.
     """
     text, kept = _selected(text)
     try:

@@ -7,12 +7,13 @@ cells and the lines of the markers make boundaries. https://su2code.github.io/do
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
-from meshonet.formats.format import Format, Heights, only_one
+from meshonet.formats.format import Heights, only_one
 from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.surface import Surface, shapes_of
 from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
@@ -23,68 +24,45 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
-_LINE, _QUADRILATERAL, _HEXAHEDRON = 3, 9, 12  # VTK's numbers
+_KINDS = {2: "3", 4: "9", 8: "12"}
+"""VTK's numbers of lines, quadrilaterals and hexahedra by their nodes."""
 _NODES = {b"3": 2, b"5": 3, b"9": 4}
 """Nodes of the kinds of cells that a plane mesh has, by VTK's numbers: lines, triangles, quadrilaterals."""
 _CUT = "the file is cut short: write it again"
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`: quadrilaterals, and lines under the names of its parts."""
-    mesh = unstructured(only_one(grids, "a .su2 file"))
-    _write(path, mesh.points, (_QUADRILATERAL, mesh.quads), (_LINE, mesh.edges))
+def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> None:
+    """Write the one grid of `grids`: quadrilaterals, and lines under the names of its patches.
 
-
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-    """Write the one grid of `grids` repeated in z, the outer planes as markers ``back`` and ``front``."""
-    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .su2 file")), heights)
-    _write(path, points, (_HEXAHEDRON, hexahedra), (_QUADRILATERAL, faces))
-
-
-def _write(
-    path: Path, points: Floats, cells: tuple[int, Indices], markers: tuple[int, Mapping[str, Indices]]
-) -> None:
-    """Write points (n, 2 or 3), the cells (kind, nodes) and the markers (kind, nodes by name)."""
-    kind, nodes = cells
-    marker_kind, parts = markers
+    Repeated in z: hexahedra, and quadrilaterals, those of the outer planes as markers ``back`` and ``front``.
+    """
+    points, markers, cells = extruded(unstructured(only_one(grids, "a .su2 file")), heights)
     with path.open("wb") as stream:
-        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(nodes)}\n".encode("ascii"))
-        write_rows(stream, _row(kind, nodes), nodes)
+        stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(cells)}\n".encode("ascii"))
+        _write_cells(stream, cells)
         stream.write(f"NPOIN= {len(points)}\n".encode("ascii"))
         write_rows(stream, " ".join(["%e"] * points.shape[1]), points)
-        stream.write(f"NMARK= {len(parts)}\n".encode("ascii"))
-        for name, word in words(parts).items():
-            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(parts[name])}\n".encode("ascii"))
-            write_rows(stream, _row(marker_kind, parts[name]), parts[name])
+        stream.write(f"NMARK= {len(markers)}\n".encode("ascii"))
+        for name, word in words(markers).items():
+            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(markers[name])}\n".encode("ascii"))
+            _write_cells(stream, markers[name])
 
 
-def _row(kind: int, nodes: Indices) -> str:
-    return " ".join([str(kind), *["%d"] * nodes.shape[1]])
+def _write_cells(stream: BinaryIO, nodes: Indices) -> None:
+    count = nodes.shape[1]
+    write_rows(stream, " ".join([_KINDS[count], *["%d"] * count]), nodes)
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the markers of a mesh enclose.
 
-    Raises
-    ------
-    InputError
-        no such mesh, one of three dimensions, markers that are no closed curves.
+    Raises InputError: no such mesh, one of three dimensions, markers that are no closed curves.
     """
     yield from shapes_of(_Reader(source.read_bytes().split(b"\n")).surface(), source.stem)
 
 
-def sniff(head: bytes) -> bool:
-    """Say whether `head` is of an SU2 mesh."""
-    return b"NDIME" in head[:4096] and b"=" in head[:4096]
-
-
 class _Reader:
-    """The lines of a mesh, keyword by keyword.
-
-    Parameters
-    ----------
-    lines : of the whole file.
-    """
+    """The lines of a mesh, keyword by keyword."""
 
     def __init__(self, lines: list[bytes]) -> None:
         self._lines, self._at = lines, 0
@@ -94,7 +72,6 @@ class _Reader:
         self._tag = ""
 
     def surface(self) -> Surface:
-        """Return what the file says."""
         while self._at < len(self._lines):
             word = self._lines[self._at].split(b"%", 1)[0].strip()
             self._at += 1
@@ -132,7 +109,7 @@ class _Reader:
                 self._edges[self._tag] = np.concatenate([had, lines])
 
     def _elements(self, count: int) -> dict[int, Indices]:
-        """Return node numbers by how many nodes a cell has."""
+        """Return node numbers by the count of nodes of a cell."""
         if count == 0:
             return {}
         first = self._lines[self._at].split(None, 1) if self._at < len(self._lines) else []
@@ -147,11 +124,11 @@ class _Reader:
         if len(kinds) == 1:
             nodes = _NODES[first[0]]
             return {nodes: self._indices(self._rows(count), nodes)}
-        found: dict[int, list[Indices]] = {}
+        cells: dict[int, list[Indices]] = {}
         for _ in range(count):
             nodes = _NODES[self._lines[self._at].split(None, 1)[0]]
-            found.setdefault(nodes, []).append(self._indices(self._rows(1), nodes))
-        return {nodes: np.concatenate(rows) for nodes, rows in found.items()}
+            cells.setdefault(nodes, []).append(self._indices(self._rows(1), nodes))
+        return {nodes: np.concatenate(rows) for nodes, rows in cells.items()}
 
     def _indices(self, rows: Floats, nodes: int) -> Indices:
         if rows.shape[1] not in (nodes + 1, nodes + 2):
@@ -191,17 +168,3 @@ class _Reader:
 
 def _shown(word: bytes) -> str:
     return printable(word[:40].decode("utf-8", "replace"))
-
-
-FORMATS = (
-    Format(
-        name="su2",
-        suffixes=(".su2",),
-        description="SU2 mesh, text, patches as markers; read as a boundary",
-        write_grids=write_grids,
-        write_extruded=write_extruded,
-        read_shapes=read_shapes,
-        sniff=sniff,
-        names_patches=True,
-    ),
-)

@@ -69,10 +69,7 @@ def children(node: Node, label: str) -> Iterator[tuple[str, Node]]:
 def array(node: Node, ndim: int) -> NDArray[Any]:
     """Return a node's numbers once their type, rank and stored size are plausible.
 
-    Raises
-    ------
-    InputError
-        there are none, or they claim more than the file holds.
+    Raises InputError: there are none, or they claim more than the file holds.
     """
     import h5py
 

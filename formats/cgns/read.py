@@ -27,10 +27,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
     Parts are those that this package wrote, or the boundary conditions of the zone where its nodes are
     taken as they stand.
 
-    Raises
-    ------
-    InputError
-        a container of the old kind, no HDF5, no structured zone, a zone that is not right.
+    Raises InputError: a container of the old kind, no HDF5, no structured zone, a zone that is not right.
     """
     if is_adf(source.head(64)):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")

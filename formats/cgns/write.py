@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child, root
 from meshonet.formats.format import Heights, at_least_one
 from meshonet.formats.hdf5.file import created
-from meshonet.formats.mesh.boundary_patches import kinds
 from meshonet.formats.mesh.metadata import facts_of
-from meshonet.formats.mesh.names import words
+from meshonet.formats.mesh.names import kinds, words
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
@@ -28,27 +27,15 @@ from meshonet.geometry.blocks.patches import Kind
 Integers = NDArray[np.int32]
 
 _CONDITIONS: dict[Kind, str] = {
-    "wall": "BCWall",
-    "farfield": "BCFarfield",
-    "inlet": "BCInflow",
-    "outlet": "BCOutflow",
+    "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
     "symmetry": "BCSymmetryPlane",
-}
+}  # fmt: skip
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write one zone of two dimensions for each grid."""
-    _write(path, grids, ())
-
-
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-    """Write one zone of three dimensions, the plane repeated in z, for each grid."""
-    _write(path, grids, heights)
-
-
-def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> None:
+    """Write one zone for each grid: of two dimensions, or with `heights` of three, repeated in z."""
     rest = iter(grids)
     first = at_least_one(rest)
     dimension = 3 if heights else 2
@@ -68,9 +55,7 @@ def _write(path: Path, grids: Iterable[Grid], heights: tuple[float, ...]) -> Non
             child(node, "FamilyBC", "FamilyBC_t", _CONDITIONS.get(kind, "BCGeneral"))
 
 
-def _write_zone(
-    base: Node, name: str, grid: Grid, heights: tuple[float, ...], zones: set[str]
-) -> dict[str, Kind]:
+def _write_zone(base: Node, name: str, grid: Grid, heights: Heights, zones: set[str]) -> dict[str, Kind]:
     """Add a zone and return the families of its parts, called otherwise than all `zones`."""
     dims = [grid.ni, grid.nj, len(heights)][: 3 if heights else 2]
     size = np.array([dims, [n - 1 for n in dims], [0] * len(dims)], np.int32)
@@ -86,7 +71,7 @@ def _write_zone(
     return _write_conditions(zone, grid, len(heights), zones)
 
 
-def _coordinates(grid: Grid, heights: tuple[float, ...]) -> Iterator[Floats]:
+def _coordinates(grid: Grid, heights: Heights) -> Iterator[Floats]:
     """Yield x, y[, z] as (nj, ni) or (nk, nj, ni)."""
     for values in (grid.x.T, grid.y.T):
         yield np.stack([values] * len(heights)) if heights else np.ascontiguousarray(values)

@@ -59,10 +59,7 @@ def draw(
     zoom : x0, x1, y0, y1 of the part to show, in one view.
     every : K, to draw every K-th grid line; None chooses it.
 
-    Raises
-    ------
-    InputError
-        a zoom that is empty or shows nothing, `every` below 1, values of the wrong shape.
+    Raises InputError: a zoom that is empty or shows nothing, `every` below 1, values of the wrong shape.
     """
     _check(grid, colouring, zoom, every)
     views = [zoom] if zoom else _views(grid)

@@ -26,10 +26,7 @@ class Picture:
     zoom : x0, x1, y0, y1 of the part to show; None shows all.
     every : draw every so many-th grid line; None chooses by the resolution of the picture.
 
-    Raises
-    ------
-    InputError
-        a metric that is not known; a box without extent.
+    Raises InputError: a metric that is not known; a box without extent.
     """
 
     metric: str | None = "max_angle"
@@ -62,10 +59,7 @@ class Picture:
 def picture_format(output: str, to_format: str | None = None) -> Format:
     """Return the format of a picture by the ending of `output`; standard output (``-``) is a ``png``.
 
-    Raises
-    ------
-    InputError
-        `output` is no picture.
+    Raises InputError: `output` is no picture.
     """
     found = format_for_output(output, to_format or ("png" if output == "-" else None))
     if found.name not in KINDS:

@@ -14,7 +14,7 @@ from typing import BinaryIO, TypeAlias
 import numpy as np
 
 from meshonet.formats.format import Heights, Options, only_one
-from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
+from meshonet.formats.mesh.unstructured import CELLS, Indices, extruded, in_space, unstructured
 from meshonet.formats.source import printable
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
@@ -22,27 +22,24 @@ from meshonet.geometry.blocks.grid import Grid
 
 INTERIOR = "fluid"
 """Name of the group of all cells."""
-_KINDS = {"line": 1, "quad": 3, "hexahedron": 5}
+_KINDS = {2: 1, 4: 3, 8: 5}
+"""Gmsh's numbers of lines, quads and hexahedra by their nodes."""
 
-Group: TypeAlias = "tuple[str, str, Indices]"
-"""Kind of cells, name, and their nodes (m, k) counted from 0."""
-
-
-def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the one grid of `grids`: quads, and lines in groups named as its patches."""
-    mesh = unstructured(only_one(grids, "a .msh file"))
-    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
-    groups: list[Group] = [("line", name, edges) for name, edges in mesh.edges.items()]
-    _write(path, points, groups, ("quad", mesh.quads), 2, options)
+Block: TypeAlias = "tuple[str, Indices]"
+"""Name of a group of cells and their nodes (m, k) counted from 0."""
 
 
-def write_extruded(
-    path: Path, grids: Iterable[Grid], heights: Heights, *, options: Options = frozenset()
+def write_grids(
+    path: Path, grids: Iterable[Grid], heights: Heights = (), *, options: Options = frozenset()
 ) -> None:
-    """Write the one grid of `grids` repeated in z: hexahedra, and faces in groups."""
-    points, faces, hexahedra = extruded(unstructured(only_one(grids, "a .msh file")), heights)
-    groups: list[Group] = [("quad", name, quads) for name, quads in faces.items()]
-    _write(path, points, groups, ("hexahedron", hexahedra), 3, options)
+    """Write the one grid of `grids`: quads, and lines in groups named as its patches.
+
+    Repeated in z: hexahedra, and faces in groups.
+    """
+    points, patches, cells = extruded(unstructured(only_one(grids, "a .msh file")), heights)
+    inside = INTERIOR if INTERIOR not in patches else f"{INTERIOR}-cells"
+    write = _write_41 if "4.1" in options else _write_22
+    write(path, in_space(points), [*patches.items(), (inside, cells)], text="ascii" in options)
 
 
 def quotable(name: str) -> str:
@@ -50,43 +47,39 @@ def quotable(name: str) -> str:
     return printable(name).replace('"', "'")
 
 
-def _write(
-    path: Path, points: Floats, groups: list[Group], cells: tuple[str, Indices], dim: int, options: Options
-) -> None:
-    inside = INTERIOR if all(name != INTERIOR for _, name, _ in groups) else f"{INTERIOR}-cells"
-    write = _write_41 if "4.1" in options else _write_22
-    write(path, points, groups, (cells[0], inside, cells[1]), dim, text="ascii" in options)
-
-
-def _write_22(path: Path, points: Floats, groups: list[Group], cells: Group, dim: int, *, text: bool) -> None:
-    """Write the groups, of dimension `dim` - 1, and the cells."""
+def _write_22(path: Path, points: Floats, blocks: list[Block], *, text: bool) -> None:
     import meshio
 
-    blocks = [(dim - 1, group) for group in groups] + [(dim, cells)]
-    tags = [np.full(len(nodes), tag) for tag, (_, (_, _, nodes)) in enumerate(blocks, start=1)]
+    tags = [np.full(len(nodes), tag) for tag, (_, nodes) in enumerate(blocks, start=1)]
     mesh = meshio.Mesh(
         points,
-        [(kind, nodes) for _, (kind, _, nodes) in blocks],
+        [(CELLS[nodes.shape[1]], nodes) for _, nodes in blocks],
         field_data={
-            quotable(name): np.array([tag, dimension])
-            for tag, (dimension, (_, name, _)) in enumerate(blocks, start=1)
+            quotable(name): np.array([tag, _dimension(nodes)])
+            for tag, (name, nodes) in enumerate(blocks, start=1)
         },
         cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
     )
     meshio.gmsh.write(str(path), mesh, fmt_version="2.2", binary=not text, float_fmt=".16e")
 
 
-def _write_41(path: Path, points: Floats, groups: list[Group], cells: Group, dim: int, *, text: bool) -> None:
-    """Write the groups, entities 1, 2 ... of dimension `dim` - 1, and the cells, entity 1 of `dim`."""
-    blocks = [(dim - 1, tag, group) for tag, group in enumerate(groups, start=1)] + [(dim, 1, cells)]
+def _dimension(nodes: Indices) -> int:
+    return int(nodes.shape[1]).bit_length() - 1
+
+
+def _write_41(path: Path, points: Floats, blocks: list[Block], *, text: bool) -> None:
+    """Write the patches, entities 1, 2 ... of a dimension, and the cells, entity 1 of the next."""
+    dim = _dimension(blocks[-1][1])
+    entities = [(dim - 1, tag, nodes) for tag, (_, nodes) in enumerate(blocks[:-1], start=1)]
+    entities.append((dim, 1, blocks[-1][1]))
     with path.open("wb") as stream:
         stream.write(f"$MeshFormat\n4.1 {int(not text)} 8\n".encode())
         stream.write(b"" if text else struct.pack("<i", 1) + b"\n")
         stream.write(f"$EndMeshFormat\n$PhysicalNames\n{len(blocks)}\n".encode())
-        for k, (dimension, _, (_, name, _)) in enumerate(blocks, start=1):
-            stream.write(f'{dimension} {k} "{quotable(name)}"\n'.encode())
+        for k, (name, nodes) in enumerate(blocks, start=1):
+            stream.write(f'{_dimension(nodes)} {k} "{quotable(name)}"\n'.encode())
         stream.write(b"$EndPhysicalNames\n$Entities\n")
-        _write_entities(stream, points, blocks, dim, text=text)
+        _write_entities(stream, points, entities, text=text)
         stream.write(b"$EndEntities\n$Nodes\n")
         count = len(points)
         _numbers(stream, "q", (1, count, 1, count), text=text)
@@ -95,11 +88,11 @@ def _write_41(path: Path, points: Floats, groups: list[Group], cells: Group, dim
         _rows(stream, np.arange(1, count + 1)[:, None], text=text)
         _rows(stream, points, text=text)
         stream.write(b"$EndNodes\n$Elements\n")
-        total = sum(len(nodes) for _, _, (_, _, nodes) in blocks)
+        total = sum(len(nodes) for _, nodes in blocks)
         _numbers(stream, "q", (len(blocks), total, 1, total), text=text)
         first = 1
-        for dimension, tag, (kind, _, nodes) in blocks:
-            _numbers(stream, "i", (dimension, tag, _KINDS[kind]), text=text, end=b" ")
+        for dimension, tag, nodes in entities:
+            _numbers(stream, "i", (dimension, tag, _KINDS[nodes.shape[1]]), text=text, end=b" ")
             _numbers(stream, "q", (len(nodes),), text=text)
             _rows(stream, np.column_stack([np.arange(first, first + len(nodes)), nodes + 1]), text=text)
             first += len(nodes)
@@ -107,13 +100,12 @@ def _write_41(path: Path, points: Floats, groups: list[Group], cells: Group, dim
 
 
 def _write_entities(
-    stream: BinaryIO, points: Floats, blocks: list[tuple[int, int, Group]], dim: int, *, text: bool
+    stream: BinaryIO, points: Floats, entities: list[tuple[int, int, Indices]], *, text: bool
 ) -> None:
     """Write the box and the physical group of each entity, without what bounds it."""
-    counts = [0, 0, 0, 0]
-    counts[dim - 1], counts[dim] = len(blocks) - 1, 1
-    _numbers(stream, "q", tuple(counts), text=text)
-    for group, (_, tag, (_, _, nodes)) in enumerate(blocks, start=1):
+    dimensions = [dimension for dimension, _, _ in entities]
+    _numbers(stream, "q", tuple(map(dimensions.count, range(4))), text=text)
+    for group, (_, tag, nodes) in enumerate(entities, start=1):
         own = points[nodes.ravel()]
         box = (*own.min(axis=0).tolist(), *own.max(axis=0).tolist())
         _numbers(stream, "i", (tag,), text=text, end=b" ")

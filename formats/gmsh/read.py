@@ -29,10 +29,8 @@ _AGAIN = "write the file again"
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the lines of a mesh enclose.
 
-    Raises
-    ------
-    InputError
-        no such mesh, another version, one of three dimensions, lines that are no closed curves.
+    Raises InputError: no such mesh, another version, one of three dimensions, lines that are no closed
+    curves.
     """
     data = source.read_bytes()
     version, binary, order = _format(data)

@@ -116,10 +116,7 @@ class Checked:
     def kept(self, split: str) -> list[int]:
         """Return the samples of a split, or all of them.
 
-        Raises
-        ------
-        InputError
-            the dataset has none of that split.
+        Raises InputError: the dataset has none of that split.
         """
         found = [k for k in range(self.count) if not split or self.text("split", k) == split]
         if not found:

@@ -83,10 +83,7 @@ class _Disc:
 def created(path: Path, **options: Any) -> Iterator[h5py.File]:
     """Give a new HDF5 file; `options` go to h5py.
 
-    Raises
-    ------
-    OSError
-        the disc is full, or another failure to write.
+    Raises OSError: the disc is full, or another failure to write.
     """
     import h5py
 

@@ -35,10 +35,7 @@ def read_shapes(source: Source) -> Iterator[Boundary]:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Return an iterator over the grids; it continues after a sample that is not right.
 
-    Raises
-    ------
-    InputError
-        the dataset holds boundaries only, or is not right.
+    Raises InputError: the dataset holds boundaries only, or is not right.
     """
     return map(call, _samples(source, _grid))
 

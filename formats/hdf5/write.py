@@ -41,10 +41,7 @@ class Writer:
     kind : what it will hold.
     parameter_names : names of the numbers that go with each sample, if any do.
 
-    Raises
-    ------
-    InputError
-        when a sample differs from the first one in size or topology.
+    Raises InputError: when a sample differs from the first one in size or topology.
     """
 
     def __init__(self, path: Path, kind: Kind, parameter_names: Sequence[str] = ()) -> None:

@@ -47,10 +47,7 @@ def closed_loops(edges: Mapping[str, Indices], points: Floats) -> list[Loop]:
     edges : (k, 2) point numbers by name.
     points : (n, 2), for messages.
 
-    Raises
-    ------
-    InputError
-        a point where one edge ends, or more than two meet.
+    Raises InputError: a point where one edge ends, or more than two meet.
     """
     ends = np.concatenate([np.empty((0, 2), np.int64), *edges.values()])
     names = [name for name, rows in edges.items() for _ in range(len(rows))]

@@ -1,9 +1,12 @@
-"""Names as solvers' text files take them."""
+"""Names and kinds of patches as solvers' files take them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Kind, Patch
 
 
 def words(
@@ -11,23 +14,16 @@ def words(
 ) -> dict[str, str]:
     """Return a word of ASCII letters, digits and ``_.+-`` for each of `names`, all different.
 
-    Solvers' case files name boundaries, and a blank, a comma or a bracket ends a name there.
+    In case files a blank, a comma or a bracket ends a name. A word has at most `limit` characters, is none of
+    `taken`, and starts with a letter where `letter` says so.
 
-    Parameters
-    ----------
-    limit : most characters of a word.
-    taken : words that must not come out.
-    letter : whether a word must start with a letter.
-
-    Examples
-    --------
     >>> words(["wall", "no-slip wall", "no-slip,wall", "Ω"])
     {'wall': 'wall', 'no-slip wall': 'no-slip_wall', 'no-slip,wall': 'no-slip_wall-2', 'Ω': 'part'}
     """
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     used = set(taken)
     for name in names:
-        if name in found:
+        if name in result:
             continue
         stem = re.sub(r"[^A-Za-z0-9_.+-]+", "_", name).strip("_.")[:limit] or "part"
         if letter and not stem[0].isalpha():
@@ -36,6 +32,15 @@ def words(
         while word in used:
             count += 1
             word = f"{stem[: limit - len(str(count)) - 1]}-{count}"
-        found[name] = word
+        result[name] = word
         used.add(word)
-    return found
+    return result
+
+
+def kinds(grid: Grid, patches: Iterable[Patch]) -> dict[str, Kind]:
+    """Return the kind of boundary of each name of `patches`; an unnamed one of a body is a wall."""
+    kind: dict[str, Kind] = {}
+    for patch in patches:
+        body = grid.around_body and patch.side == "south" and patch.kind in ("other", "interface")
+        kind.setdefault(patch.name, "wall" if body else patch.kind)
+    return kind

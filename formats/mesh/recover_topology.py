@@ -18,10 +18,7 @@ _SEAM = 1e-6
 def boundary_of(grid: Grid) -> Boundary:
     """Return the four outer edges of `grid`, with its topology, parts and name.
 
-    Raises
-    ------
-    InputError
-        the edges are no boundary, e.g. two neighbouring nodes are the same point.
+    Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point.
     """
     nodes = grid.nodes
     return Boundary(
@@ -48,10 +45,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
     ----------
     nodes : (ni, nj, 2).
 
-    Raises
-    ------
-    InputError
-        a coordinate is not finite, or so large that areas are not.
+    Raises InputError: a coordinate is not finite, or so large that areas are not.
     """
     nodes = right_handed(usable(nodes))
     if not _closed(nodes) and _closed(_quarter_turn(nodes)):
@@ -73,10 +67,7 @@ def recovered(nodes: Floats, name: str = "") -> Grid:
 def usable(nodes: Floats) -> Floats:
     """Return `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) as they are.
 
-    Raises
-    ------
-    InputError
-        a coordinate is not finite, or so large that products of two are not.
+    Raises InputError: a coordinate is not finite, or so large that products of two are not.
     """
     if not -LARGEST < nodes.min() <= nodes.max() < LARGEST:  # NaN passes through min and compares false
         place = tuple(np.argwhere(~(np.abs(nodes) < LARGEST))[0].tolist())
@@ -100,10 +91,7 @@ def right_handed(nodes: Floats) -> Floats:
 def known_topology(text: str) -> Topology:
     """Return `text` as a topology.
 
-    Raises
-    ------
-    InputError
-        it is none.
+    Raises InputError: it is none.
     """
     for topology in TOPOLOGIES:
         if text == topology:

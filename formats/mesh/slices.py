@@ -22,10 +22,7 @@ def planar(coordinates: Sequence[Floats]) -> Floats:
     ----------
     coordinates : x, y[, z], each (n1, n2, n3), any unit; memory order does not matter.
 
-    Raises
-    ------
-    InputError
-        the grid is truly three-dimensional, or its plane is curved.
+    Raises InputError: the grid is truly three-dimensional, or its plane is curved.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
         return _planar(coordinates)

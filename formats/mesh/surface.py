@@ -54,10 +54,7 @@ def shapes_of(surface: Surface, name: str) -> Iterator[Shape]:
     with an O grid between them. The corners are those of the cells, or else where names change four times;
     the first edge of the file is on the south side.
 
-    Raises
-    ------
-    InputError
-        edges that are no closed curves, curves within curves.
+    Raises InputError: edges that are no closed curves, curves within curves.
     """
     edges = surface.edges or {"": _free_edges(surface.cells)}
     count = sum(map(len, edges.values()))
@@ -174,10 +171,7 @@ def _labelled(shape: Shape, loops: list[Loop], points: Floats) -> Shape:
 def flat(points: Floats) -> Floats:
     """Return x and y (n, 2) of points (n, 2 or 3) that lie in a plane z = constant.
 
-    Raises
-    ------
-    InputError
-        they do not.
+    Raises InputError: they do not.
     """
     if points.shape[1] > 2 and len(points):
         z = points[:, 2]

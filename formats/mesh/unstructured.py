@@ -14,6 +14,8 @@ from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
 
 Indices: TypeAlias = NDArray[np.int64]
+CELLS = {2: "line", 4: "quad", 8: "hexahedron"}
+"""meshio's names of cells by their count of nodes."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +52,22 @@ def unstructured(grid: Grid) -> Unstructured:
 def extruded(mesh: Unstructured, heights: Sequence[float]) -> tuple[Floats, dict[str, Indices], Indices]:
     """Return points (kn, 3), outward faces by name, hexahedra (m, 8) of layers between k planes in z.
 
-    The outermost planes are the faces ``back`` (the first height) and ``front``. Layer by layer.
+    Layer by layer; the outermost planes are the faces ``back`` (the first height) and ``front``. Without
+    heights, the points (n, 2), edges and quadrilaterals as they are.
     """
+    if not heights:
+        return mesh.points, mesh.edges, mesh.quads
     count, layers = len(mesh.points), len(heights) - 1
     columns = np.concatenate([mesh.quads, mesh.quads + count], axis=1)
     sides = {name: np.column_stack([edges, edges[:, ::-1] + count]) for name, edges in mesh.edges.items()}
     faces = {name: _repeated(rows, layers, count) for name, rows in sides.items()}
     faces["back"], faces["front"] = mesh.quads[:, ::-1], mesh.quads + layers * count
     return layer_points(mesh, heights), faces, _repeated(columns, layers, count)
+
+
+def in_space(points: Floats) -> Floats:
+    """Return points (n, 2) in the plane z = 0, those of (n, 3) as they are."""
+    return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
 
 
 def layer_points(mesh: Unstructured, heights: Sequence[float]) -> Floats:
@@ -89,7 +99,7 @@ def _edges(grid: Grid, number: Indices) -> dict[str, Indices]:
         "north": np.stack([number[1:, -1], number[:-1, -1]], axis=-1),
         "west": np.stack([number[0, 1:], number[0, :-1]], axis=-1),
     }
-    found: dict[str, list[Indices]] = {}
+    edges: dict[str, list[Indices]] = {}
     for patch in grid.outer_patches():
-        found.setdefault(patch.name, []).append(sides[patch.side][patch.start : patch.stop])
-    return {name: np.concatenate(pieces) for name, pieces in found.items()}
+        edges.setdefault(patch.name, []).append(sides[patch.side][patch.start : patch.stop])
+    return {name: np.concatenate(pieces) for name, pieces in edges.items()}

@@ -30,10 +30,7 @@ _SAG = 1e-5
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shapes that the curves of a drawing enclose.
 
-    Raises
-    ------
-    InputError
-        ezdxf is not installed; no such drawing; curves that do not close.
+    Raises InputError: ezdxf is not installed; no such drawing; curves that do not close.
     """
     try:
         from ezdxf import path

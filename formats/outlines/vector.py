@@ -31,10 +31,7 @@ _ASK = "give a POLYGON or a closed LINESTRING"
 def read_wkt(source: Source) -> Iterator[Shape]:
     """Yield the outlines of a WKT file.
 
-    Raises
-    ------
-    InputError
-        text that is no WKT, a geometry that is no outline; with its line.
+    Raises InputError: text that is no WKT, a geometry that is no outline; with its line.
     """
     yield from _named([(source.stem, place, geometry) for place, geometry in _geometries(_text(source))])
 
@@ -42,10 +39,7 @@ def read_wkt(source: Source) -> Iterator[Shape]:
 def read_geojson(source: Source) -> Iterator[Shape]:
     """Yield the outlines of a GeoJSON file, called by the property ``name`` of their features.
 
-    Raises
-    ------
-    InputError
-        text that is no GeoJSON, a geometry that is no outline; with the number of its feature.
+    Raises InputError: text that is no GeoJSON, a geometry that is no outline; with the number of its feature.
     """
     from shapely.errors import ShapelyError
     from shapely.geometry import shape

@@ -3,8 +3,6 @@
 https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
 
-from meshonet.formats.format import Format, Options, later
-
 CHOICES = (
     ("ascii", "binary", "fortran"),
     ("multi", "single"),
@@ -21,32 +19,3 @@ CHOICES = (
 y and z of one k after the other in place of all x, all y, all z; ``span-i`` the planes of a grid that is
 repeated in z along the first index, as FUN3D and NASA have it, ``span-j`` along the second.
 """
-
-
-def _grid(options: Options = frozenset()) -> Format:
-    return Format(
-        name="plot3d",
-        suffixes=(".p3d", ".xyz", ".fmt", ".x", ".dat", ".bin", ".ufmt", ".unf"),
-        description="Plot3D: text, C binary (.bin) or Fortran records (.ufmt)",
-        read_grids=later(f"{__name__}.read:read_grids", options=options),
-        write_grids=later(f"{__name__}.write:write_grids", options=options),
-        write_extruded=later(f"{__name__}.write:write_extruded", options=options),
-        sniff=later(f"{__name__}.read:sniff"),
-        many=True,
-        choices=CHOICES,
-        variant=_grid,
-        suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
-    )
-
-
-FORMATS = (
-    _grid(),
-    Format(
-        name="nmf",
-        suffixes=(".nmf",),
-        description="NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
-        write_grids=later(f"{__name__}.nmf:write_grids"),
-        write_extruded=later(f"{__name__}.nmf:write_extruded"),
-        names_patches=True,
-    ),
-)

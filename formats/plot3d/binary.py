@@ -26,10 +26,7 @@ _NAMES = {"<": "little endian", ">": "big endian"}
 def candidates(data: bytes) -> list[Candidate]:
     """Return every layout whose length in bytes is exactly the file's.
 
-    Raises
-    ------
-    InputError
-        none is.
+    Raises InputError: none is.
     """
     fitting: list[Candidate] = []
     tried: list[str] = []

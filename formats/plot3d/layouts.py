@@ -119,10 +119,7 @@ class Candidate:
     def plane(self, block: int) -> Floats:
         """Return nodes (ni, nj, 2) of a block.
 
-        Raises
-        ------
-        InputError
-            the block is not plane.
+        Raises InputError: the block is not plane.
         """
         dims = (*self.layout.dims[block], 1)[:3]
         arrays = self.arrays(block)[: self.layout.axes]

@@ -11,34 +11,21 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from meshonet.formats.format import Heights, only_one
-from meshonet.formats.mesh.boundary_patches import kinds
-from meshonet.formats.mesh.names import words
+from meshonet.formats.mesh.names import kinds, words
 from meshonet.geometry.arrays import Side
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind
 
 _FACES: dict[Side, int] = {"west": 3, "east": 4, "south": 5, "north": 6}
 _TYPES: dict[Kind, str] = {
-    "wall": "VISCOUS",
-    "farfield": "FARFIELD",
-    "inlet": "INFLOW",
-    "outlet": "OUTFLOW",
-    "symmetry": "SYMMETRY",
-}
+    "wall": "VISCOUS", "farfield": "FARFIELD", "inlet": "INFLOW", "outlet": "OUTFLOW", "symmetry": "SYMMETRY",
+}  # fmt: skip
 _RULE = "# " + "=" * 78
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the map of the one grid of `grids`, of one plane."""
-    _write(path, only_one(grids, "a .nmf file"), 1)
-
-
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-    """Write the map of the one grid of `grids`, repeated in z between symmetry planes."""
-    _write(path, only_one(grids, "a .nmf file"), len(heights))
-
-
-def _write(path: Path, grid: Grid, planes: int) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> None:
+    """Write the map of the one grid of `grids`: of one plane, or repeated in z between symmetry planes."""
+    grid, planes = only_one(grids, "a .nmf file"), len(heights) or 1
     patches = grid.outer_patches()
     kind, word = kinds(grid, patches), words(patch.name for patch in patches)
     rows = [

@@ -31,10 +31,8 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
     ----------
     options : what is known of the layout; the rest is found out.
 
-    Raises
-    ------
-    InputError
-        no layout fits the file's length, or none that is as told; a block is three-dimensional.
+    Raises InputError: no layout fits the file's length, or none that is as told; a block is three-
+    dimensional.
     """
     data = source.read_bytes()
     every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)

@@ -23,10 +23,7 @@ _MOST_REPEATED = 4
 def candidates(data: bytes) -> list[Candidate]:
     """Return every layout that has as many numbers as the file.
 
-    Raises
-    ------
-    InputError
-        a word that is no number; no layout fits.
+    Raises InputError: a word that is no number; no layout fits.
     """
     values = _numbers(data)
 

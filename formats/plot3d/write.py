@@ -61,23 +61,16 @@ class Block:
         return int(np.prod(self.dims))
 
 
-def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write a block for each of `grids`, of one plane; raises as `write_extruded`."""
-    # C binary with z and nk = 1: VTK takes a counted flat file of float64 for a solid one of float32
-    flat = "2d" in options or ("3d" not in options and "binary" not in options)
-    write_extruded(path, grids, () if flat else (0.0,), options=options)
-
-
-def write_extruded(
-    path: Path, grids: Iterable[Grid], heights: Heights, *, options: Options = frozenset()
+def write_grids(
+    path: Path, grids: Iterable[Grid], heights: Heights = (), *, options: Options = frozenset()
 ) -> None:
-    """Write a block for each of `grids`; without heights, one of two dimensions without z.
+    """Write a block for each of `grids`: a plane of its nodes at each of `heights`, or one without z.
 
-    Raises
-    ------
-    InputError
-        there is no grid; several in a file without a count; a block that no Fortran record can hold.
+    Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
+    can hold.
     """
+    if not heights and "2d" not in options and ("3d" in options or "binary" in options):
+        heights = (0.0,)  # VTK takes a counted flat C binary file of float64 for a solid one of float32
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")
     blocks = [Block(grid, heights, options) for grid in grids]

@@ -28,10 +28,7 @@ _ASK = "give an airfoil as lines of x y from the trailing edge round to it again
 def read_shapes(source: Source) -> Iterator[Airfoil]:
     """Yield the airfoil of a file.
 
-    Raises
-    ------
-    InputError
-        no airfoil in it, with the line where there is one to name.
+    Raises InputError: no airfoil in it, with the line where there is one to name.
     """
     yield parse(decode(source.read_bytes()), source.name, source.stem)
 

@@ -57,10 +57,7 @@ class Line(NamedTuple):
 def decode(data: bytes) -> str:
     r"""Return the text of bytes: UTF-8 or UTF-16 with its mark, UTF-8, or else Latin-1, which takes any byte.
 
-    Raises
-    ------
-    InputError
-        more than `MOST_BYTES`, or bytes that no text has.
+    Raises InputError: more than `MOST_BYTES`, or bytes that no text has.
 
     Examples
     --------
@@ -112,10 +109,8 @@ def table(lines: list[Line]) -> list[list[Line]]:
     Two numbers with words behind them are a row where they stand beside one. `left_out` names the lines
     beside rows that are not among them.
 
-    Raises
-    ------
-    InputError
-        a damaged line with no prose between it and the next row, or a broken one between two rows.
+    Raises InputError: a damaged line with no prose between it and the next row, or a broken one between two
+    rows.
     """
     kinds: list[Kind] = ["blank", *(line.kind for line in lines), "blank"]
     blocks: list[list[Line]] = [[]]

@@ -6,7 +6,7 @@ import base64
 import binascii
 import re
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,13 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.source import printable
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 _KINDS = {
     "Float32": "f4", "Float64": "f8", "Int8": "i1", "UInt8": "u1", "Int16": "i2", "UInt16": "u2",
     "Int32": "i4", "UInt32": "u4", "Int64": "i8", "UInt64": "u8",
 }  # fmt: skip
-_CUT = "the file is cut short or its sizes are wrong: write it again"
+CUT = "the file is cut short or its sizes are wrong: write it again"
+"""The remedy where a file ends too soon."""
+_BLOCK_NODES = 1 << 15
+"""Nodes laid out at a time: 24 bytes each stay in the second-level cache."""
 _MOST_SHRINKING = 1 << 15
 """LZMA shrinks zeros some ten thousand times, zlib a thousand; a claim far beyond is refused."""
 
@@ -61,10 +65,7 @@ class Encoded:
 def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
     """Return the numbers of `array` (count,), viewing the file's bytes where it can.
 
-    Raises
-    ------
-    InputError
-        unknown type or form, fewer or more numbers than there should be, LZ4.
+    Raises InputError: unknown type or form, fewer or more numbers than there should be, LZ4.
     """
     if array.kind not in _KINDS:
         raise InputError(f"number type {array.kind[:40]!r} is not known", "write Float64 or Float32")
@@ -80,17 +81,17 @@ def decode(array: Encoded, encoding: Encoding) -> NDArray[Any]:
             end = next(stop for stop in encoding.offsets if stop > array.offset)
             raw = memoryview(_unbase64(bytes(encoding.appended[array.offset : end])))
     else:
-        raise InputError(f"format {array.form[:40]!r} at offset {array.offset} cannot be read", _CUT)
+        raise InputError(f"format {array.form[:40]!r} at offset {array.offset} cannot be read", CUT)
     data = _decompressed(raw, size, encoding) if encoding.compressor else _sized(raw, size, encoding)
     return np.frombuffer(data, dtype)
 
 
 def _ascii(array: Encoded, dtype: np.dtype[Any]) -> NDArray[Any]:
     if array.count is not None and array.count > len(array.text):
-        raise InputError(f"should have {array.count} numbers and has fewer", _CUT)
+        raise InputError(f"should have {array.count} numbers and has fewer", CUT)
     words = array.text.split()
     if array.count not in (None, len(words)):
-        raise InputError(f"should have {array.count} numbers and has {len(words)}", _CUT)
+        raise InputError(f"should have {array.count} numbers and has {len(words)}", CUT)
     try:
         return np.array(words, dtype=np.float64 if dtype.kind == "f" else np.int64)
     except (ValueError, OverflowError) as error:
@@ -110,7 +111,7 @@ def _words(raw: memoryview, first: int, count: int, encoding: Encoding) -> list[
     """Return length words `first` to `first + count` at the start of an array."""
     dtype = np.dtype(encoding.order + encoding.header)
     if len(raw) < (first + count) * dtype.itemsize:
-        raise InputError("its length words are missing", _CUT)
+        raise InputError("its length words are missing", CUT)
     return [int(word) for word in np.frombuffer(raw, dtype, count, first * dtype.itemsize)]
 
 
@@ -119,7 +120,7 @@ def _sized(raw: memoryview, size: int | None, encoding: Encoding) -> memoryview:
     start = int(encoding.header[1])
     if size not in (None, claimed) or len(raw) < start + claimed:
         raise InputError(
-            f"should be {size} bytes, is said to be {claimed}, and {len(raw) - start} are left", _CUT
+            f"should be {size} bytes, is said to be {claimed}, and {len(raw) - start} are left", CUT
         )
     return raw[start : start + claimed]
 
@@ -130,7 +131,7 @@ def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> byte
     count, block, last = _words(raw, 0, 3, encoding)
     claimed = (count - 1 if last else count) * block + last
     if count > len(raw) or size not in (None, claimed) or claimed > _MOST_SHRINKING * len(raw):
-        raise InputError(f"should be {size} bytes and its blocks say {claimed}", _CUT)
+        raise InputError(f"should be {size} bytes and its blocks say {claimed}", CUT)
     sizes = _words(raw, 3, count, encoding)
     at = (3 + count) * int(encoding.header[1])
     data = bytearray()
@@ -141,7 +142,7 @@ def _decompressed(raw: memoryview, size: int | None, encoding: Encoding) -> byte
         except Exception as error:  # zlib.error and lzma.LZMAError share no base of their own
             raise InputError(f"block {k} cannot be decompressed ({error})", "write the file again") from error
         if len(piece) != wanted:
-            raise InputError(f"block {k} has {len(piece)} bytes instead of {wanted}", _CUT)
+            raise InputError(f"block {k} has {len(piece)} bytes instead of {wanted}", CUT)
         data += piece
         at += packed
     return data
@@ -159,6 +160,18 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
         f"compressor {compressor[:60]!r} cannot be read",
         "write it with zlib (vtkZLibDataCompressor) or none",
     )
+
+
+def plane_points(grid: Grid, height: float, dtype: str) -> Iterator[NDArray[Any]]:
+    """Yield the points (n, 3) of a plane z = `height`, i fastest, some rows at a time in the same memory."""
+    rows = max(1, _BLOCK_NODES // grid.ni)
+    block = np.empty((rows, grid.ni, 3), dtype)
+    block[..., 2] = height
+    for start in range(0, grid.nj, rows):
+        part = block[: grid.nj - start]
+        part[..., 0] = grid.x[:, start : start + rows].T
+        part[..., 1] = grid.y[:, start : start + rows].T
+        yield part.reshape(-1, 3)
 
 
 def escaped(text: str) -> str:

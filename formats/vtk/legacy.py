@@ -20,11 +20,11 @@ from meshonet.formats.mesh.metadata import facts_of, grid_with
 from meshonet.formats.mesh.slices import planar
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import write_rows
+from meshonet.formats.vtk.arrays import CUT, plane_points
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_BLOCK_NODES = 1 << 15
 _KINDS = {
     "double": "f8", "float": "f4", "int": "i4", "unsigned_int": "u4", "long": "i8", "unsigned_long": "u8",
     "vtktypeint64": "i8", "vtkidtype": "i8",
@@ -34,8 +34,11 @@ _LINE = 4096
 _WORD = re.compile(rb"\S")
 
 
-def write(path: Path, grid: Grid, heights: tuple[float, ...] = (0.0,), *, text: bool = False) -> None:
-    """Write one grid; `heights` is z of each plane, `text` asks for ASCII with 17 significant digits."""
+def write_grids(
+    path: Path, grids: Iterable[Grid], heights: Heights = (0.0,), *, options: Options = frozenset()
+) -> None:
+    """Write the one grid of `grids`, a plane of its nodes at each of `heights`; text has 17 digits."""
+    grid, text = only_one(grids, "a .vtk file"), "ascii" in options
     with path.open("wb") as stream:
         form = "ASCII" if text else "BINARY"
         stream.write(
@@ -45,33 +48,12 @@ def write(path: Path, grid: Grid, heights: tuple[float, ...] = (0.0,), *, text: 
         stream.write(f"DIMENSIONS {grid.ni} {grid.nj} {len(heights)}\n".encode())
         stream.write(f"POINTS {grid.ni * grid.nj * len(heights)} double\n".encode())
         for height in heights:
-            _write_points(stream, grid, height, text=text)
+            for points in plane_points(grid, height, ">f8"):
+                if text:
+                    write_rows(stream, "%e %e %e", points)
+                else:
+                    stream.write(points.data)
         stream.write(b"\n")
-
-
-def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
-    """Write the one grid of `grids`."""
-    write(path, only_one(grids, "a .vtk file"), text="ascii" in options)
-
-
-def write_extruded(
-    path: Path, grids: Iterable[Grid], heights: Heights, *, options: Options = frozenset()
-) -> None:
-    """Write the one grid of `grids`, repeated in z."""
-    write(path, only_one(grids, "a .vtk file"), heights, text="ascii" in options)
-
-
-def _write_points(stream: BinaryIO, grid: Grid, height: float, *, text: bool) -> None:
-    """Write a plane's points, i fastest, some rows at a time."""
-    rows = max(1, _BLOCK_NODES // grid.ni)
-    for start in range(0, grid.nj, rows):
-        part = grid.nodes[:, start : start + rows].swapaxes(0, 1).reshape(-1, 2)
-        block = np.empty((len(part), 3), ">f8")
-        block[:, :2], block[:, 2] = part, height
-        if text:
-            write_rows(stream, "%e %e %e", block)
-        else:
-            stream.write(block.data)
 
 
 def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
@@ -88,12 +70,7 @@ def _write_facts(stream: BinaryIO, grid: Grid, *, text: bool) -> None:
 
 
 class _Cursor:
-    """Bytes read front to back.
-
-    Parameters
-    ----------
-    data : the whole file.
-    """
+    """Bytes read front to back."""
 
     def __init__(self, data: bytes) -> None:
         self.data, self.at = data, 0
@@ -102,7 +79,7 @@ class _Cursor:
         """Return the next line that is not blank, without its end."""
         start = _WORD.search(self.data, self.at)
         if start is None:
-            raise InputError("ends before its points", "the file is cut short: write it again")
+            raise InputError("ends before its points", CUT)
         end = self.data.find(b"\n", start.start(), start.start() + _LINE)
         end = end if end >= 0 else min(start.start() + _LINE, len(self.data))
         self.at = end + 1
@@ -111,24 +88,17 @@ class _Cursor:
     def words(self, count: int) -> list[bytes]:
         """Return the next `count` blank-separated words."""
         if 2 * count - 1 > len(self.data) - self.at:
-            raise InputError(
-                f"should have {count} more numbers and is too short", "the file is cut short: write it again"
-            )
+            raise InputError(f"should have {count} more numbers and is too short", CUT)
         rest = self.data[self.at :].split(None, count)
         if len(rest) < count:
-            raise InputError(
-                f"should have {count} more numbers and has {len(rest)}",
-                "the file is cut short: write it again",
-            )
+            raise InputError(f"should have {count} more numbers and has {len(rest)}", CUT)
         self.at = len(self.data) - len(rest[count]) if len(rest) > count else len(self.data)
         return rest[:count]
 
     def bytes(self, count: int) -> bytes:
         """Return the next `count` bytes."""
         if count > len(self.data) - self.at:
-            raise InputError(
-                f"should have {count} more bytes and is too short", "the file is cut short: write it again"
-            )
+            raise InputError(f"should have {count} more bytes and is too short", CUT)
         self.at += count
         return self.data[self.at - count : self.at]
 
@@ -141,10 +111,7 @@ class _Cursor:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of a legacy ``.vtk`` file.
 
-    Raises
-    ------
-    InputError
-        not such a file, another dataset than STRUCTURED_GRID, damaged, three-dimensional.
+    Raises InputError: not such a file, another dataset than STRUCTURED_GRID, damaged, three-dimensional.
     """
     cursor = _Cursor(source.read_bytes())
     try:

@@ -23,18 +23,10 @@ _MOST_BYTES = 16 << 20
 _OURS = re.compile(r"block-\d+\.vts")
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write every grid of `grids`."""
-    write_extruded(path, grids, (0.0,))
+def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) -> None:
+    """Write every grid of `grids`, a plane of its nodes at each of `heights`.
 
-
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-    """Write every grid of `grids`, repeated in z.
-
-    Raises
-    ------
-    InputError
-        there is no grid; the folder of the blocks holds something else, which would be lost.
+    Raises InputError: there is no grid; the folder of the blocks holds something else, which would be lost.
     """
     folder = path.with_name(f"{Path(final_name(path)).stem}_blocks")
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
@@ -51,18 +43,15 @@ def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
         if not lines:
             raise InputError("there is no grid to write", "check the input")
     tag = '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">'
-    head = f'<?xml version="1.0"?>\n{tag}\n'
-    index = "\n".join(["  <vtkMultiBlockDataSet>", *lines, "  </vtkMultiBlockDataSet>", "</VTKFile>", ""])
-    path.write_text(head + index, encoding="utf-8")
+    head = ['<?xml version="1.0"?>', tag, "  <vtkMultiBlockDataSet>"]
+    index = [*head, *lines, "  </vtkMultiBlockDataSet>", "</VTKFile>", ""]
+    path.write_text("\n".join(index), encoding="utf-8")
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of every ``.vts`` that the index names, in its folder or below.
 
-    Raises
-    ------
-    InputError
-        no such index; a file that is not below its folder, is missing or no ``.vts``.
+    Raises InputError: no such index; a file that is not below its folder, is missing or no ``.vts``.
     """
     from xml.etree import ElementTree
 

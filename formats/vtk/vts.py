@@ -11,41 +11,29 @@ from __future__ import annotations
 import struct
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.format import Heights, only_one
 from meshonet.formats.mesh.metadata import facts_of
-from meshonet.formats.vtk.arrays import escaped
+from meshonet.formats.vtk.arrays import escaped, plane_points
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 _POINTS = '<DataArray type="Float64" Name="Points" NumberOfComponents="3" format="appended" offset="0"/>'
-_BLOCK_NODES = 1 << 15
-"""Nodes laid out at a time: 24 bytes each stay in the second-level cache."""
 
 
 def write(
     path: Path,
     grid: Grid,
     cell_data: Mapping[str, NDArray[Any]] | None = None,
-    heights: tuple[float, ...] = (0.0,),
+    heights: Heights = (0.0,),
 ) -> None:
-    """Write one grid.
+    """Write one grid, with `cell_data` (ni-1, nj-1) by name, and a plane of its nodes at each of `heights`.
 
-    Parameters
-    ----------
-    path : file to make.
-    grid : what to write.
-    cell_data : arrays (ni-1, nj-1), by name, stored per cell.
-    heights : z of each plane; two of them make the grid one cell thick.
-
-    Raises
-    ------
-    InputError
-        a cell array of another shape.
+    Raises InputError: a cell array of another shape.
     """
     planes = len(heights)
     cells = {name: _cell_values(name, values, grid) for name, values in (cell_data or {}).items()}
@@ -53,33 +41,17 @@ def write(
         stream.write(_head(grid, planes, cells).encode())
         stream.write(struct.pack("<Q", 24 * planes * grid.ni * grid.nj))
         for height in heights:
-            _write_points(stream, grid, height)
+            for points in plane_points(grid, height, "<f8"):
+                stream.write(points.data)
         for values in cells.values():
             stream.write(struct.pack("<Q", values.nbytes))
             stream.write(values.data)
         stream.write(b"\n  </AppendedData>\n</VTKFile>\n")
 
 
-def write_grids(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids`."""
-    write(path, only_one(grids, "a .vts file"))
-
-
-def write_extruded(path: Path, grids: Iterable[Grid], heights: Heights) -> None:
-    """Write the one grid of `grids`, repeated in z."""
+def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) -> None:
+    """Write the one grid of `grids`, a plane of its nodes at each of `heights`."""
     write(path, only_one(grids, "a .vts file"), heights=heights)
-
-
-def _write_points(stream: BinaryIO, grid: Grid, height: float) -> None:
-    """Write a plane's points, i fastest, a few rows at a time so that no second grid is ever in memory."""
-    rows = max(1, _BLOCK_NODES // grid.ni)
-    block = np.empty((rows, grid.ni, 3))
-    block[..., 2] = height
-    for start in range(0, grid.nj, rows):
-        stop = min(start + rows, grid.nj)
-        block[: stop - start, :, 0] = grid.x[:, start:stop].T
-        block[: stop - start, :, 1] = grid.y[:, start:stop].T
-        stream.write(block[: stop - start].data)
 
 
 def _head(grid: Grid, planes: int, cells: Mapping[str, NDArray[Any]]) -> str:

@@ -25,10 +25,7 @@ _MOST_NODES = 1 << 40
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of a ``.vts`` file.
 
-    Raises
-    ------
-    InputError
-        not such a file, damaged, compressed with LZ4, three-dimensional.
+    Raises InputError: not such a file, damaged, compressed with LZ4, three-dimensional.
     """
     raw = source.read_bytes()
     root, start, end = _parsed(raw)

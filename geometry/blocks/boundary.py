@@ -54,21 +54,16 @@ class Boundary(Connected):
     topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where south lies on itself.
     patches : named stretches of the sides; empty means those of `default_patches`.
     name : what the input called this shape.
-    wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
-        body between the nodes.
-    chord : the length that spacings are given in: the chord of an airfoil, the largest extent of another
-        body. 0 stands for the distance of the first node of `south`, a wake left out, from the one farthest
-        from it.
+    wall : the curve that `south` was sampled from, if any: it lets operators see the body between nodes.
+    chord : unit of spacings: an airfoil's chord, another body's largest extent. 0 stands for the distance of
+        the first node of the body from the farthest.
     sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
     notes : sentences a user should read, such as that an outline was changed.
     origin : the numbers that made it and what it is kept for, of a sample of a dataset.
     sampled : whether the nodes were chosen here, on curves, and may be chosen otherwise.
 
-    Raises
-    ------
-    InputError
-        an edge of the wrong shape, with a node that is not finite or repeated, edges that do not
-        meet, a left-handed outline, a ``c`` without a wake.
+    Raises InputError: an edge of the wrong shape, with a node that is not finite or repeated, edges that do
+    not meet, a left-handed outline, a ``c`` without a wake.
     """
 
     south: Floats
@@ -141,10 +136,7 @@ class Boundary(Connected):
         (the odd one included) is on the body and the rest on the far field. Fixed places of the computational
         domain, as an operator needs them: Xiao et al., arXiv 2501.11937, section III.
 
-        Raises
-        ------
-        InputError
-            fewer than 2 sensors, or more than there are nodes.
+        Raises InputError: fewer than 2 sensors, or more than there are nodes.
         """
         rings = [self.south[:-1], self.north[:-1]] if self.around_body else [self.outline()]
         most = len(rings) * len(rings[0])
@@ -155,15 +147,9 @@ class Boundary(Connected):
         return replace(self, sensors=np.concatenate(chosen))
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this boundary with the node counts of `sampling`.
+        """Return this boundary with the node counts of `sampling`, if other than its own, corners kept.
 
-        Edges are used as they are when the counts are absent or equal; others resample the curves through
-        the nodes, corners kept (`meshonet.geometry.blocks.resample`).
-
-        Raises
-        ------
-        InputError
-            `sampling` asks for anything else: another topology, a spacing, a far field ...
+        Raises InputError: `sampling` asks for anything else: another topology, a spacing, a far field ...
         """
         self._check_sampling(sampling)
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
@@ -182,20 +168,11 @@ class Boundary(Connected):
                 "leave {topology} out, or give the shape instead of its edges",
                 source=self.name,
             )
-        implied = "curvature" if sampling.viscous else "auto"  # thin cells imply that law
-        settings = {
-            "spacing": sampling.spacing not in ("auto", implied),
-            "le_spacing": sampling.le_spacing is not None,
-            "te_spacing": sampling.te_spacing is not None,
-            "far_field": sampling.far_field is not None,
-            "corners": sampling.corners is not None,
-            "te": sampling.te != "auto",
-            "wake": sampling.wake is not None,
-            "wake_nodes": sampling.wake_nodes is not None,
-            "normalise": sampling.normalise,
-        }
-        for name, is_set in settings.items():
-            if is_set:
+        thin = sampling.viscous and sampling.spacing == "curvature"  # thin cells imply that law
+        law = "curvature" if thin else "auto"
+        settled = Sampling(sampling.ni, sampling.nj, sampling.topology, law, viscous=sampling.viscous)
+        for name, value in vars(settled).items():
+            if getattr(sampling, name) != value:
                 raise InputError(
                     f"{{{name}}} says how a shape becomes edges, and these are edges already",
                     f"leave {{{name}}} out, or give the shape",

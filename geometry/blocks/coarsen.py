@@ -22,13 +22,8 @@ from meshonet.geometry.errors import InputError
 def coarser_grid(grid: Grid, k: int) -> Grid:
     """Return the grid of every `k`-th node along both directions, with its patches.
 
-    Raises
-    ------
-    InputError
-        `k` does not divide the cells along a direction, or a patch would lose an end.
+    Raises InputError: `k` does not divide the cells along a direction, or a patch would lose an end.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.arange(5.0), np.arange(3.0), indexing="ij")
     >>> coarser_grid(Grid.from_nodes(np.stack([x, y], axis=-1)), 2).x[:, 0]

@@ -45,10 +45,7 @@ class Grid(Connected):
     provenance : how the grid was made: method, settings, version.
     origin : that of its boundary.
 
-    Raises
-    ------
-    InputError
-        no block; a patch outside its side; connected sides whose nodes differ.
+    Raises InputError: no block; a patch outside its side; connected sides whose nodes differ.
     """
 
     blocks: tuple[Block, ...]
@@ -77,22 +74,11 @@ class Grid(Connected):
         *,
         finite: bool = False,
     ) -> Grid:
-        """Return the grid of a single block, its connections told by the nodes.
+        """Return the grid of a single block (see `Block`), its connections found in the nodes.
 
-        Parameters
-        ----------
-        nodes, finite : see `Block`.
-        topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where the south side lies on itself.
-        patches : empty means those of `default_patches`.
-        name, provenance, origin : see above.
+        The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
+        Raises InputError: see `Block`; an O grid that is not closed, a C grid without a wake.
 
-        Raises
-        ------
-        InputError
-            see `Block`; an O grid that is not closed, a C grid without a wake.
-
-        Examples
-        --------
         >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
         >>> Grid.from_nodes(np.stack([x, y], axis=-1)).topology
         'quad'
@@ -101,9 +87,8 @@ class Grid(Connected):
         ni, nj = block.counts[:2]
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
-            raise InputError(
-                f"column ni-1 differs from column 0 at j={j}", "close the O grid or call it quad"
-            )
+            open_at = f"column ni-1 differs from column 0 at j={j}"
+            raise InputError(open_at, "close the O grid or call it quad")
         connections = connections_of(topology, block.nodes[:, 0], nj)
         named = tuple(patches) or default_patches(topology, ni, nj, wake_cells(connections))
         return cls((block,), named, connections, name, provenance or {}, origin)
@@ -117,9 +102,8 @@ class Grid(Connected):
     def nodes(self) -> Floats:
         """(ni, nj, 2) nodes of the only block."""
         if len(self.blocks) != 1:
-            raise InputError(
-                f"a grid of {len(self.blocks)} blocks", "take the nodes of its blocks one by one"
-            )
+            remedy = "take the nodes of its blocks one by one"
+            raise InputError(f"a grid of {len(self.blocks)} blocks", remedy)
         return self.blocks[0].nodes
 
     @property
@@ -157,11 +141,7 @@ class Grid(Connected):
         return outer_patches(self.patches, (self.ni, self.nj), connected)
 
     def walls(self) -> list[Patch]:
-        """Return the walls, told by the names of patches.
-
-        Where no name tells of a wall these are the unnamed stretches of the body, or the south and the north
-        side of a four-sided grid.
-        """
+        """Return patches named as walls; without these, a body's or south's and north's unnamed stretches."""
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()
         walls = [p for p in outer if p.kind == "wall" or (p.kind == "other" and p.side in body)]
@@ -190,10 +170,7 @@ class Grid(Connected):
     def to_pyvista(self) -> Any:
         """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
 
-        Raises
-        ------
-        InputError
-            pyvista is not installed.
+        Raises InputError: pyvista is not installed.
         """
         try:
             from pyvista import StructuredGrid

@@ -7,13 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Origin:
-    """Facts of a sample that travel with it from dataset to dataset.
-
-    Parameters
-    ----------
-    parameters : names and values of the numbers that made it, e.g. ``(("parameter", 0.25),)``.
-    split : ``train`` or ``test``; nothing when it is neither.
-    """
+    """Names and values of the numbers that made a sample, and ``train``, ``test`` or nothing."""
 
     parameters: tuple[tuple[str, float], ...] = ()
     split: str = ""

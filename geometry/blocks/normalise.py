@@ -11,17 +11,12 @@ from meshonet.geometry.errors import InputError
 def normalised(grid: Grid) -> Grid:
     """Return `grid` moved, scaled and, around a body, turned to unit size.
 
-    Of an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the body's node
-    farthest from it, the leading edge, to (0, 0). Of a four-sided grid the lower left corner of its box
-    comes to (0, 0) and the longer side of the box becomes 1.
+    Of an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the body's farthest
+    node from it to (0, 0). Of a four-sided grid the lower left corner of its box comes to (0, 0) and the
+    longer side of the box becomes 1.
 
-    Raises
-    ------
-    InputError
-        the body has no length.
+    Raises InputError: the body has no length.
 
-    Examples
-    --------
     >>> x, y = np.meshgrid([2.0, 4.0], [1.0, 2.0], indexing="ij")
     >>> normalised(Grid.from_nodes(np.stack([x, y], axis=-1))).nodes[1, 1].tolist()
     [1.0, 0.5]

@@ -26,8 +26,6 @@ _SIGNS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
 def kind_of(name: str) -> Kind:
     """Return the kind of boundary that the name of a patch tells of.
 
-    Examples
-    --------
     >>> kind_of("lower wall"), kind_of("slot 3")
     ('wall', 'other')
     """
@@ -78,8 +76,6 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
     ``quad`` has its four sides, ``o`` a wall and a far field (west and east are the seam), ``c`` a wake of
     `wake` cells on both sides of a wall, and a far field around them.
 
-    Examples
-    --------
     >>> [patch.name for patch in default_patches("o", 5, 4)]
     ['wall', 'farfield']
     """
@@ -100,12 +96,9 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
 
 
 def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
-    """Raise InputError when a patch has no name, an unknown block or side, or leaves its side.
+    """Raise InputError for a patch without a name, of an unknown block or side, or that leaves its side.
 
-    Parameters
-    ----------
-    patches : to check.
-    counts : of the nodes along each direction, for every block.
+    `counts` are the nodes of every block along each direction.
     """
     for patch in patches:
         sides = SIDES if not 0 <= patch.block < len(counts) else tuple(PLACES)[: 2 * len(counts[patch.block])]
@@ -132,13 +125,8 @@ def outer_patches(
 ) -> list[Patch]:
     """Return the outer boundary of a planar block, each of its edges in one patch.
 
-    Where patches overlap the later one counts; edges without one are called by their side.
-
-    Parameters
-    ----------
-    patches : of the block.
-    counts : its nodes along xi and eta.
-    inside : side, first and last node of stretches that are connected, and so no boundary.
+    Where patches overlap the later one counts; edges without one are called by their side. `counts` are the
+    nodes along xi and eta, `inside` the side, first and last node of stretches that are connected.
     """
     outer: list[Patch] = []
     for side in SIDES:

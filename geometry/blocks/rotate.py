@@ -25,10 +25,7 @@ _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "
 def turned(grid: Grid) -> Grid:
     """Return `grid` turned, its patches too: node (i, j) comes to (j, ni-1-i).
 
-    Raises
-    ------
-    InputError
-        an O or C grid, whose xi runs around the body by definition.
+    Raises InputError: an O or C grid, whose xi runs around the body by definition.
     """
     if grid.around_body:
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")

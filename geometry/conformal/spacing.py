@@ -33,17 +33,10 @@ DENSE = 640  # points along the whole wall that stand for the curve
 def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
     """Return arc lengths (count,) on a closed curve at equal steps of its circle's angle.
 
-    Parameters
-    ----------
-    curve : closed, clockwise, its arc length 0 where the first node belongs.
-    marks : rising arc lengths in (0, length) that must be nodes, e.g. the corners of a blunt edge. The
-        angles between are shared out smoothly.
-    count : nodes; the last is the curve's length, its first node again.
+    The curve is closed and clockwise, with its arc length 0 at the first node, which is the last again.
+    `marks`, rising arc lengths in (0, length), become nodes, and the angles between are shared out smoothly.
 
-    Raises
-    ------
-    InputError
-        the lifted wall is not star-shaped, or the iteration does not settle.
+    Raises InputError: the lifted wall is not star-shaped, or the iteration does not settle.
     """
     clockwise = _one_way(curve, marks, count, mirror=False)
     mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
@@ -72,15 +65,13 @@ def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
     u counts pieces: on piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
     """
     ends = np.concatenate([[0.0], marks, [curve.length]])
-    pieces_s, pieces_u = [], []
+    s, u = [], []
     for k, (a, b) in enumerate(pairwise(ends)):
         n = max(24, round(DENSE * np.sqrt((b - a) / curve.length)))
         v = np.arange(n) / n
-        pieces_s.append(a + (b - a) * 0.5 * (1.0 - np.cos(np.pi * v)))
-        pieces_u.append(k + v)
-    return np.append(np.concatenate(pieces_s), curve.length), np.append(
-        np.concatenate(pieces_u), len(ends) - 1.0
-    )
+        s.append(a + (b - a) * 0.5 * (1.0 - np.cos(np.pi * v)))
+        u.append(k + v)
+    return np.concatenate([*s, [curve.length]]), np.concatenate([*u, [len(ends) - 1.0]])
 
 
 def _circle_angle(phi: Floats, psi: Floats) -> Floats:

@@ -25,15 +25,8 @@ def limited(
 ) -> tuple[Floats, Floats]:
     """Return slopes (intervals, 2) at the start and at the end of each interval, within their limits.
 
-    Beside a corner, where there is one chord only, the tangent may turn from it by as much as the polygon
-    does at the other end of the interval.
-
-    Parameters
-    ----------
-    points : (n, 2).
-    start, stop : slopes by chord length.
-    closed : there is an interval from the last point to the first.
-    corners : indices of the points where the tangent may jump.
+    Beside a corner, one of the points (n, 2) where the tangent may jump, there is one chord only: the tangent
+    may turn from it by as much as the polygon does at the other end of the interval.
     """
     n = len(points)
     chord = np.roll(points, -1, axis=0) - points  # an open curve's last is not used
@@ -74,9 +67,7 @@ def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
     reach = turn * weight
     size = np.abs(reach)
     slack = SLACK * np.maximum(size, np.maximum(np.roll(size, 1), np.roll(size, -1))) + LEAST_SLACK
-    near_after = (
-        step_before & ~step_after
-    )  # near the chord after the point, that is, from turn - reach to turn
+    near_after = step_before & ~step_after  # near the chord after the point: from turn - reach to turn
     low = np.where(near_after, turn - np.maximum(reach, 0), np.minimum(reach, 0)) - slack
     high = np.where(near_after, turn - np.minimum(reach, 0), np.maximum(reach, 0)) + slack
     return low, high, slack

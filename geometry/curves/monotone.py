@@ -24,8 +24,6 @@ def monotone_cubic(x: Floats, y: Floats, at: Floats) -> Floats:
 
     The slopes at the ends are those of parabolas through three points, limited.
 
-    Examples
-    --------
     >>> monotone_cubic(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), np.array([0.5, 2.0])).tolist()
     [0.5, 2.0]
     """

@@ -17,14 +17,9 @@ from meshonet.kernels._native import solve_tridiagonal
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
-    Between corners the curve is the cubic spline whose tangent and curvature are continuous, with a
-    parabola in the intervals next to a corner. `meshonet.geometry.curves.limiter` then removes overshoots.
-
-    Parameters
-    ----------
-    points : (n, 2), neighbours distinct; a closed curve does not repeat its first.
-    closed : there is an interval from the last point to the first.
-    corners : indices of the points where the tangent may jump.
+    Between `corners`, indices of points (n, 2), the curve is the cubic spline whose tangent and curvature are
+    continuous, with a parabola in the intervals next to a corner. `meshonet.geometry.curves.limiter` then
+    removes overshoots. A closed curve does not repeat its first point.
     """
     if closed and corners.size == 0:
         slope = _periodic(points)

@@ -53,8 +53,6 @@ class Faces:
 def faces(grid: Grid) -> Faces:
     """Return the measures of the faces of `grid`.
 
-    Examples
-    --------
     >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 4.0, 8.0], indexing="ij")
     >>> measured = faces(Grid.from_nodes(np.stack([x, y], axis=-1)))
     >>> measured.non_orthogonality.max, measured.face_skewness.max, measured.box_ratio.max

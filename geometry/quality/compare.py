@@ -40,13 +40,8 @@ class Difference:
 def compare(grid: Grid, reference: Grid) -> Difference:
     """Return how far the nodes of `grid` are from those of `other`.
 
-    Raises
-    ------
-    InputError
-        their node counts differ.
+    Raises InputError: their node counts differ.
 
-    Examples
-    --------
     >>> square = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
     >>> compare(Grid.from_nodes(square + [3.0, 4.0]), Grid.from_nodes(square)).max
     5.0

@@ -56,13 +56,8 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
     Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
 
-    Raises
-    ------
-    InputError
-        `text` is no gate, or names an unknown metric or statistic.
+    Raises InputError: `text` is no gate, or names an unknown metric or statistic.
 
-    Examples
-    --------
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')
     """

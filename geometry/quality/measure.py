@@ -65,8 +65,6 @@ def count_folded(nodes: Floats) -> int:
 
     Fastest, and free of copies, in the planar layout of `meshonet.geometry.arrays`.
 
-    Examples
-    --------
     >>> square = np.stack(np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij"), axis=-1)
     >>> count_folded(square), count_folded(square[::-1])
     (0, 2)
@@ -158,10 +156,7 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 def per_cell(grid: Grid, name: str) -> Floats:
     """Return the metric `name` of every cell, (ni-1, nj-1).
 
-    Raises
-    ------
-    InputError
-        there is no such metric.
+    Raises InputError: there is no such metric.
     """
     if name not in NAMES:
         raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))

@@ -192,10 +192,7 @@ class Figures:
 def profile_report(figures: Figures, profile: str) -> ProfileReport:
     """Return the results of `profile`, one of `PROFILES`, for a grid.
 
-    Raises
-    ------
-    InputError
-        there is no such profile.
+    Raises InputError: there is no such profile.
     """
     if profile not in PROFILES:
         known = "use one of " + ", ".join(PROFILES)

@@ -111,10 +111,7 @@ def quality_report(grid: Grid, profile: str | None = None, reference: Grid | Non
     profile : thresholds to judge by, one of `meshonet.geometry.quality.profiles.PROFILES`.
     reference : grid of the same size to compare with.
 
-    Raises
-    ------
-    InputError
-        the reference has another size.
+    Raises InputError: the reference has another size.
     """
     quality = measure(grid, percentiles=True)
     figures = Figures(grid, quality, grid.walls())

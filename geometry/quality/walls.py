@@ -49,8 +49,6 @@ class WallRow:
 def wall_row(grid: Grid, patch: Patch) -> WallRow:
     """Return the figures of the cells at `patch` of the boundary of `grid`.
 
-    Examples
-    --------
     >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 0.1, 0.2, 0.4], indexing="ij")
     >>> row = wall_row(Grid.from_nodes(np.stack([x, y], axis=-1)), Patch("wall", "south", 0, 2))
     >>> row.height.max, row.off_square.max, row.equal_cells

@@ -34,10 +34,7 @@ class Annulus:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the O boundary: the body sampled as by itself, the outer curve in place of its circle.
 
-        Raises
-        ------
-        InputError
-            another topology, or a setting that the body has no use for.
+        Raises InputError: another topology, or a setting that the body has no use for.
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)

@@ -66,8 +66,6 @@ class Labelled:
 def runs(side: Side, names: Sequence[str]) -> list[Patch]:
     """Return the patches of a side whose cells are called `names`; those without one are called by the side.
 
-    Examples
-    --------
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]
     """

@@ -40,10 +40,7 @@ class Outline:
     corners : the four points that are corners of a quad domain, when the input says so; south-west first.
     places : (n,) where each point stands in its source, for messages.
 
-    Raises
-    ------
-    InputError
-        too few points, repeated ones, an outline that crosses itself or has no area.
+    Raises InputError: too few points, repeated ones, an outline that crosses itself or has no area.
     """
 
     notes: tuple[str, ...] = ()
@@ -81,10 +78,7 @@ class Outline:
         steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``; around a smooth body
         ``auto`` is ``conformal`` (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
 
-        Raises
-        ------
-        InputError
-            a topology or spacing that does not fit, corners that are no points of the outline.
+        Raises InputError: a topology or spacing that does not fit, corners that are no points of the outline.
         """
         if sampling.topology == "c":
             raise InputError(

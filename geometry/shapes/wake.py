@@ -48,10 +48,7 @@ def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float
     first : the cell at the trailing edge.
     length : of the wake.
 
-    Raises
-    ------
-    InputError
-        no room for the wall.
+    Raises InputError: no room for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -167,10 +164,7 @@ def c_boundary(
     axis : (2,) unit direction of the wake's far end.
     curve, name, chord, notes : see `Boundary`.
 
-    Raises
-    ------
-    InputError
-        the wake leaves the far field, or crosses the wall.
+    Raises InputError: the wake leaves the far field, or crosses the wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
     normal = np.array([-axis[1], axis[0]])

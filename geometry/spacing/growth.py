@@ -18,13 +18,8 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
     first (gⁿ - 1)/(g - 1) = length
 
-    Raises
-    ------
-    InputError
-        equal cells of this size are too long already, or the ratio is above `LARGEST`.
+    Raises InputError: equal cells of this size are too long already, or the ratio is above `LARGEST`.
 
-    Examples
-    --------
     >>> growth_ratio(1.0, 7.0, 3)
     2.0
     """
@@ -57,8 +52,6 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 def cells_for_growth(first: float, length: float, ratio: float) -> int:
     """Return the fewest cells that, from `first` on, reach `length` without growing by more than `ratio`.
 
-    Examples
-    --------
     >>> cells_for_growth(1.0, 7.0, 2.0), cells_for_growth(1.0, 7.1, 2.0), cells_for_growth(1.0, 7.0, 1.0)
     (3, 4, 7)
     """
@@ -72,8 +65,6 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 
     The first `constant` ones are equal; the ratio is that of the others.
 
-    Examples
-    --------
     >>> growing_steps(1.0, 9.0, 5, 3).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
     """

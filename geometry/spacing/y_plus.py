@@ -14,22 +14,12 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
     The skin friction is that of a turbulent boundary layer on a flat plate at the distance x from its leading
-    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3. Schlichting, Boundary-Layer
-    Theory, 7th ed. (1979), chapter XXI.
+    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is that of
+    the chord, `chord_fraction` x in chords.
 
-    Parameters
-    ----------
-    y_plus : at the first node off the wall.
-    reynolds : of the chord.
-    chord_fraction : x in chords.
+    Raises InputError: a value out of its range, or so little of the chord that no boundary layer is turbulent
+    there.
 
-    Raises
-    ------
-    InputError
-        a value out of its range, or so little of the chord that no boundary layer is turbulent there.
-
-    Examples
-    --------
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'
     """

@@ -7,10 +7,6 @@ cdef extern from "algebraic/tfi.h":
     void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
                   const TfiEdges *parameter) nogil
 
-cdef extern from "algebraic/combine.h":
-    void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
-                      const double *values, const double *bends, int rim) nogil
-
 cdef extern from "algebraic/evaluate.h":
     ctypedef struct Places:
         const ptrdiff_t *first
@@ -31,6 +27,8 @@ cdef extern from "algebraic/evaluate.h":
     ptrdiff_t evaluate_scratch(const Evaluation *e) nogil
     void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch,
                        double *nodes) nogil
+    void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
+                      const double *values, const double *bends, int rim) nogil
 
 
 cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:

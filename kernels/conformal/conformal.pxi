@@ -23,12 +23,10 @@ cdef extern from "conformal/lift.h":
     void lift_expand(LiftCorner *corner) nogil
     double c_lift_bisect "lift_bisect"(const BodyLift *lift, const LineOff *line, double start, double limit) nogil
 
-cdef extern from "conformal/columns.h":
+cdef extern from "conformal/picard.h":
     void c_fourier_columns "fourier_columns"(const double *modes, ptrdiff_t m, ptrdiff_t highest, const double *gain,
                                              const double *unit, double *columns, ptrdiff_t count,
                                              ptrdiff_t width) nogil
-
-cdef extern from "conformal/picard.h":
     int PICARD_COUNT, PICARD_LEVELS
     ctypedef double *PicardRow "PicardRow *"
     ctypedef struct PicardMatrices:

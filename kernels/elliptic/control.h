@@ -2,8 +2,7 @@
 
    With this a line whose steps h grow by exp(l h) satisfies  x_ξξ + φ x_ξ = 0  exactly by central differences, on
    every level, and the weights of both neighbours stay positive however large l is. */
-#ifndef MESHONET_CONTROL_H
-#define MESHONET_CONTROL_H
+#pragma once
 #include "stencil.h"
 
 /* tanh to 2e-7 for |z| < 1/2 and 5e-4 elsewhere, below 1 always: a quotient that vectorises. */
@@ -48,5 +47,3 @@ MESHONET_INLINE void control_row(const Level *g, ptrdiff_t i, ptrdiff_t first, p
         }
     }
 }
-
-#endif

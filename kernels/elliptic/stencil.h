@@ -1,11 +1,15 @@
 /* The stencil of Winslow's operator with control functions at one node; see multigrid.c for the equations. */
-#ifndef MESHONET_STENCIL_H
-#define MESHONET_STENCIL_H
+#pragma once
 #include "clones.h"
 #include "multigrid.h"
 
 /* What a kernel has to do beside L: a right side, control functions. Constants where it is inlined. */
 enum { FORCED = 1, CONTROLLED = 2 };
+#define BY_MODE(mode, F, ...) \
+    ((mode) == (FORCED | CONTROLLED) ? F(__VA_ARGS__, FORCED | CONTROLLED) \
+     : (mode) == CONTROLLED          ? F(__VA_ARGS__, CONTROLLED) \
+     : (mode) == FORCED              ? F(__VA_ARGS__, FORCED) \
+                                     : F(__VA_ARGS__, 0))
 
 MESHONET_INLINE int mode_of(const Level *g, int forced)
 {
@@ -63,5 +67,3 @@ static ptrdiff_t padded(ptrdiff_t n)
 {
     return (n + 8) / 8 * 8 + 8;
 }
-
-#endif

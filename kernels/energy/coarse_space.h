@@ -3,8 +3,7 @@
    The transforms know neither how the softest moves, p = ψ_ξ with q = -ψ_η, couple both coordinates, nor how cells
    differ: the smoothest ones would come last. So to P comes S H⁻¹ Sᵀ, with S splines from the inner nodes of a coarse
    grid and H the Hessian there (hessian.h), as a banded Cholesky factor. */
-#ifndef MESHONET_COARSE_SPACE_H
-#define MESHONET_COARSE_SPACE_H
+#pragma once
 #include "clones.h"
 #include "spectral.h"
 #include "variational.h"
@@ -66,4 +65,3 @@ MESHONET_INLINE void from_space(const Space *s, const float *restrict unknowns, 
         }
     }
 }
-#endif

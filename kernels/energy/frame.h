@@ -1,8 +1,7 @@
 /* The preconditioner of a descent: gradients turned into the frame of each node, divided as in spectral.h, and turned
    back; and what the coarse space (coarse_space.h) adds. Frames are the steps along xi, so that a move in them counts
    in cells. */
-#ifndef MESHONET_FRAME_H
-#define MESHONET_FRAME_H
+#pragma once
 #include "coarse_space.h"
 #include "hessian.h"
 #include "spectral.h"
@@ -115,5 +114,3 @@ static double largest_move(const Descent *d)
     }
     return sqrt((double)most);
 }
-
-#endif

@@ -8,25 +8,20 @@
    Every mode is even or odd about the middle of its direction. So values are folded first, v(k) and its mirror image
    into (v(k) + v(-k)) / √2 and (v(k) - v(-k)) / √2, and each half has its own modes: half the work. Single precision
    is enough here. */
-#ifndef MESHONET_SPECTRAL_H
-#define MESHONET_SPECTRAL_H
+#pragma once
 #include "clones.h"
 #include "variational.h"
 #include <string.h>
 
 #define PANEL 32 /* columns of a product at a time: two vectors of 512 bits */
 
-#if defined(__GNUC__)
-typedef float Lanes __attribute__((vector_size(64), aligned(4)));
 #define LANES 16
-#else
-typedef float Lanes;
-#define LANES 1
-#endif
 #define VECTORS (PANEL / LANES)
 #define ROWS 12   /* of a product at a time: as many sums as registers hold */
 #define DEPTH 192 /* terms of a sum at a time: their panel stays in the first cache */
 #define FOLDED 0.70710678f
+
+typedef float Lanes __attribute__((vector_size(64), aligned(4)));
 
 /* `rows` (ROWS at the most) rows of c = a b, or of c += a b with `add`, one panel; b packed (k, PANEL), c with room for
    whole panels. */
@@ -161,4 +156,3 @@ MESHONET_INLINE void divide(const Spectrum *s, float *restrict w, float *restric
         along_rows(right, &s->eta, w, 2 * mi, 1, packed);
     }
 }
-#endif

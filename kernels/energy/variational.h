@@ -1,6 +1,5 @@
 /* The variational functional of a grid, its gradient, and a descent of it; see variational.c. */
-#ifndef MESHONET_VARIATIONAL_H
-#define MESHONET_VARIATIONAL_H
+#pragma once
 #include <stddef.h>
 
 typedef struct {
@@ -96,4 +95,3 @@ int descent_step(Descent *d);
 
 /* The norm of the gradient. */
 double descent_slope(const Descent *d);
-#endif

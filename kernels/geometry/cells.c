@@ -1,6 +1,6 @@
 #include "cells.h"
 
-#include "clones.h"
+#include "exponential.h"
 
 /* A cell and its edges; i runs along e0, j against e3:
 
@@ -34,32 +34,11 @@ MESHONET_INLINE double smaller(double a, double b) { return a < b ? a : b; }
 /* asin(s)/s as a polynomial in z = s*s on [0, 1/4]: Chebyshev interpolation of degree 12, relative error 3e-17. */
 MESHONET_INLINE double asin_over_s(double z)
 {
-    static const double c[13] = {1.0,
-                                 0.16666666666664945,
-                                 0.07500000000384784,
-                                 0.044642856806216,
-                                 0.030381959691850167,
-                                 0.02237174983251582,
-                                 0.017359778450540774,
-                                 0.013884853387846141,
-                                 0.012170069419059097,
-                                 0.006529622403221694,
-                                 0.01951249342600702,
-                                 -0.016185667777976222,
+    static const double c[13] = {1.0, 0.16666666666664945, 0.07500000000384784, 0.044642856806216,
+                                 0.030381959691850167, 0.02237174983251582, 0.017359778450540774, 0.013884853387846141,
+                                 0.012170069419059097, 0.006529622403221694, 0.01951249342600702, -0.016185667777976222,
                                  0.03187828814012674};
-    double p = c[12];
-    p = p * z + c[11];
-    p = p * z + c[10];
-    p = p * z + c[9];
-    p = p * z + c[8];
-    p = p * z + c[7];
-    p = p * z + c[6];
-    p = p * z + c[5];
-    p = p * z + c[4];
-    p = p * z + c[3];
-    p = p * z + c[2];
-    p = p * z + c[1];
-    return p * z + c[0];
+    return polynomial(c, 13, z);
 }
 
 /* Angle in degrees of a cosine. acos in the C library is a call, which would stop vectorisation. */

@@ -1,7 +1,5 @@
 /* Measures of the cells of a structured grid, whose nodes are the planes x and y (ni, nj). */
-#ifndef MESHONET_CELLS_H
-#define MESHONET_CELLS_H
-
+#pragma once
 #include <stddef.h>
 #include <stdint.h>
 
@@ -31,5 +29,3 @@ typedef struct {
 
 /* Run over all cells; scratch of 4 (nj + 1) + METRICS (nj - 1). */
 void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, double *scratch);
-
-#endif

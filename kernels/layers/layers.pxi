@@ -6,8 +6,6 @@ cdef extern from "layers/layers.h":
                                        double *log_ratio) nogil
     double c_layer_lines "layer_lines"(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X,
                                        double *Y, ptrdiff_t NJ, const Layers *layers, double *scratch) nogil
-
-cdef extern from "layers/redistribute.h":
     void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
                             double *scratch) nogil
 

@@ -28,11 +28,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
     if not corners or len(grid.eta) < 4:
         return
     reach, shift = shifts(grid, lift, wall, corners)
-
-    def across(eta: Floats) -> Floats:
-        return fading(eta, float(grid.eta[1]))
-
-    grid.nudge(reach @ shift, across)
+    grid.nudge(reach @ shift, lambda eta: fading(eta, float(grid.eta[1])))
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
@@ -50,12 +46,9 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
-        shift = np.array(
-            [
-                lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], w, s, most)
-                for c, w, s, most in zip(corners, moved, shift, limit, strict=True)
-            ]
-        )
+        ends = zip(corners, moved, shift, limit, strict=True)
+        halved = (lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], *rest) for c, *rest in ends)
+        shift = np.array(list(halved))
     return reach, shift
 
 

@@ -20,8 +20,8 @@ from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.kernels._native import strip_rows
+from meshonet.solvers.conformal.chebyshev import NODES, panels
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
-from meshonet.solvers.conformal.panels import NODES, panels
 from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
@@ -30,11 +30,8 @@ FAINT = 1e-12  # a wall's high modes are followed until their sum is below this 
 class StripGrid:
     """A strip solution sampled at the nodes of one grid.
 
-    Parameters
-    ----------
-    c : (2 MODES + 1, LEVELS) modes of F = w - i theta at the Chebyshev points.
-    wall, far : (n,) F at the nodes of the two walls.
-    eta : (nj,) rising from 0 to 1.
+    `c`: (2 MODES + 1, LEVELS) modes of F = w - i theta at the Chebyshev points; `wall`, `far`: (n,) F at the
+    nodes of the two walls; `eta`: (nj,) rising from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -89,10 +86,7 @@ class StripGrid:
         return finite
 
     def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, int, Floats]]:
-        """Yield the points at `eta` in slices: their first, their number and the columns of their modes.
-
-        Those before `last` may feel the high modes of the wall, the others those of the far field.
-        """
+        """Yield the points at `eta` in slices: their first, their number and the columns of their modes."""
         base = np.ascontiguousarray(self._c.T)
         low = (_interpolation(eta.tobytes()).T @ base.view(np.float64)).view(np.complex128)
         first = 0

@@ -52,10 +52,7 @@ def columns(modes: Complexes) -> Floats:
 
 @lru_cache(maxsize=16)
 def _transform(count: int) -> tuple[Floats, Complexes]:
-    """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b).
-
-    And exp(2 pi i j / count) for j below count / 2.
-    """
+    """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b)."""
     steps = 8 * TAPS
     x = np.arange(-steps, steps + 1) / steps
     window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))

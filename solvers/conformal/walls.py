@@ -24,8 +24,7 @@ ROUGHEST = 0.1
 SHARP_TURN = np.radians(25.0)
 """Turn at a node of a wall with uneven spacing from which the grid line there halves the angle."""
 
-CORNER = np.radians(85.0)
-"""Turn at a node, trailing edge aside, that makes a body no airfoil."""
+CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a body no airfoil
 
 
 class Walls(NamedTuple):

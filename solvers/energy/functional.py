@@ -31,10 +31,8 @@ from meshonet.kernels._native import variational_energy, variational_workspace
 class Weights:
     """Weights of the terms.
 
-    Parameters
-    ----------
-    shape : w, from 0 (harmonic) to 1 (angles only).
-    smoothness : β. A fourth of the default is sharper, but buckles on strongly skewed domains.
+    `shape`: w, from 0 (harmonic) to 1 (angles only). `smoothness`: β. A fourth of the default is sharper, but
+    buckles on strongly skewed domains.
     """
 
     shape: float = 0.97

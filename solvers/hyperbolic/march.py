@@ -37,17 +37,13 @@ from meshonet.solvers.hyperbolic.settings import (
 )
 from meshonet.solvers.solution import Solution
 
-FADE_ROWS = 12.0
-"""Rows over which the correction of the first cell fades out."""
-
-REACHED = 0.025
-"""Relative error of the far field's distance up to which no other distance is tried."""
+FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
+REACHED = 0.025  # relative error of the far field's distance up to which no other distance is tried
 
 MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
 
-AREA_SMOOTHING = 0.16
-"""Coefficient of a smoothing step of the areas along a level."""
+AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
 
 def hyperbolic(
@@ -69,18 +65,9 @@ def hyperbolic(
     constant : so many first rows are equally high.
     free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
 
-    Returns
-    -------
-    Solution
-        `boundary` of the solution is the one that the march ended at. The grid may be folded when
-        every attempt was.
-
-    Raises
-    ------
-    InputError
-        a four-sided boundary; a spacing or growth out of range; rows that do not suffice.
-    SolverError
-        no attempt gave finite nodes.
+    `boundary` of the solution is the one that the march ended at. The grid may be folded when every
+    attempt was. Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not
+    suffice; SolverError: no attempt gave finite nodes.
     """
     begun = time.perf_counter()
     check_layers(wall_spacing, growth)

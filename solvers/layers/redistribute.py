@@ -35,37 +35,18 @@ from meshonet.solvers.layers.first_cells import (
 )
 from meshonet.solvers.solution import Solution
 
-FADE_NODES = 12.0
-"""Nodes over which the last correction of a first cell fades out."""
-
-EXACT = 1e-10
-"""Relative error of a first cell that is left."""
-
-SLIGHT = 1e-3
-"""Relative error up to which the first node alone is moved."""
-
-PASSES = 100
-"""Alternating corrections of first cells off edges that meet, at the most."""
+FADE_NODES = 12.0  # nodes over which the last correction of a first cell fades out
+EXACT = 1e-10  # relative error of a first cell that is left
+SLIGHT = 1e-3  # relative error up to which the first node alone is moved
+PASSES = 100  # alternating corrections of first cells off edges that meet, at the most
 
 
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    Parameters
-    ----------
-    solution : a quad or O grid, valid and best with even rows.
-    boundary : what it was made for.
-    heights : of the first cells.
-
-    Returns
-    -------
-    Solution
-        with the boundary that its edges have now, and a note of heights and growth.
-
-    Raises
-    ------
-    InputError
-        heights that the boundary cannot have, or more growth than allowed.
+    `solution` is a quad or O grid made for `boundary`, valid and best with even rows. What is returned has
+    the boundary that its edges have now. Raises InputError: heights that the boundary cannot have, or more
+    growth than allowed.
     """
     check_fit(heights, boundary)
     grid = solution.grid

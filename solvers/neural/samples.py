@@ -19,13 +19,9 @@ from meshonet.geometry.errors import InputError
 class Samples:
     """n solved grids.
 
-    Parameters
-    ----------
-    nodes : (n, ni, nj, 2), any unit of length.
-    topology : ``quad`` or ``o``.
-    names : (n,) of the shapes.
-    splits : (n,) ``train``, ``test`` or nothing.
-    parameters : (n,) of their family, NaN where there is none.
+    `nodes`: (n, ni, nj, 2), any unit of length; `topology`: ``quad`` or ``o``; `names`: (n,) of the shapes;
+    `splits`: (n,) ``train``, ``test`` or nothing; `parameters`: (n,) of their family, NaN where there is
+    none.
     """
 
     nodes: Floats
@@ -76,10 +72,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 def gathered(grids: Iterable[Grid]) -> Samples:
     """Return grids as samples.
 
-    Raises
-    ------
-    InputError
-        no grid, one of another size or topology than the first, a C grid.
+    Raises InputError: no grid, one of another size or topology than the first, a C grid.
     """
     rows: list[Floats] = []
     facts: list[tuple[str, str, float]] = []
@@ -87,11 +80,9 @@ def gathered(grids: Iterable[Grid]) -> Samples:
     for grid in grids:
         first = first or grid
         if (grid.nodes.shape, grid.topology) != (first.nodes.shape, first.topology):
-            raise InputError(
-                f"{grid.name or 'a grid'} is {grid.ni}x{grid.nj} {grid.topology} and the first is "
-                f"{first.ni}x{first.nj} {first.topology}",
-                "train on grids of one size and topology",
-            )
+            sizes = [f"{g.ni}x{g.nj} {g.topology}" for g in (grid, first)]
+            problem = f"{grid.name or 'a grid'} is {sizes[0]} and the first is {sizes[1]}"
+            raise InputError(problem, "train on grids of one size and topology")
         if grid.topology == "c":
             raise InputError("a C grid among the training grids", "give quad or O grids")
         values = [value for _, value in grid.origin.parameters]

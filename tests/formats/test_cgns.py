@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 
 from meshonet.formats.cgns.read import read_grids
-from meshonet.formats.cgns.write import write_extruded, write_grids
+from meshonet.formats.cgns.write import write_grids
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -25,7 +25,7 @@ MAKES = [channel, ring, c_grid]
 def test_vtk_reads_every_zone_bit_for_bit(make: type[Grid], thick: bool, tmp_path: Path) -> None:
     grids = [make(name="first"), make(name="second")]  # type: ignore[call-arg]
     if thick:
-        write_extruded(tmp_path / "g.cgns", grids, (0.0, 0.25))
+        write_grids(tmp_path / "g.cgns", grids, (0.0, 0.25))
     else:
         write_grids(tmp_path / "g.cgns", grids)
     reader = vtkCGNSReader()
@@ -53,7 +53,7 @@ def test_cgnscheck_has_neither_errors_nor_warnings(make: type[Grid], thick: bool
     path = tmp_path / "g.cgns"
     grids = [make(), make()]
     if thick:
-        write_extruded(path, grids, (0.0, 0.25))
+        write_grids(path, grids, (0.0, 0.25))
     else:
         write_grids(path, grids)
     done = subprocess.run(["cgnscheck", "-v", str(path)], capture_output=True, text=True, timeout=60)

@@ -61,7 +61,7 @@ def test_gmsh_sees_layers_of_right_handed_hexahedra(
     make: type[Grid], layers: int, version: str, tmp_path: Path
 ) -> None:
     grid = make()
-    writer = format_named(version).write_extruded
+    writer = format_named(version).write_grids
     assert writer is not None
     writer(tmp_path / "g.msh", [grid], tuple(0.5 * k for k in range(layers + 1)))
     gmsh.open(str(tmp_path / "g.msh"))

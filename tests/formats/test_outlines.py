@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from format_shapes import memory
 
-from meshonet.formats.outlines import is_geojson, is_wkt
 from meshonet.formats.outlines.vector import read_geojson, read_wkt
+from meshonet.formats.table import is_geojson, is_wkt
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 

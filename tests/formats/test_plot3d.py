@@ -202,7 +202,7 @@ def test_vtk_reads_our_text_when_told_its_layout(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["plot3d:binary", "plot3d:fortran"])
 def test_vtk_reads_a_layer(name: str, tmp_path: Path) -> None:
-    writer = format_named(name).write_extruded
+    writer = format_named(name).write_grids
     assert writer is not None
     writer(tmp_path / "g", [RING], (0.0, 0.5))
     (points,) = vtk_blocks(tmp_path / "g")

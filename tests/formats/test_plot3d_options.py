@@ -21,8 +21,8 @@ def written(words: str, grids: list[Grid], folder: Path, heights: tuple[float, .
     """Return the file that ``--to plot3d:words`` writes."""
     record = format_named(f"plot3d:{words}")
     if heights:
-        assert record.write_extruded is not None
-        record.write_extruded(folder / "g", grids, heights)
+        assert record.extrudes
+        record.write_grids(folder / "g", grids, heights)
     else:
         assert record.write_grids is not None
         record.write_grids(folder / "g", grids)

@@ -10,7 +10,7 @@ from format_shapes import c_grid, channel, memory, ring
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from meshonet.formats.source import open_source
-from meshonet.formats.vtk.legacy import read_grids, write
+from meshonet.formats.vtk.legacy import read_grids, write_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -27,7 +27,7 @@ def by_vtk(path: Path) -> vtk.vtkStructuredGrid:
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 def test_vtk_reads_what_we_write(make: type[Grid], text: bool, tmp_path: Path) -> None:
     grid = make()
-    write(tmp_path / "g.vtk", grid, text=text)
+    write_grids(tmp_path / "g.vtk", [grid], options=frozenset({"ascii"} if text else ()))
     data = by_vtk(tmp_path / "g.vtk")
     counts = [0, 0, 0]
     data.GetDimensions(counts)
@@ -41,7 +41,7 @@ def test_vtk_reads_what_we_write(make: type[Grid], text: bool, tmp_path: Path) -
 
 @pytest.mark.parametrize("text", [False, True])
 def test_meshio_reads_what_we_write(text: bool, tmp_path: Path) -> None:
-    write(tmp_path / "g.vtk", ring(), text=text)
+    write_grids(tmp_path / "g.vtk", [ring()], options=frozenset({"ascii"} if text else ()))
     mesh = meshio.read(tmp_path / "g.vtk")
     assert np.array_equal(mesh.points[:, 0], ring().x.ravel(order="F"))
     assert [(block.type, len(block.data)) for block in mesh.cells] == [("quad", 12 * 4)]

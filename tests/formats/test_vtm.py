@@ -9,7 +9,7 @@ from format_shapes import channel, file_names, memory, ring
 
 from meshonet.formats.output import whole_file
 from meshonet.formats.source import open_source
-from meshonet.formats.vtk.vtm import read_grids, write_extruded, write_grids
+from meshonet.formats.vtk.vtm import read_grids, write_grids
 from meshonet.geometry.errors import InputError
 
 INDEX = '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>{}</vtkMultiBlockDataSet></VTKFile>'
@@ -27,7 +27,7 @@ def test_blocks_of_any_size_and_topology_come_back(tmp_path: Path) -> None:
 
 
 def test_vtk_opens_all_blocks(tmp_path: Path) -> None:
-    write_extruded(tmp_path / "all.vtm", [ring(), channel()], (0.0, 1.0))
+    write_grids(tmp_path / "all.vtm", [ring(), channel()], (0.0, 1.0))
     reader = vtk.vtkXMLMultiBlockDataReader()
     reader.SetFileName(str(tmp_path / "all.vtm"))
     reader.Update()

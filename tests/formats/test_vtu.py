@@ -9,7 +9,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from meshonet.formats.mesh.unstructured import unstructured
-from meshonet.formats.vtk.vtu import write_extruded, write_grids
+from meshonet.formats.vtk.vtu import write_grids
 from meshonet.geometry.blocks.grid import Grid
 
 
@@ -20,7 +20,7 @@ def test_vtk_reads_cells_points_and_the_numbers_of_parts(
 ) -> None:
     mesh = unstructured(make())
     if thick:
-        write_extruded(tmp_path / "g.vtu", [make()], (0.0, 0.5))
+        write_grids(tmp_path / "g.vtu", [make()], (0.0, 0.5))
     else:
         write_grids(tmp_path / "g.vtu", [make()])
     reader = vtkXMLUnstructuredGridReader()

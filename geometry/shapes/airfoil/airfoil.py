@@ -50,10 +50,7 @@ class Airfoil:
     notes : what was changed of it before.
     places : (n,) where each point stands in its source, such as ``line 12``, for messages.
 
-    Raises
-    ------
-    InputError
-        the points are no airfoil, or its surfaces cross; says where.
+    Raises InputError: the points are no airfoil, or its surfaces cross; says where.
     """
 
     curve: Curve
@@ -144,10 +141,8 @@ class Airfoil:
     def wall(self, ni: int, sampling: Sampling) -> Floats:
         """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
 
-        Raises
-        ------
-        InputError
-            fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
+        Raises InputError: fewer nodes than the edges need, cells that do not fit, a polygon that crosses
+        itself.
         """
         return self._wall(ni, sampling)[0]
 
@@ -181,10 +176,7 @@ class Airfoil:
         ``auto`` is ``o``, unless wall cells are to be thin and the edge is sharp, with surfaces at most
         50 degrees apart (once it is as `Sampling.te` wants it).
 
-        Raises
-        ------
-        InputError
-            four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
+        Raises InputError: four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")

@@ -62,10 +62,7 @@ def clean_section(points: Floats) -> Section:
     They are taken to start at the trailing edge unless the other end is clearly the sharper one. Repeated
     points and points on a straight base are dropped, and neighbours in the wrong order are swapped.
 
-    Raises
-    ------
-    InputError
-        fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
+    Raises InputError: fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0

@@ -46,13 +46,8 @@ _KNOWN = "use four digits such as 2412 or five such as 23012, with -sharp for a 
 def naca(designation: str) -> Airfoil:
     """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, chord 1.
 
-    Raises
-    ------
-    InputError
-        a designation that stands for no airfoil.
+    Raises InputError: a designation that stands for no airfoil.
 
-    Examples
-    --------
     >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
     ('NACA 2412', True, False)
     """
@@ -82,8 +77,6 @@ def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
 
     y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), or 0.1036 at the end when sharp.
 
-    Examples
-    --------
     >>> thickness(np.array([0.0, 0.3, 1.0]), 0.12).round(5).tolist()
     [0.0, 0.06002, 0.00126]
     """

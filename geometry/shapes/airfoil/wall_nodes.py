@@ -86,10 +86,7 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     ni : nodes, the last one being the first again.
     sampling : spacing, `le_spacing` and `te_spacing` (met to 1 %, in chords).
 
-    Raises
-    ------
-    InputError
-        too few nodes, or steps that cannot be met with them.
+    Raises InputError: too few nodes, or steps that cannot be met with them.
     """
     least = 7 if stations.half_base else 5
     if ni < least:

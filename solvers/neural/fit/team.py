@@ -17,10 +17,7 @@ from meshonet.solvers.neural.fit.plan import Device
 class Team:
     """A process among those that train together.
 
-    Parameters
-    ----------
-    device : of this process.
-    rank, size : its number, and how many there are.
+    `device`: of this process; `rank`, `size`: its number, and how many there are.
     """
 
     device: torch.device
@@ -59,10 +56,7 @@ class Team:
 def team(device: Device) -> Team:
     """Return this process's place, joining the others under torchrun.
 
-    Raises
-    ------
-    InputError
-        ``cuda`` is asked for and there is none.
+    Raises InputError: ``cuda`` is asked for and there is none.
     """
     if device == "cuda" and not torch.cuda.is_available():
         raise InputError("torch sees no CUDA device", "use {device} cpu or auto", parameter="device")

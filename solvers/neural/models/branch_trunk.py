@@ -41,12 +41,9 @@ from meshonet.solvers.neural.samples import Samples
 class MeshONet(Architecture):
     """Dual branch, shared trunk.
 
-    Parameters
-    ----------
-    hidden : widths of a branch's hidden layers (Adjust Layer).
-    features : of branch and trunk, k in the paper.
-    depth : layers of the trunk, each `features` wide.
-    powers : of xi and eta in the Lift-Layer, q in the paper.
+    `hidden`: widths of a branch's hidden layers (Adjust Layer); `features`: of branch and trunk, k in the
+    paper; `depth`: layers of the trunk, each `features` wide; `powers`: of xi and eta in the Lift-Layer, q in
+    the paper.
     """
 
     interior: ClassVar[float] = 900.0
@@ -58,7 +55,6 @@ class MeshONet(Architecture):
     powers: int = 4
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         trunk = (4 + 2 * self.powers, *[self.features] * self.depth)
         branches = _two_branches((self.sensors, *self.hidden, self.features))
         return {**branches, **dense_shapes("trunk", trunk), "output/bias": (2,)}
@@ -68,7 +64,6 @@ class MeshONet(Architecture):
         return lift(xp, points, self.powers)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         trunk = dense(xp, w, "trunk", places, last=True)
         s = inputs["sensors"]
         both = xp.stack([dense(xp, w, f"branch_{name}", s[..., k]) for k, name in enumerate("xy")], 1)
@@ -79,11 +74,8 @@ class MeshONet(Architecture):
 class DeepONet(Architecture):
     """One branch, one trunk, features in halves.
 
-    Parameters
-    ----------
-    hidden : widths of a branch's hidden layers.
-    features : of each coordinate.
-    width, depth : of the trunk's hidden layers.
+    `hidden`: widths of a branch's hidden layers; `features`: of each coordinate; `width`, `depth`: of the
+    trunk's hidden layers.
     """
 
     hidden: tuple[int, ...] = (64, 128, 64)
@@ -92,12 +84,10 @@ class DeepONet(Architecture):
     depth: int = 3
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branch = dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * self.features))
         return {**branch, **self._trunk(2 * self.features), "output/bias": (2,)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         c = dense(xp, w, "branch", inputs["sensors"].reshape(len(inputs["sensors"]), -1))
         trunk, k = dense(xp, w, "trunk", places, last=True), self.features
         return xp.stack([c[:, :k] @ trunk[:, :k].T, c[:, k:] @ trunk[:, k:].T], -1) + w["output/bias"]
@@ -111,12 +101,10 @@ class MIONet(DeepONet):
     """Two branches, multiplied, their features in halves, and a trunk."""
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branches = _two_branches((self.sensors, *self.hidden, 2 * self.features))
         return {**branches, **self._trunk(self.features), "output/bias": (2,)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         s = inputs["sensors"]
         c = dense(xp, w, "branch_x", s[..., 0]) * dense(xp, w, "branch_y", s[..., 1])
         trunk = dense(xp, w, "trunk", places, last=True)
@@ -127,10 +115,8 @@ class MIONet(DeepONet):
 class PODDeepONet(Architecture):
     """A branch that answers coefficients of fixed modes.
 
-    Parameters
-    ----------
-    hidden : widths of the branch's hidden layers.
-    features : modes; fewer where the training set has fewer grids.
+    `hidden`: widths of the branch's hidden layers; `features`: modes; fewer where the training set has fewer
+    grids.
     """
 
     hidden: tuple[int, ...] = (64, 128, 64)
@@ -138,11 +124,9 @@ class PODDeepONet(Architecture):
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: yes."""
         return True
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
@@ -158,7 +142,6 @@ class PODDeepONet(Architecture):
         return {"fixed/mean": mean.reshape(-1, 2), "fixed/modes": modes.reshape(shape).swapaxes(0, 1)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) at nodes of the training grids."""
         c = dense(xp, w, "branch", inputs["sensors"].reshape(len(inputs["sensors"]), -1))
         return xp.einsum("bk,pkd->bpd", c, w["fixed/modes"][index]) + w["fixed/mean"][index]
 

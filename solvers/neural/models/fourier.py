@@ -28,20 +28,16 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 
-SIDE = 5
-"""Nodes of west and of east that FNO1D sees."""
+SIDE = 5  # nodes of west and of east that FNO1D sees
 
 
 @dataclass(frozen=True)
 class Fourier(Architecture):
     """The settings and layers of both.
 
-    Parameters
-    ----------
-    width : channels of the hidden state.
-    modes : that are mixed, in each direction (of eta positive and negative ones).
-    layers : Fourier layers.
-    padding : nodes of zeros before the transform, in each direction.
+    `width`: channels of the hidden state; `modes`: that are mixed, in each direction (of eta positive and
+    negative ones); `layers`: Fourier layers; `padding`: nodes of zeros before the transform, in each
+    direction.
     """
 
     width: int = 48
@@ -51,7 +47,6 @@ class Fourier(Architecture):
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: yes."""
         return True
 
     def _shapes(self, seen: int, mixing: tuple[int, ...], project: tuple[int, ...]) -> Shapes:
@@ -78,7 +73,6 @@ class FNO1D(Fourier):
     """Fourier layers along xi."""
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         return self._shapes(4 + 4 * SIDE + 1, (self.modes,), (128, 2 * frame.nj))
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
@@ -92,7 +86,6 @@ class FNO1D(Fourier):
         return {"edges": np.array(rows)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) at nodes of the training grids."""
         h = self._layered(xp, w, dense(xp, w, "lift", inputs["edges"]))
         out = dense(xp, w, "project", h)
         return out.reshape(len(out), -1, 2)[:, index]
@@ -117,10 +110,7 @@ class FNO2D(Fourier):
     def shapes(self, frame: Frame) -> Shapes:
         """Return the shapes of what is trained.
 
-        Raises
-        ------
-        InputError
-            more modes than the grids have.
+        Raises InputError: more modes than the grids have.
         """
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
@@ -135,7 +125,6 @@ class FNO2D(Fourier):
         return {"along": along, "across": across}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) at nodes of the training grids."""
         along, across = inputs["along"], inputs["across"]
         batch, ni, nj = len(along), along.shape[1], across.shape[1]
         weight, bias = w["lift/0/weight"], w["lift/0/bias"]
@@ -161,10 +150,10 @@ class FNO2D(Fourier):
 
 @cache
 def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Floats, Floats]:
-    """Return the matrices of discrete Fourier transforms of n nodes and `padding` zeros, lowest modes only.
+    """Return the matrices of Fourier transforms of n nodes and `padding` zeros, lowest modes only.
 
-    Along xi (ni, 2 modes), complex, its modes from 0 up and from -`modes` up; across it (2 modes, nj), the
-    real and the imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
+    Along xi (ni, 2 modes), complex, from 0 up and from -`modes` up; across it (2 modes, nj), real and
+    imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
     """
     m, k = ni + padding, np.concatenate([np.arange(modes), np.arange(-modes, 0)])
     along = np.exp(-2j * np.pi / m * np.outer(np.arange(ni), k))

@@ -36,38 +36,25 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """One branch that sees everything, a trunk that vanishes on the boundary.
-
-    Parameters
-    ----------
-    hidden : widths of the branch's hidden layers.
-    features : functions of the trunk, shared by x and y.
-    width, depth : of the trunk's hidden layers.
-    waves : frequencies of xi and eta that the trunk sees.
-    modes : of the training grids' differences in place of a trained trunk; 0 for the trunk.
-    within : sensors are seen no further out than those of the training shapes.
-    periodic : in xi (an O grid).
-    """
+    """One branch that sees everything, a trunk that vanishes on the boundary."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
 
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    width: int = 64
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
+    features: int = 50  # functions of the trunk, shared by x and y
+    width: int = 64  # of the trunk's hidden layers
     depth: int = 3
-    waves: int = 6
-    modes: int = 0
-    within: bool = False
-    periodic: bool = False
+    waves: int = 6  # frequencies of xi and eta that the trunk sees
+    modes: int = 0  # of the training grids' differences in place of a trained trunk; 0 for the trunk
+    within: bool = False  # sensors are seen no further out than those of the training shapes
+    periodic: bool = False  # in xi (an O grid)
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: modes do."""
         return self.modes > 0
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branch = dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * (self.modes or self.features)))
         if self.modes:
             return branch
@@ -95,7 +82,6 @@ class MeshONetHard(Architecture):
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) less the base."""
         seen = inputs["sensors"]
         if self.within:
             seen = xp.clip(seen, w["fixed/least"], w["fixed/most"])
@@ -121,10 +107,7 @@ class MeshONetHard(Architecture):
 
 
 def _modes(targets: Floats, count: int) -> Floats:
-    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them.
-
-    The first is of mean square 1; those that n grids do not have are zero.
-    """
+    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them."""
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
     largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])

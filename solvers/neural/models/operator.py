@@ -26,21 +26,15 @@ from meshonet.solvers.solution import Solution
 DIRECT = 129 * 129
 """Nodes up to which a network is evaluated at each; larger grids are interpolated where that is exact."""
 
-TABLE = 65
-"""Chebyshev points along xi and eta that are interpolated between."""
-
-CLOSE = 1e-6
-"""Largest error of that interpolation, relative to the answer, at places between its points."""
+TABLE = 65  # Chebyshev points along xi and eta that are interpolated between
+CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at places between its points
 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
     """A model of `registry.ARCHITECTURES` with its weights.
 
-    Parameters
-    ----------
-    model, frame : what it is and what it was trained on.
-    weights : trained and fixed arrays, float32.
+    `model`, `frame`: what it is and what it was trained on; `weights`: trained and fixed arrays, float32.
     """
 
     batched: ClassVar[bool] = False
@@ -84,9 +78,8 @@ class PaperOperator(Operator):
         grid = boundary.grid(nodes, facts)
         done = "replaced by the true one" if paste else "left so"
         notes = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
-        return Solution(
-            grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes if error > 0.0 else ()
-        )
+        notes = notes if error > 0.0 else ()
+        return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
         """Return the nodes (ni, nj, 2), and how far their edges were from `boundary` at most before pasting.
@@ -111,10 +104,7 @@ class PaperOperator(Operator):
     def difference(self, boundary: Boundary) -> Floats:
         """Return the answer at the nodes of `boundary`'s grid (ni, nj, 2), less the model's base.
 
-        Raises
-        ------
-        InputError
-            a boundary of another topology than the training grids'.
+        Raises InputError: a boundary of another topology than the training grids'.
         """
         self.check([boundary])
         ni, nj = boundary.ni, boundary.nj

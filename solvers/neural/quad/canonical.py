@@ -1,9 +1,8 @@
 """Boundaries in a canonical frame, where the steps after the network are taken.
 
-Descents amplify rounding: thirty steps in a window around a corner turn 1e-16 into 1e-3, and the steps of
-Newton's method are computed in single precision. A domain that is moved, turned, scaled, mirrored or has its
-sides named otherwise must take the same steps to the bit. Its edges are therefore taken to a frame of their
-own and rounded there to 1e-9 of their size; of all their relabellings, a fixed rule chooses one:
+Descents amplify rounding: thirty steps around a corner turn 1e-16 into 1e-3. So that a domain moved, turned,
+scaled, mirrored or with its sides named otherwise takes the same steps to the bit, its edges are taken to a
+frame of their own, rounded there to 1e-9 of their size, and relabelled as the first of their images is:
 
 ========  ==================================================  ============================================
 o         the cut runs from 0 to 1                            mirrored if the mirror image comes first
@@ -24,8 +23,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 
-STEP = 2.0**-30
-"""Of the rounding, over the size of the edges up to the next power of two."""
+STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next power of two
 
 LEAST = 0.1
 """Mean side along xi, over the size, that is long enough to tell a direction; else a diagonal does."""
@@ -40,13 +38,9 @@ IDENTITY: Element = (False, False, False)
 class Canonical:
     """A boundary and what it is in its canonical frame.
 
-    Parameters
-    ----------
-    original : the boundary.
-    boundary : the same in the frame, its edges rounded and relabelled.
-    element : the relabelling.
-    origin, unit : a point u there is ``origin + unit u`` here, its conjugate if the element mirrors.
-    symmetric : an O boundary that is its own mirror image.
+    `original`: the boundary; `boundary`: the same in the frame, its edges rounded and relabelled; `element`:
+    the relabelling; `origin`, `unit`: a point u there is ``origin + unit u`` here, its conjugate if the
+    element mirrors; `symmetric`: an O boundary that is its own mirror image.
     """
 
     original: Boundary
@@ -127,7 +121,6 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
 
 
 def _step(edges: Complexes) -> float:
-    """Return what coordinates of `edges` are rounded to multiples of."""
     return float(STEP * 2.0 ** np.ceil(np.log2(np.abs(edges).max())))
 
 
@@ -140,5 +133,4 @@ def _mirrors(element: Element) -> bool:
 
 
 def _complex(edge: Floats) -> Complexes:
-    """Return nodes (n, 2) as x + iy."""
     return np.asarray(edge[:, 0] + 1j * edge[:, 1])

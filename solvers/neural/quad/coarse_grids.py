@@ -31,13 +31,12 @@ SHARES = (0.95, 0.9, 0.8)
 def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
 
-    Winslow's have up to 65 along a direction, where the edges have as many.
-
-    Parameters
-    ----------
-    head : index into `encoding.HEADS`.
+    Winslow's have up to 65 along a direction, where the edges have as many. `head`: index into
+    `encoding.HEADS`.
     """
-    base = _begun(edges)
+    base = np.empty((len(edges), 2, LATENT, LATENT))
+    ni, nj = edges.counts
+    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
     room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
     for k in range(0, len(base), CHUNK):
         planes = base[k : k + CHUNK]
@@ -62,14 +61,6 @@ def _nearer(coarse: Floats, edges: Edges) -> Floats:
     step_all(near, steps=AFTER, harmonic=False)
     frame_put_back(planes, near, unit, factors)
     return planes
-
-
-def _begun(edges: Edges) -> Floats:
-    """Return transfinite grids as planes (batch, 2, 33, 33)."""
-    base = np.empty((len(edges), 2, LATENT, LATENT))
-    ni, nj = edges.counts
-    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
-    return base
 
 
 def _unit(planes: Floats) -> tuple[Floats, Floats]:

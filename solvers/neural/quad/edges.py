@@ -12,8 +12,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.kernels._native import tfi_batch
 from meshonet.solvers.algebraic.resample.spline import between
 
-Sides = tuple[Floats, Floats, Floats, Floats]
-"""Of south, north, west and east."""
+Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
 
 
 @dataclass(frozen=True)

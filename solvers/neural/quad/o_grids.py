@@ -39,14 +39,8 @@ COMPACT = 0.15
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
     """Return the planes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    Parameters
-    ----------
-    head : index into `encoding.HEADS`.
-
-    Raises
-    ------
-    InputError
-        walls that, at 65 nodes, do not go once round the body's centroid, nor round a point inside it.
+    `head`: index into `encoding.HEADS`. Raises InputError: walls that, at 65 nodes, do not go once round the
+    body's centroid, nor round a point inside it.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -71,10 +65,8 @@ def answered(
 ) -> Any:
     """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
 
-    Parameters
-    ----------
-    factor : (batch, 1, 1) to unit size.
-    network : answers (batch, m, n) by what it sees; `approach` is that of `picard`; both of `xp`.
+    `factor`: (batch, 1, 1) to unit size; `network`: answers (batch, m, n) by what it sees; `approach` is that
+    of `picard`; both of `xp`.
     """
     z = base * factor
     near, step = approach(z, xp, around=True)
@@ -91,9 +83,7 @@ def _approached(z: Complexes, _: Any, **settings: Any) -> tuple[Complexes, Compl
     return _complex(planes), _complex(steps)
 
 
-def _strips(
-    boundaries: Sequence[Boundary],
-) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
+def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
     """Return the walls at 65 nodes, their strips, the middles, and which walls go round these once."""
     sides = [np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")]
     walls = _complex(np.stack([between(side, AROUND) for side in sides], axis=3))

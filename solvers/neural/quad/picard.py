@@ -30,17 +30,13 @@ from meshonet.solvers.neural.quad.encoding import LATENT
 STEPS = 4
 """After the harmonic grid. A fifth takes a tenth of what is left on average."""
 
-AFTER = 3
-"""Once more, after the network's answer for Winslow's grid."""
+AFTER = 3  # once more, after the network's answer for Winslow's grid
 
 FINER = 65
 """Nodes along a direction at the most that these are taken on: evaluating the solution from 33 costs 3e-4."""
 
-SHARE = 0.75
-"""Of the leading error of differences that is taken out."""
-
-GROWTH = 4.0
-"""A step whose square is so many times the last one's, in the mean, is not taken."""
+SHARE = 0.75  # of the leading error of differences that is taken out
+GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean, is not taken
 
 TINY = 1e-30
 
@@ -53,12 +49,9 @@ def approach(
 ) -> tuple[Any, Any]:
     """Return grids nearer to Winslow's in the rims of `z`, and the last step, both of the shape of `z`.
 
-    Parameters
-    ----------
-    z : (batch, n, n) grids of unit size, complex, arrays of `xp`.
-    around : `z` are strips (batch, m + 1, n), whose last column is the first a turn on.
-    steps : of Picard's iteration.
-    harmonic : they go out from the harmonic grid, else from `z`, and are extrapolated.
+    `z`: (batch, n, n) grids of unit size, complex, arrays of `xp`; `around`: `z` are strips (batch, m + 1,
+    n), whose last column is the first a turn on; `steps`: of Picard's iteration; `harmonic`: they go out from
+    the harmonic grid, else from `z`, and are extrapolated.
     """
     p = xp.stack([z.real, z.imag], 1)
     turn = p[:, :, -1:] - p[:, :, :1]
@@ -119,10 +112,7 @@ def _plain(n: int) -> Tables:
 
 @lru_cache(maxsize=8)
 def _folded(n: int) -> Tables:
-    """Return the tables of n nodes for sums of values and their mirror images, and for differences.
-
-    A wave of an odd number is its own mirror image, one of an even number is so with the other sign.
-    """
+    """Return the tables of n nodes for sums of values and their mirror images, and for differences."""
     table, values = _transform(n, around=False)
     less = len(values) // 2
     half = len(values) - less
@@ -140,10 +130,7 @@ def _folded(n: int) -> Tables:
 
 
 def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
-    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients.
-
-    `linear`: Laplace's along xi and eta instead of Winslow's.
-    """
+    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients."""
     body = p[:, :, 2:-2] if around else p[:, :, 1:-1]
     bends = _second(p, share, xp, around)[..., 1:-1], _across(_second, body, share, xp)
     if linear:
@@ -198,10 +185,7 @@ def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:
 
 @lru_cache(maxsize=8)
 def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
-    """Return a symmetric matrix that is its own inverse and makes second differences of n nodes diagonal.
-
-    `around`, Hartley's; else of sines, for the nodes between the ends.
-    """
+    """Return a symmetric matrix that is its own inverse and makes second differences of n nodes diagonal."""
     if around:
         k = np.arange(n)
         angle = 2.0 * np.pi * (np.outer(k, k) % n) / n

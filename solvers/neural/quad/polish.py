@@ -16,11 +16,8 @@ from meshonet.solvers.neural.quad.edges import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 
-Counts: TypeAlias = tuple[int, int]
-"""Nodes along xi and eta."""
-
-MOST_SOLVED = 129
-"""Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
+Counts: TypeAlias = tuple[int, int]  # nodes along xi and eta
+MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
 
 MOST_DESCENDED, LARGER_DESCENDED = 513, 257
 """Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
@@ -28,13 +25,11 @@ MOST_DESCENDED, LARGER_DESCENDED = 513, 257
 LAST = 2
 """Most steps that are taken at full resolution; those before are taken on the network's coarse grid.
 
-There they gain most of the angles in the mean, above all as steps of Newton's method, which four-sided
-domains have: where the network is far off, dozens of others would not do. The last, a descent that follows
-the coarse grid's Hessian in smooth moves, remove folds and kinks between its nodes.
+There they gain most of the angles in the mean, above all by Newton's method, which four-sided domains have.
+The last, a descent that follows the coarse grid's Hessian in smooth moves, remove folds and kinks between.
 """
 
-STILL = 1e-4
-"""Moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
+STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
 
 
 def polished(
@@ -65,19 +60,14 @@ def _coarse(
     """Return the network's coarse grids, and what evaluates them at other counts."""
     if topology == "quad":
         edges = Edges.of(boundaries)
-        return (
-            coarse_grids.coarse_grids(edges, network, head),
-            lambda planes, counts: coarse_grids.evaluate(planes, edges.thinned(*counts)),
-        )
-    return (
-        o_grids.coarse_grids(boundaries, network, head),
-        lambda planes, counts: o_grids.evaluate(planes, [_with(b, counts) for b in boundaries]),
-    )
+        grids = coarse_grids.coarse_grids(edges, network, head)
+        return grids, lambda planes, counts: coarse_grids.evaluate(planes, edges.thinned(*counts))
 
+    def around(planes: Floats, counts: Counts) -> Floats:
+        own = counts == (boundaries[0].ni, boundaries[0].nj)
+        return o_grids.evaluate(planes, boundaries if own else [thinned(b, *counts) for b in boundaries])
 
-def _with(boundary: Boundary, counts: Counts) -> Boundary:
-    """Return a boundary with the node counts."""
-    return boundary if counts == (boundary.ni, boundary.nj) else thinned(boundary, *counts)
+    return o_grids.coarse_grids(boundaries, network, head), around
 
 
 def _most_nodes(n: int, head: int) -> int:
@@ -104,8 +94,9 @@ def _descent(planes: Floats, steps: int, topology: Topology, coarse: Floats | No
     from meshonet.solvers.energy.variational import WEIGHTS
 
     weights = WEIGHTS[topology]
-    every_second = None if coarse is None else np.moveaxis(coarse[:, ::2, ::2].copy(), 0, -1)
-    stiffness = None if every_second is None else stiffness_of(every_second, weights)
+    stiffness = None
+    if coarse is not None:
+        stiffness = stiffness_of(np.moveaxis(coarse[:, ::2, ::2].copy(), 0, -1), weights)
     nodes = np.moveaxis(planes, 0, -1)
     return descend(nodes, weights, STILL, steps, periodic=topology == "o", stiffness=stiffness)[0]
 

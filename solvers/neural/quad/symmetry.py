@@ -24,8 +24,7 @@ from meshonet.geometry.arrays import Floats
 Integers: TypeAlias = NDArray[np.int64]
 Reals: TypeAlias = NDArray[np.floating[Any]]
 
-ORDER = 8
-"""Elements of the group."""
+ORDER = 8  # elements of the group
 
 
 def _elements() -> Integers:
@@ -43,8 +42,7 @@ def _number(element: Integers) -> int:
     return int(np.flatnonzero((element == ELEMENTS).all(axis=(1, 2)))[0])
 
 
-INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])
-"""(8,) number of the inverse of each element."""
+INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])  # (8,) number of the inverse of each element
 
 PRODUCT: Integers = np.array([[_number(a @ b) for b in ELEMENTS] for a in ELEMENTS])
 """(8, 8) number of the product of two."""
@@ -61,8 +59,7 @@ def _taps(size: int) -> Integers:
 TAPS: dict[int, Integers] = {size: _taps(size) for size in (1, 3)}
 """Of kernels with this many places along each axis."""
 
-RELATIVE: Integers = PRODUCT[INVERSE]
-"""(8, 8) number of h^-1 g."""
+RELATIVE: Integers = PRODUCT[INVERSE]  # (8, 8) number of h^-1 g
 
 
 def _sum(*blocks: Reals) -> Floats:
@@ -87,8 +84,7 @@ def _seen(element: Integers) -> Floats:
     )  # fmt: skip
 
 
-SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])
-"""(8, FEATURES, FEATURES)"""
+SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURES, FEATURES)
 
 
 def table(size: int) -> Integers:

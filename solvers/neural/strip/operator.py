@@ -24,10 +24,8 @@ from meshonet.solvers.solution import Solution
 class StripOperator(Operator):
     """A strip network with its encoding; without weights the harmonic base alone.
 
-    Parameters
-    ----------
-    weights : of the network, float64.
-    basis, scale : (Q, LEVELS - 2) functions of the network's targets, and their size.
+    `weights`: of the network, float64; `basis`, `scale`: (Q, LEVELS - 2) functions of the network's targets,
+    and their size.
     """
 
     weights: Mapping[str, Floats] = field(default_factory=dict)

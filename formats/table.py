@@ -1,0 +1,239 @@
+"""Every format that is read or written. Only the functions of those in use are loaded."""
+
+from __future__ import annotations
+
+import re
+from functools import partial
+
+from meshonet.formats.format import Format, later
+from meshonet.formats.plot3d import CHOICES
+
+_HERE = "meshonet.formats"
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
+_MESHIO = {
+    ".stl": "stl", ".ply": "ply", ".obj": "obj", ".off": "off", ".inp": "abaqus", ".mesh": "medit",
+    ".avs": "avsucd", ".tec": "tecplot",
+    ".dato": "permas", ".post": "permas", ".mdpa": "mdpa", ".med": "med", ".vol": "netgen",
+    ".xdmf": "xdmf", ".xmf": "xdmf",
+}  # fmt: skip
+"""meshio's names of what it writes for each ending."""
+
+
+def holds(marks: tuple[bytes, ...], head: bytes) -> bool:
+    """Say whether all of `marks` stand at the start of a file."""
+    return all(mark in head[:4096] for mark in marks)
+
+
+def is_legacy_vtk(head: bytes) -> bool:
+    """Say whether `head` is the start of a legacy VTK file."""
+    return head.startswith(b"# vtk DataFile")
+
+
+def is_hdf5(head: bytes) -> bool:
+    """Say whether `head` starts as HDF5 files do; those of CGNS have a reader of their own."""
+    return head.startswith(_HDF5) and b"HDF5 MotherNode" not in head
+
+
+def is_cgns(head: bytes) -> bool:
+    """Say whether `head` is of a CGNS file, in HDF5 or in the container before it."""
+    return b"ADF Database Version" in head[:32] or (head.startswith(_HDF5) and b"HDF5 MotherNode" in head)
+
+
+def is_dxf(head: bytes) -> bool:
+    """Say whether `head` is of a DXF drawing."""
+    return head.split()[:2] == [b"0", b"SECTION"] or head.startswith(b"AutoCAD Binary DXF")
+
+
+def is_wkt(head: bytes) -> bool:
+    """Say whether `head` starts with the name of a WKT geometry."""
+    return bool(_WKT.match(head))
+
+
+def is_geojson(head: bytes) -> bool:
+    """Say whether `head` starts as a JSON object that names a GeoJSON type."""
+    return head.lstrip()[:1] == b"{" and b'"type"' in head
+
+
+_FORMATS = (
+    Format(
+        "hdf5",
+        (".h5", ".hdf5"),
+        "HDF5 dataset of boundaries or grids",
+        read_shapes=later(f"{_HERE}.hdf5.read:read_shapes"),
+        read_grids=later(f"{_HERE}.hdf5.read:read_grids"),
+        write_grids=later(f"{_HERE}.hdf5.write:write_grids"),
+        write_boundaries=later(f"{_HERE}.hdf5.write:write_boundaries"),
+        sniff=is_hdf5,
+        names_patches=True,
+        many=True,
+        one_size=True,
+    ),
+    Format(
+        "vts",
+        (".vts",),
+        "VTK XML structured grid",
+        read_grids=later(f"{_HERE}.vtk.vts_read:read_grids"),
+        write_grids=later(f"{_HERE}.vtk.vts:write_grids"),
+        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")),
+        extrudes=True,
+        names_patches=True,
+    ),
+    Format(
+        "vtm",
+        (".vtm",),
+        "VTK multi-block file: an index and a folder of .vts",
+        read_grids=later(f"{_HERE}.vtk.vtm:read_grids"),
+        write_grids=later(f"{_HERE}.vtk.vtm:write_grids"),
+        sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
+        extrudes=True,
+        names_patches=True,
+        many=True,
+        beside=True,
+    ),
+    Format(
+        "vtk",
+        (".vtk",),
+        "legacy VTK structured grid",
+        read_grids=later(f"{_HERE}.vtk.legacy:read_grids"),
+        write_grids=later(f"{_HERE}.vtk.legacy:write_grids"),
+        sniff=is_legacy_vtk,
+        extrudes=True,
+        names_patches=True,
+        choices=(("binary", "ascii"),),
+    ),
+    Format(
+        "vtu",
+        (".vtu",),
+        "VTK XML unstructured grid, seams merged, patches by number",
+        write_grids=later(f"{_HERE}.vtk.vtu:write_grids"),
+        extrudes=True,
+    ),
+    Format(
+        "gmsh",
+        (".msh",),
+        "Gmsh mesh, patches as physical groups; read as a boundary",
+        read_shapes=later(f"{_HERE}.gmsh.read:read_shapes"),
+        write_grids=later(f"{_HERE}.gmsh.msh:write_grids"),
+        sniff=partial(holds, (b"$MeshFormat",)),
+        extrudes=True,
+        names_patches=True,
+        choices=(("binary", "ascii"), ("2.2", "4.1")),
+    ),
+    Format(
+        "cgns",
+        (".cgns",),
+        "CGNS structured zones in HDF5, with boundary conditions and families",
+        read_grids=later(f"{_HERE}.cgns.read:read_grids"),
+        write_grids=later(f"{_HERE}.cgns.write:write_grids"),
+        sniff=is_cgns,
+        extrudes=True,
+        names_patches=True,
+        many=True,
+    ),
+    Format(
+        "openfoam",
+        (".foam",),
+        "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
+        write_grids=later(f"{_HERE}.openfoam:write_grids"),
+        extrudes=True,
+        names_patches=True,
+        fills_folder=True,
+    ),
+    Format(
+        "geo",
+        (".geo",),
+        "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
+        write_grids=later(f"{_HERE}.gmsh.geo:write_grids"),
+        names_patches=True,
+    ),
+    Format(
+        "nmf",
+        (".nmf",),
+        "NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
+        write_grids=later(f"{_HERE}.plot3d.nmf:write_grids"),
+        extrudes=True,
+        names_patches=True,
+    ),
+    Format(
+        "su2",
+        (".su2",),
+        "SU2 mesh, text, patches as markers; read as a boundary",
+        read_shapes=later(f"{_HERE}.su2:read_shapes"),
+        write_grids=later(f"{_HERE}.su2:write_grids"),
+        sniff=partial(holds, (b"NDIME", b"=")),
+        extrudes=True,
+        names_patches=True,
+    ),
+    Format(
+        "plot3d",
+        (".p3d", ".xyz", ".fmt", ".x", ".dat", ".bin", ".ufmt", ".unf"),
+        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt)",
+        read_grids=later(f"{_HERE}.plot3d.read:read_grids"),
+        write_grids=later(f"{_HERE}.plot3d.write:write_grids"),
+        sniff=later(f"{_HERE}.plot3d.read:sniff"),
+        extrudes=True,
+        many=True,
+        choices=CHOICES,
+        reads_options=True,
+        suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
+    ),
+    Format(
+        "dxf",
+        (".dxf",),
+        "DXF drawing, layers as names (needs the extra dxf)",
+        read_shapes=later(f"{_HERE}.outlines.dxf:read_shapes"),
+        sniff=is_dxf,
+        many=True,
+    ),
+    Format(
+        "wkt",
+        (".wkt",),
+        "outlines as well-known text",
+        read_shapes=later(f"{_HERE}.outlines.vector:read_wkt"),
+        sniff=is_wkt,
+        many=True,
+    ),
+    Format(
+        "geojson",
+        (".geojson", ".json"),
+        "outlines as GeoJSON",
+        read_shapes=later(f"{_HERE}.outlines.vector:read_geojson"),
+        sniff=is_geojson,
+        many=True,
+    ),
+    Format(
+        "airfoil",
+        (".dat",),
+        "airfoil coordinates, Selig or Lednicer",
+        read_shapes=later(f"{_HERE}.text.airfoil_dat:read_shapes"),
+        sniff=later(f"{_HERE}.text.airfoil_dat:sniff"),
+    ),
+    Format(
+        "points",
+        (".csv", ".txt", ".xy"),
+        "points of a closed curve or of four edges",
+        read_shapes=later(f"{_HERE}.text.points:read_shapes"),
+        sniff=later(f"{_HERE}.text.points:sniff"),
+    ),
+    *(
+        Format(kind, (f".{kind}",), words, write_grids=later(f"{_HERE}.figure.figure:write_grids", kind=kind))
+        for kind, words in (
+            ("png", "picture of a grid"),
+            ("svg", "picture of a grid, lines as vectors"),
+            ("pdf", "picture of a grid, lines as vectors"),
+        )
+    ),
+    Format(
+        "meshio",
+        tuple(_MESHIO),
+        "surfaces of viewers, decks of solid mechanics, without patches",
+        write_grids=later(f"{_HERE}.meshio_export:write_grids"),
+        choices=(tuple(dict.fromkeys(_MESHIO.values())),),
+        suffix_options=_MESHIO,
+    ),
+)
+
+TABLE = {record.name: record for record in _FORMATS}
+"""Formats by name. Where several share an ending, writing takes the first that can, and reading asks each
+whether the content is its own, so the strict ones stand first; the last one answers for what none knows."""
