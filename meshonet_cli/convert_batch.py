@@ -22,8 +22,9 @@ def convert_files(
 ) -> int:  # fmt: skip
     """Write what `sources` hold to `output` and return the exit code.
 
-    `plot3d`: variant of the Plot3D file among them. `skip_existing`: pass over members whose own file is
-    there. Raises InputError: a format that cannot be written, or not in 3D; a height that is not positive.
+    `plot3d`: variant of the Plot3D file that is written, or else read. `skip_existing`: skip members whose
+    output file exists already. Raises InputError: a format that cannot be written, or cannot hold 3D grids; a
+    height that is not positive.
     """
     from_format, to_format = plot3d_variant(plot3d, output, from_format, to_format)
     boundaries = conversion.of_boundaries(sources[0], output, from_format, to_format)

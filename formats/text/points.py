@@ -36,7 +36,7 @@ _JOIN = 1e-6
 def read_shapes(source: Source) -> Iterator[Shape]:
     """Yield the shape of a file.
 
-    Raises InputError: no such shape in it, with the line where there is one to name.
+    Raises InputError: there is no such shape in it; the message names the line where it can.
     """
     yield parse(decode(source.read_bytes()), source.name, source.stem)
 

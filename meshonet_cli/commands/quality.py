@@ -46,7 +46,7 @@ def quality(
     )] = None,
     summary: Annotated[bool, _output(
         "--summary",
-        help="One table (or JSON object) over all grids, a row each.",
+        help="One table (or JSON object) for all grids, with a row for each.",
     )] = False,
     from_format: o.From = None,
 ) -> int:

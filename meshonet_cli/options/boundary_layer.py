@@ -12,20 +12,21 @@ _option = option_of(BOUNDARY_LAYER)
 # fmt: off
 FirstCell = Annotated[float | None, _option(
     "--first-cell", "--wall-spacing", metavar="H",
-    help="Height of the first cell at every wall node: around a body in chords, in a four-sided domain off "
-    "south and north in its own unit. Around bodies, solve-pde and infer then march the grid from the wall.",
+    help="Height of the first cell at every wall node, around a body in chords. In a four-sided domain the "
+    "walls are south and north, and the unit is that of the domain. Around bodies, solve-pde and infer then "
+    "march the grid from the wall.",
 )]
 YPlus = Annotated[float | None, _option(
     "--y-plus", metavar="Y",
-    help="The same as a y+, estimated for a turbulent flat plate; needs --reynolds.",
+    help="The same height given by its y+, converted for a turbulent flat plate; needs --reynolds.",
 )]
 Reynolds = Annotated[float | None, _option(
     "--reynolds", metavar="RE",
-    help="Reynolds number of the chord; of a four-sided domain, of the extent of its south side.",
+    help="Reynolds number based on the chord; in a four-sided domain, on the extent of its south side.",
 )]
 ChordFraction = Annotated[float, _option(
     "--chord-fraction", metavar="X", show_default=True,
-    help="Where along the chord --y-plus is estimated, 0 to 1.",
+    help="Where along the chord --y-plus is converted to a height, 0 to 1.",
 )]
 Growth = Annotated[float | None, _option(
     "--growth", metavar="G",
@@ -38,13 +39,13 @@ ConstantLayers = Annotated[int | None, _option(
 )]
 WallAngle = Annotated[float | None, _option(
     "--wall-angle", metavar="DEGREES",
-    help="Angle at which grid lines leave walls, for --method steger-sorenson: the sides with a first cell, "
-    "or else south and north, or the body. [default: 90]",
+    help="Angle at which grid lines leave walls, for --method steger-sorenson. Walls are the sides with a "
+    "first cell; without one, south and north, or the body. [default: 90]",
 )]
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide",
     help="Move the nodes of south and north of a four-sided domain along these walls to where grid lines "
-    "leave at right angles. [default: with --first-cell, when the nodes were sampled here]",
+    "leave at right angles. [default: with --first-cell, when this command samples the nodes]",
 )]
 SpacingSouth = Annotated[float | None, _option(
     "--spacing-south", metavar="H",

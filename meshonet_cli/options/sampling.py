@@ -25,7 +25,7 @@ Resolution = Annotated[str | None, _option(
 TopologyOption = Annotated[TopologyName, _option(
     "--topology", metavar="auto|quad|o|c", show_default=True,
     help="Kind of grid: four-sided (quad), O around a body, or C around an airfoil and its wake (NI counts "
-    "both sides of the wake). auto takes C when a first cell is given and the edge is sharp.",
+    "both sides of the wake). auto takes C when a first cell is given and the trailing edge is sharp.",
 )]
 SpacingOption = Annotated[SpacingName, _option(
     "--spacing", metavar="auto|conformal|uniform|cosine|tanh|curvature", show_default=True,

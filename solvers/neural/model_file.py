@@ -81,8 +81,8 @@ def write_model(
 ) -> None:
     """Write a model file for `read_model`, whole or not at all, with each array in its own precision.
 
-    `recipe`, `figures`: how it was trained, and what it does on held-out shapes; `facts`: what else its kind
-    has in the header.
+    `recipe`, `figures`: how it was trained, and what it does on held-out shapes; `facts`: further entries of
+    the header, which depend on the kind of model.
     """
     from safetensors.numpy import save
 
