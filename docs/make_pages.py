@@ -73,17 +73,17 @@ needs `pip install 'meshonet[dxf]'`.
 
 ## Plot3D
 
-Plot3D files do not state their variant. It is found from the length of the file and the orientation of the
-cells: count of blocks, dimensions, iblank, records, byte order, precision, the index that runs in z, and text
-with repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3d fortran,big` overrides this; the
-same words choose the variant to write. `single` omits the count of blocks, `planes` writes the coordinates of
-one k after the other, and `span-i` repeats the grid in z along its first index. iblank is reported but not
-kept.
+Plot3D files do not state their variant. From the length of the file and the orientation of the cells, these
+are found: count of blocks, dimensions, iblank, records, byte order, precision, the index that runs in z. Text
+may have repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3d fortran,big` overrides this;
+the same words choose the variant to write. `single` omits the count of blocks, `planes` writes the
+coordinates of one k after the other, and `span-i` repeats the grid in z along its first index. iblank is
+reported but not kept.
 
 ## HDF5
 
-Datasets hold n samples of one size; h5py writes or reads one in ten lines. Layout version 1, of what
-has one plane block:
+Datasets hold n samples of one size; ten lines with h5py write or read a dataset. Layout version 1, for grids
+and boundaries of one plane block:
 
 | name | what it is |
 | --- | --- |
@@ -94,13 +94,14 @@ has one plane block:
 | `parts` | (n,) texts, JSON lists of `[name, side, start, stop]` |
 | `parameters`, `sensors` | (n, p) with the attribute `names`; (n, m, 2) |
 
-Version 2, of grids of several blocks or of blocks in space, has `blocks/0`, `blocks/1` ... in place of edges,
-`nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of `parts` go
-on with `block, across, kind`: `across` is the range along the second direction of a side, null for all of it.
-The attribute `connections` is a JSON list of what all samples share: `[block, side, range, donor, donor_side,
-donor_range, orientation, transform]`. A range has the first and last node along each direction of the side;
-`orientation` the donor's direction that runs along each one, counted from 1, negative when reversed;
-`transform` is null, or `{"shift": [...], "turn": [[...]]}` between periodic sides.
+Version 2, for grids with several blocks or with blocks in space, has `blocks/0`, `blocks/1` ... in place of
+edges, `nodes` and `topology`: (n, ni, nj, 2), (n, ni, nj, nk, 3), or (n, ni, nj, 3) on a surface. Rows of
+`parts` have three more entries, `block, across, kind`: `across` is the range along the second direction of a
+side, null for all of it. The attribute `connections` is a JSON list of the connections of sides, the same for
+all samples: `[block, side, range, donor, donor_side, donor_range, orientation, transform]`. A range has the
+first and last node along each direction of the side; for each of these directions, `orientation` has the
+donor's direction that runs along it, counted from 1, negative when reversed; `transform` is null, or
+`{"shift": [...], "turn": [[...]]}` between periodic sides.
 
 ## Three-dimensional files
 
@@ -120,8 +121,8 @@ FAMILIES_HEAD = """# The six test families
 
 <!-- made by python docs/make_pages.py -->
 
-Use these families to train and compare operators. They are the test cases of the MeshONet paper; one number
-varies each shape. `sample-boundary --family NAME --count N` draws N members over the range, `--range A:B`
+Use these families to train and compare operators. They are the test cases of the MeshONet paper; each shape
+depends on one number. `sample-boundary --family NAME --count N` draws N members over the range, `--range A:B`
 chooses another range, and `solve-pde` makes their grids.
 """
 
@@ -211,7 +212,7 @@ def quad_figures(figures: dict[str, Any], topology: str) -> list[str]:
     gain = figures["variational"]
     lines += [
         "",
-        "Share of the variational grid's improvement over Winslow's: "
+        "The network has this share of the improvement of the variational grid over Winslow's:\n"
         f"{100 * gain['mean_gain']:.0f} % in the mean angle, {100 * gain['max_gain']:.0f} % in the largest.",
     ]
     return lines

@@ -36,9 +36,10 @@ class Format:
     names_patches : whether names of patches and the topology survive in it.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
-    beside : whether other files are written beside the file, so that a stream holds none.
-    fills_folder : whether the file marks a folder that is written with it: one a folder, none in a stream.
-    choices : rows of options, of each of which one word may stand behind the name.
+    beside : whether other files are written beside the file, so that it cannot be written to a stream.
+    fills_folder : whether the file marks a folder that is written with it, so that a folder holds one grid,
+        and it cannot be written to a stream.
+    choices : rows of options; behind the name there may be one word of each row.
     reads_options : whether `read_grids` takes ``options`` as `write_grids` does.
     suffix_options : the options that an ending stands for when a file is written.
     """

@@ -27,7 +27,7 @@ class Source:
     name : what to call it in messages, printable.
     path : a regular file.
     data : the bytes themselves, for standard input, pipes and tests.
-    split : the samples meant, ``train`` or ``test``, of a dataset that says which are; nothing for all.
+    split : which samples of a dataset with a split to take, ``train`` or ``test``; empty takes all.
     """
 
     name: str

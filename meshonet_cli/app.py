@@ -4,7 +4,7 @@
 code  meaning
 ===== ==========================================================================
 0     done
-1     a gate asked for with ``--fail-on`` was not met
+1     a check of ``--fail-on`` or ``--profile`` failed
 2     bad usage or bad input
 3     no valid grid could be made
 130   interrupted
@@ -55,7 +55,7 @@ class Plain(typer.core.TyperCommand):
         return [word if word == "[OPTIONS]" or "..." in word else f"{word}..." for word in words]
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        """Write arguments and options, these by their groups."""
+        """Write the arguments, then the options by groups."""
         from meshonet_cli.options.groups import GROUPS, IO  # which a list of all commands does not need
 
         groups: dict[str, list[tuple[str, str]]] = {"Arguments": [], **{group: [] for group in GROUPS}}
@@ -79,7 +79,7 @@ def application(commands: Sequence[Command] = COMMANDS, *, overview: bool = Fals
     app = typer.Typer(
         name="meshonet",
         epilog="\b\nStart with:  meshonet infer airfoil.dat --res 200 -o grid.vts\n"
-        "Exit codes:  0 done, 1 gate not met, 2 bad usage or input, 3 no valid grid, 130 interrupted",
+        "Exit codes:  0 done, 1 check failed, 2 bad usage or input, 3 no valid grid, 130 interrupted",
         rich_markup_mode=None,  # rich costs 0.2 s at every --help
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},

@@ -157,7 +157,7 @@ class Session:
             self.status(f"{self.members}: {name}")
 
     def progress(self, done: int, count: int, text: str) -> bool:
-        """Show on a terminal how far one long task is; say whether there is one."""
+        """Show on a terminal how far one long task is; return whether there is a terminal."""
         self.status(f"{_bar(done, count)} {text}")
         return self._bar
 

@@ -108,7 +108,7 @@ class Each(OneByOne):
         return setting in inspect.signature(self.function).parameters
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
-        """Return what the function makes of a boundary, from `start` when it can start from a grid."""
+        """Return the function's solution of a boundary, begun from `start` if the function takes one."""
         more = {"initial": start} if start is not None and self.takes("initial") else {}
         return self.function(boundary, **self.settings, **more)
 
@@ -146,7 +146,7 @@ METHODS: Mapping[str, Row] = MappingProxyType(
         "winslow": Row("meshonet.solvers.elliptic.solve:solve", "elliptic, without control functions"),
         "thomas-middlecoff": Row(
             "meshonet.solvers.elliptic.solve:solve_thomas_middlecoff",
-            "with control functions that carry the spacing of the edges inside",
+            "with control functions that carry the spacing of the edges into the interior",
             sweeps=False,
         ),
         "steger-sorenson": Row(

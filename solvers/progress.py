@@ -39,7 +39,7 @@ _listeners: ContextVar[tuple[Listener, ...]] = ContextVar("listeners", default=(
 
 @contextlib.contextmanager
 def listening(listener: Listener) -> Iterator[None]:
-    """Have `listener` called after every cycle that runs inside the block, in its thread."""
+    """Call `listener` after every cycle that runs inside the block, in the thread of the cycle."""
     token = _listeners.set((*_listeners.get(), listener))
     try:
         yield

@@ -17,7 +17,7 @@ from meshonet.geometry.errors import InputError
 def facts_of(grid: Grid) -> dict[str, list[str]]:
     """Return the topology, name, parts and provenance of `grid` as lists of texts by name.
 
-    `grid_with` takes them back. A part reads ``side start stop name``. What is empty is left out.
+    `grid_with` makes a grid from them. A part reads ``side start stop name``. What is empty is left out.
     """
     facts: dict[str, list[str]] = {
         "topology": [grid.topology],

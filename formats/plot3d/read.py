@@ -51,7 +51,7 @@ def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:
 
 
 def sniff(head: bytes) -> bool:
-    """Say whether `head` starts with the dims of a Plot3D grid and, when it is a whole file, fits one."""
+    """Say whether `head` starts with the dims of a Plot3D grid; a whole file must also fit them."""
     textual = is_text(head)
     if textual and not _INTEGER_FIRST.match(head):
         return False

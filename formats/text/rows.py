@@ -1,8 +1,8 @@
 """Lines of a text file of coordinates: which are numbers, which are prose, which are damaged.
 
 One number may be written as ``0.5``, ``.5``, ``5e-1``, ``5.0D-01``, ``(0.5)``, ``0,5`` (with blanks, tabs or
-semicolons between columns) or run into the next one, ``0.5-0.01``. Columns are separated by anything of
-blanks, tabs, commas, semicolons.
+semicolons between columns) or run into the next one, ``0.5-0.01``. Blanks, tabs, commas and semicolons
+separate columns.
 """
 
 from __future__ import annotations

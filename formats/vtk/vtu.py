@@ -1,4 +1,4 @@
-"""VTK XML unstructured grids, ``.vtu``, through meshio: seams merged, boundary cells along.
+"""VTK XML unstructured grids, ``.vtu``, through meshio: seams merged, with the cells of the boundary.
 
 The cell array ``part`` is 0 inside and counts the boundary's parts from 1, in the order of the grid's
 sides south, east, north, west. https://github.com/nschloe/meshio

@@ -91,7 +91,7 @@ class Connection:
         return f"the connection of {ends}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
-        """Return side, first and last node of what it takes of the boundary of a planar block."""
+        """Return side, first and last node of the parts of a planar block's boundary that it connects."""
         ends = ((self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range))
         return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
 

@@ -114,7 +114,7 @@ class Curve:
         return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
-        """Return points on the curve at `places`, 0 to below 1, of each interval, and an open one's end."""
+        """Return points at `places`, 0 to below 1, of each interval, and the end point of an open curve."""
         i = np.arange(self._cubic.shape[1])[:, None]
         t = places[None, :, None]
         a, b, c, d = self._cubic[:, i]

@@ -32,7 +32,7 @@ class Gate:
     """In the metric's unit."""
 
     def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
-        """Return a line for the user when `quality`, or a figure of `more`, fulfils it, else None."""
+        """Return a line for the user if `quality`, or a figure of `more`, is beyond the limit, else None."""
         has_statistics = self.metric in NAMES
         if has_statistics:
             value = getattr(quality[self.metric], self.statistic)

@@ -1,4 +1,4 @@
-"""Everything that is measured of a grid: its metrics, its walls, a profile, and how far another grid is."""
+"""Everything that is measured of a grid: its metrics, its walls, a profile, its distance from another."""
 
 from __future__ import annotations
 

@@ -71,9 +71,9 @@ cdef class MultigridLevel:
     def control(self, tuple phi, tuple psi, xi_reach, eta_reach):
         """Set control functions along xi and along eta.
 
-        Each is (along (terms, ni), across (terms, nj)), the factors of a sum of products that is the logarithm
-        of the ratio of neighbouring steps; no terms mean no control. `xi_reach` (ni), `eta_reach` (nj): the longer
-        step at each node.
+        Each is a pair (along (terms, ni), across (terms, nj)): the sum of along times across over the terms
+        is the logarithm of the ratio of neighbouring steps. No terms mean no control. `xi_reach` (ni),
+        `eta_reach` (nj): the longer step at each node.
         """
         self.controls = phi, psi, xi_reach, eta_reach
         self.level.phi = self.factors(phi, xi_reach, self.level.mi + 1)

@@ -84,7 +84,7 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
 
 
 def frame_take_out(planes, unit, factors):
-    """Fill `unit` with grids `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) with what that takes."""
+    """Fill `unit` with `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) of the scaling."""
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b
     cdef Read p = reads(planes, (batch, 2, m, n))
     cdef Written to = fills(unit, (batch, 2, m, n)), f = fills(factors, (batch, 2))
@@ -96,7 +96,7 @@ def frame_take_out(planes, unit, factors):
 
 
 def frame_put_back(planes, moved, unit, factors):
-    """Add to `planes` by what grids have `moved` from where `frame_take_out` left them, at their own sizes."""
+    """Add to `planes` the displacements from `unit` to `moved`, scaled back to the grids' own sizes."""
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
     cdef Written p = fills(planes, (batch, 2, m, n))
     cdef Read to = reads(moved, (batch, 2, m, n)), start = reads(unit, (batch, 2, m, n))

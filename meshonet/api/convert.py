@@ -23,20 +23,20 @@ def convert(
 ) -> None:
     """Turn a file from one format into another.
 
-    Grids stay grids; what holds boundaries only becomes boundaries.
+    Grids stay grids; a file that holds boundaries and no grids gives boundaries.
 
     Parameters
     ----------
     source, output : the files; several grids need a format that holds many.
-    extrude : height in z of a 3D grid, one cell; None leaves grids flat.
-    planes : with `extrude`, planes of nodes in z.
-    swap : have xi run where eta ran (four-sided grids), still right-handed.
+    extrude : height in z of the 3D grid to make; None leaves grids plane.
+    planes : with `extrude`, planes of nodes in z, one more than cells; None is 2.
+    swap : exchange the directions of xi and eta (four-sided grids), keeping grids right-handed.
     normalise : scale to unit chord, leading edge at (0, 0); four-sided grids to unit length.
-    coarsen : keep every so many-th node along xi and eta.
+    coarsen : keep the nodes whose indices along xi and eta are multiples of this number.
     from_format, to_format : formats, when endings and content do not say.
 
-    Raises InputError: a format that cannot be read or written, or not in 3D; a height that is not positive;
-    nodes that `coarsen` does not divide.
+    Raises InputError: a format that cannot be read, or written, or cannot hold 3D grids; a height that is not
+    positive; numbers of cells that `coarsen` does not divide.
     """
     conversion = Conversion(extrude, planes, swap, normalise, coarsen)
     boundaries = conversion.of_boundaries(str(source), str(output), from_format, to_format)

@@ -35,17 +35,18 @@ def convert(
     )] = None,
     extrude: Annotated[float | None, _option(
         "--extrude", metavar="H",
-        help="Make the grid 3D: this high in z, one cell as 2D cases of 3D solvers need it.",
+        help="Make the grid 3D, H high in z. It is one cell thick, as 3D solvers need it for 2D cases.",
     )] = None,
     planes: Annotated[int | None, _option(
         "--planes", metavar="K", min=2, max=10_000,
-        help="With --extrude: planes of nodes in z, so one cell fewer. [default: 2]",
+        help="With --extrude: planes of nodes in z, one more than cells. [default: 2]",
     )] = None,
     plot3d: Annotated[str | None, _output(
         "--plot3d", metavar="WORDS",
-        help="Variant of the Plot3D file to write, else to read: of ascii/binary/fortran, multi/single, "
-        "2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes, span-k/span-i/span-j, "
-        "with commas. Reading finds out what can be found; --from plot3d:WORDS says it in any command.",
+        help="Variant of the Plot3D file to write, or else of the one to read: words of "
+        "ascii/binary/fortran, multi/single, 2d/3d, no-iblank/iblank, little/big, float64/float32, "
+        "whole/planes, span-k/span-i/span-j, separated by commas. Words that the file itself tells need not "
+        "be given for reading; in any command --from plot3d:WORDS gives them.",
     )] = None,
     swap: Annotated[bool, _option(
         "--swap", help="Have xi run where eta ran (four-sided grids), still right-handed.",
@@ -57,7 +58,7 @@ def convert(
     )] = False,
     coarsen: Annotated[int | None, _option(
         "--coarsen", metavar="K", min=2, max=10_000,
-        help="Keep every K-th node along xi and eta; K must divide the cells.",
+        help="Keep every K-th node along xi and eta; K must divide the number of cells along both.",
     )] = None,
     list_formats: Annotated[bool, _output(
         "--list-formats", help="Print what can be read and written, and stop.",

@@ -15,13 +15,14 @@ _option = o.option_of(o.METHOD)
 # fmt: off
 ModelName = Annotated[str | None, _option(
     "--model", metavar="NAME|PATH",
-    help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for none. C grids are "
-    "marched and take none. [default: what measures best for the topology]",
+    help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for the conformal "
+    "solver without a network. C grids are marched and take none. [default: what measures best for the "
+    "topology]",
 )]
 Polish = Annotated[str, _option(
     "--polish", metavar="auto|off|N", show_default=True,
-    help="Steps after the operator, elliptic or of descent. With off or N the network of the topology is "
-    "used when no model is named.",
+    help="Iterations of a solver after the operator, elliptic or variational. With off or N and no --model, "
+    "the network for the topology is used.",
 )]
 Answer = Annotated[Literal["valid", "pasted", "raw"], _option(
     "--answer", metavar="valid|pasted|raw", show_default=True,
@@ -30,8 +31,8 @@ Answer = Annotated[Literal["valid", "pasted", "raw"], _option(
 )]
 DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
     "--device", metavar="cpu|cuda",
-    help="Evaluate networks with torch there, grids of a batch together; without --polish, airfoil-o takes "
-    "3 steps and others none. [default: without torch]",
+    help="Evaluate networks with torch on this device, all grids of a batch together. Without --polish, "
+    "airfoil-o then takes 3 steps of polish and other models none. [default: without torch]",
 )]
 # fmt: on
 
@@ -44,9 +45,9 @@ def infer(
 ) -> int:  # fmt: skip
     """Make the grid that measures best: conformal, marched or variational.
 
-    Around a body that is an O grid by a conformal map; with a first cell given, and for C grids, a grid
-    marched from the wall; in a four-sided domain the variational method. A neural operator is used where
-    --model, --polish or --device asks for one.
+    Around a body, this is an O grid by a conformal map, or a grid marched from the wall for C grids and where
+    a first cell is given. In a four-sided domain the variational method makes it. A neural operator is used
+    where --model, --polish or --device asks for one.
     """
     from meshonet_cli.grid_batch import request_of, write_grids
 

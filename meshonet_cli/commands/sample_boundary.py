@@ -39,7 +39,8 @@ Sensors = Annotated[int | None, _option(
 Split = Annotated[str | None, _option(
     "--split", metavar="HOW",
     help="Keep a sixth of the family for tests: interpolation (the middle of the range), extrapolation (one "
-    "end of it) or random. Kept in an .h5 file: train honours it, and FILE.h5#test reads it.",
+    "end of it) or random. The .h5 file records the split: train uses it, and FILE.h5#test reads the test "
+    "part.",
 )]
 Seed = Annotated[int | None, _option("--seed", metavar="S", min=0, help="Seed of the draw. [default: 0]")]
 # fmt: on

@@ -21,8 +21,8 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 AUTO = (
-    "hyperbolic around bodies with a first cell and on C grids (with a first cell of its own), unless "
-    "{coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
+    "hyperbolic around bodies with a first cell and for C grids (whose first cell it chooses if none is "
+    "given), unless {coarse}, {refine}, {tol}, {max_cycles} or {initial} is given; else winslow"
 )
 SOLVERS = {name: row.summary for name, row in METHODS.items() if row.solves} | {"auto": AUTO}
 if TYPE_CHECKING:
@@ -37,9 +37,9 @@ Method = Annotated[MethodName, _option(
 )]
 Tolerance = Annotated[float | None, _option(
     "--tol", metavar="T",
-    help="Stop at this residual, relative to that of the interpolated start (variational: when no node "
-    "moves further, in square roots of the area). [default: where more cycles change the grid by less "
-    "than a finer one would]",
+    help="Stop at this residual, relative to that of the interpolated start (variational: stop when no node "
+    "moves by more than about T times the square root of the domain's area). [default: where more cycles "
+    "would change the grid by less than its discretisation error]",
 )]
 MaxCycles = Annotated[int | None, _option(
     "--max-cycles", metavar="N", min=1,
@@ -47,14 +47,14 @@ MaxCycles = Annotated[int | None, _option(
 )]
 Coarse = Annotated[str, _option(
     "--coarse", metavar="auto|off|N", show_default=True,
-    help="Solve on N x N nodes and interpolate to --res by splines. auto does so on large quads and C "
-    "grids, where it measures as well: winslow above 512 nodes a side with 257, variational above 257 "
-    "with 129; not with --tol, --max-cycles or --initial.",
+    help="Solve on N x N nodes and interpolate to --res by splines. auto does so for quads and C grids of "
+    "more than 512 nodes a side with winslow (N is then 257) and of more than 257 with variational (129), "
+    "where the quality measures the same; not with --tol, --max-cycles or --initial.",
 )]
 Refine = Annotated[int, _option(
     "--refine", metavar="K", min=0, max=8,
-    help="Solve at --res, halve all cells and solve again, K times: the finest grid of a family; convert "
-    "--coarsen 2 makes the others of it.",
+    help="Solve at --res, halve all cells and solve again, K times. The result is the finest grid of a "
+    "family; convert --coarsen makes the others from it.",
 )]
 Initial = Annotated[str | None, _option("--initial", metavar="GRID", help="Grid to start from.")]
 RepairMargin = Annotated[int | None, o.option_of(o.CHECKS)(

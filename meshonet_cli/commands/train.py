@@ -19,9 +19,9 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 # fmt: off
 Dataset = Annotated[list[str], typer.Argument(
     metavar="DATASET", show_default=False,
-    help="Solved grids of one family (solve-pde, .h5); for the strip operator O boundaries, e.g. from "
-    "sample-boundary --family procedural; for the quad operator 33x33 grids of the same domains (65x33 "
-    "around bodies) by winslow and by variational, a dataset each.",
+    help="Solved grids of one family, from solve-pde, as .h5. The strip operator takes O boundaries "
+    "instead, e.g. from sample-boundary --family procedural. The quad operator takes two datasets of the "
+    "same domains, one solved by winslow and one by variational, with 33x33 nodes (65x33 around bodies).",
 )]
 Model = Annotated[str | None, _option(
     "--model", metavar="NAME",
@@ -51,8 +51,8 @@ Rate = Annotated[float | None, _option(
 )]
 Schedule = Annotated[Literal["cosine", "step"] | None, _option(
     "--schedule", metavar="cosine|step",
-    help="Learning rate: cosine to zero, or times 0.9 every fifteenth of the epochs. [default: strip and "
-    "quad cosine, others step]",
+    help="Learning rate: cosine falls to zero; step is times 0.9 after each fifteenth part of the training. "
+    "[default: strip and quad cosine, others step]",
 )]
 Points = Annotated[str | None, _option(
     "--points", metavar="N|all",

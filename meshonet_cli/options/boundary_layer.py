@@ -10,13 +10,13 @@ _option = option_of(BOUNDARY_LAYER)
 # fmt: off
 WallAngle = Annotated[float | None, _option(
     "--wall-angle", metavar="DEGREES",
-    help="Angle at which grid lines leave walls, for --method steger-sorenson: the sides with a first cell, "
-    "or else south and north, or the body. [default: 90]",
+    help="Angle at which grid lines leave walls, for --method steger-sorenson. Walls are the sides with a "
+    "first cell; without one, south and north, or the body. [default: 90]",
 )]
 Slide = Annotated[bool | None, _option(
     "--slide/--no-slide",
     help="Move the nodes of south and north of a four-sided domain along these walls to where grid lines "
-    "leave at right angles. [default: with --first-cell, when the nodes were sampled here]",
+    "leave at right angles. [default: with --first-cell, when this command samples the nodes]",
 )]
 
 

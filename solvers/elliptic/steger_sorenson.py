@@ -76,7 +76,7 @@ def solve_steger_sorenson(
 
 
 def largest_lean(nodes: Floats, boundary: Boundary) -> float:
-    """Return by how many degrees lines of a quad grid lean at south and north, but next to corners."""
+    """Return the largest lean in degrees of the lines of a quad at south and north, except near corners."""
     sides = ("south", "north")
     edges = _edges(boundary, dict.fromkeys(sides, 0.0), 90.0, nodes)
     sine = max(float(np.abs(edge.errors(nodes)[0]).max()) for edge in edges)

@@ -45,7 +45,7 @@ FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay
 
 @dataclass
 class Patience:
-    """What may still be spent in vain, in nodes times iterations. Unfolding that succeeds costs none."""
+    """Budget left for unfolding that fails, in nodes times iterations; unfolding that succeeds is free."""
 
     left: float = FUTILE
 

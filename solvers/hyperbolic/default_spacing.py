@@ -1,8 +1,8 @@
 """C grids without a given height of first cells: marched with one that suits the nodes of the wall.
 
 Elliptic C grids hold the nodes of the wake, where small cells behind the edge face large ones of the far
-field, and so their first cells are as high as a tenth of the chord. Marched from wall and wake they are a
-part of the smallest cell along the wall, and grow by one ratio to the far field.
+field, and so their first cells are as high as a tenth of the chord. When the grid is marched from wall and
+wake they are a fraction of the smallest cell along the wall, and cells grow by one ratio to the far field.
 """
 
 from dataclasses import replace

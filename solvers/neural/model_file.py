@@ -79,10 +79,10 @@ def write_model(
     figures: Mapping[str, Any],
     **facts: Any,
 ) -> None:
-    """Write a model file that `read_model` reads, whole or not at all; each array in its own precision.
+    """Write a model file for `read_model`, whole or not at all, with each array in its own precision.
 
-    `recipe`, `figures`: how it was trained, and what it does on held-out shapes; `facts`: what else its kind
-    has in the header.
+    `recipe`, `figures`: how it was trained, and what it does on held-out shapes; `facts`: further entries of
+    the header, which depend on the kind of model.
     """
     from safetensors.numpy import save
 

@@ -65,7 +65,8 @@ class Operator(ABC):
 def in_batches(boundaries: Sequence[Boundary], threads: int = 1) -> Iterator[list[int]]:
     """Yield indices of boundaries with equal node counts, `BATCH` at the most, each boundary once.
 
-    Batches of one size are about equally large, and as many as keep all `threads` at work to the end.
+    Batches with the same node counts hold about equally many, and there are enough of them to keep all
+    `threads` at work to the end.
     """
     groups: dict[tuple[int, int], list[int]] = {}
     for k, boundary in enumerate(boundaries):

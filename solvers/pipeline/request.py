@@ -28,35 +28,36 @@ DEFAULTS = {"coarse": "auto", "refine": 0, "polish": "auto", "answer": "valid", 
 
 @dataclass(frozen=True)
 class GridRequest:
-    """How shapes become grids; validates itself.
+    """How to make grids from shapes; the values are checked when it is made.
 
     Parameters
     ----------
     sampling : node counts and spacing of the boundary.
-    method : a name in `METHODS`; ``best`` for what measures best by topology, and marches bodies that have a
-        first cell; ``auto`` for the same among equations: Winslow's, and hyperbolic where ``best`` marches.
-    settings : of the method.
-    first_cell : height of the first cell at every wall node, around a body in chords, in a four-sided domain
-        off south and north in its own unit.
-    y_plus, reynolds : the same by its y+, estimated as on a flat plate; the Reynolds number is the chord's.
-    chord_fraction : where along the chord that is estimated.
+    method : a name in `METHODS`, or ``best``: what measures best for the topology, and marching around bodies
+        with a first cell; or ``auto``: marching where ``best`` marches, Winslow's equations elsewhere.
+    settings : keywords of the method.
+    first_cell : height of the first cell at every wall node, around a body in chords; in a four-sided domain
+        the walls are south and north, and the unit is that of the domain.
+    y_plus, reynolds : the same height by its y+, converted for a flat plate; the Reynolds number is based on
+        the chord.
+    chord_fraction : where along the chord the y+ is converted to a height, 0 to 1.
     growth : largest ratio of neighbouring cells away from the wall; without `nj` in the sampling there are as
         many rows as it needs.
-    constant_layers : so many first layers are equally high.
+    constant_layers : number of first layers of equal height.
     spacing_south, spacing_north, spacing_west, spacing_east : heights of first cells off single sides of a
         four-sided domain.
-    slide : move the nodes of south and north along these walls; None: where a first cell is given and the
-        nodes were sampled here.
-    wall_angle : of lines at walls in degrees, for ``steger-sorenson``.
-    coarse : nodes along a direction to solve on before the grid is evaluated at its own; ``auto`` leaves that
-        to method and size, None solves on all.
-    refine : solve first, halve all cells and solve again, so many times.
+    slide : move the nodes of south and north along these walls; None: if a first cell is given and this
+        request samples the nodes.
+    wall_angle : angle of grid lines at walls in degrees, for ``steger-sorenson``.
+    coarse : nodes along each direction to solve on, before the grid is evaluated at its own node counts;
+        ``auto`` chooses by method and size, None solves on all nodes of the grid.
+    refine : how many times, after the first solve, to halve all cells and solve again.
     initial : grid to start from.
-    repair : whether folded grids are repaired or made by another method; else they are refused. None: not
-        those of algebraic methods and answers of networks that are asked for raw.
+    repair : whether folded grids are repaired or made by another method; else they are refused. None: all are
+        repaired but those of algebraic methods and of networks asked for raw answers.
     repair_margin : cells around folded ones that move with them.
     allow_invalid : whether a folded grid is a result.
-    percentiles : whether the quality has them.
+    percentiles : whether the quality includes percentiles.
     history : whether the cycles of the solve are kept.
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
@@ -241,7 +242,7 @@ class GridRequest:
 def grid_request(
     method: str = "best", *, res: int | tuple[int, int] | None = None, **parameters: Any
 ) -> GridRequest:
-    """Return the request with the parameters, each by its name: of the sampling, the request or the method.
+    """Return the request with the parameters, of the sampling, the request or the method.
 
     `res`: nodes along xi and eta; one number for both. `parameters`: fields of `Sampling` and `GridRequest`,
     settings of the method; None leaves a setting out. ``wall_spacing`` is another name of ``first_cell``.

@@ -22,7 +22,7 @@ from meshonet.solvers.solution import Solution
 
 @dataclass(frozen=True)
 class Sequenced(Wrapper):
-    """`method` on every 2^levels-th node, then on twice as many cells until on all (`solve_refined`)."""
+    """Solves by `method` on every 2^levels-th node, then on twice as many cells, up to all of them."""
 
     levels: int
 

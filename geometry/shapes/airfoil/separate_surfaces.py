@@ -17,7 +17,9 @@ _WEDGE = 0.02  # near an edge the least thickness grows from nothing by this muc
 
 
 def moved_apart(ring: Floats, nose: int) -> Floats:
-    """Return a ring (n, 2) whose surfaces are at least twice `MOST` chords apart, as far as `MOST` suffices.
+    """Return a ring (n, 2) with its surfaces moved apart, by `MOST` chords each at the most.
+
+    They are then twice `MOST` chords apart, or as far as this allows.
 
     It runs clockwise from the trailing edge, which stays, as does the leading edge, the point `nose`.
     """

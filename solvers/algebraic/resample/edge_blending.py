@@ -1,8 +1,9 @@
-"""How far inside the mismatch between coarse edges and full ones is blended.
+"""How far the mismatch between coarse and full edges is blended into the grid.
 
-Between the nodes of a coarse edge the full one has detail. A smooth grid forgets detail of the size of a
-coarse step within such a step, however thin the cells are along the edge; blended along whole lines, it
-would fold thin cells far away. So at coarse node (i, j), at a distance d along its line from the edge ::
+Between the nodes of a coarse edge the full one has detail. In a smooth grid, detail as long as a coarse step
+dies out over about that distance from the edge, however thin the cells there are. Blended along whole lines,
+the detail would fold thin cells far away. So at coarse node (i, j), at a distance d along its line from the
+edge ::
 
     share = max(0, 1 - d / r),    r = max(d_1, min(`REACH` h, length of the line))
 

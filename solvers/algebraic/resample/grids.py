@@ -1,7 +1,7 @@
 """Boundaries thinned to few nodes, and the grids inside them evaluated at many.
 
-Inside the full edges splines through the coarse nodes are evaluated (`quad`); around a body lines keep their
-own course instead (`o_grid`).
+In four-sided domains, splines through the coarse nodes are evaluated (`quad`). Around a body each line keeps
+its own shape instead (`o_grid`).
 """
 
 import numpy as np
@@ -25,7 +25,7 @@ def thinned(boundary: Boundary, ni: int, nj: int) -> Boundary:
 
 
 def evaluate(coarse: Floats, boundary: Boundary) -> Floats:
-    """Return planar nodes inside `boundary` from a grid (m, n, 2) inside its thinned edges."""
+    """Return planar nodes inside `boundary`, from a coarse grid (m, n, 2) inside its thinned edges."""
     if boundary.periodic:
         return evaluate_around(coarse, boundary)
     names = ("south", "north", "west", "east")

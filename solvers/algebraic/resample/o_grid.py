@@ -50,7 +50,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
 
 
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
-    """Return nj nodes on each of the lines `z` (..., n), complex, and their shares of its length.
+    """Return nj nodes on each of the lines `z` (..., n), complex, and the share of its length up to each.
 
     `xp`: the module, numpy or torch, that `z` is an array of.
     """

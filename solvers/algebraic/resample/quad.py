@@ -44,7 +44,7 @@ def evaluate(coarse: Floats, sides: Sides) -> Floats:
 
 
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
-    """Evaluate a valid grid `coarse` (2, m, n) again, in place, whose planes `nodes` (2, ni, nj) are folded.
+    """Evaluate a valid grid `coarse` (2, m, n) again, into its folded fine planes `nodes` (2, ni, nj).
 
     Returns an array (m, n), 1 at coarse nodes around which lines became straight; None where that is no use.
     """

@@ -46,7 +46,7 @@ STARTS = 8  # columns that strips begin at in turn: those that the coarsest of f
 
 @dataclass(frozen=True)
 class Sizes:
-    """The network's, as `meshonet.solvers.neural.differentiable.quad_unet.QuadUNet` takes them."""
+    """Widths and blocks of `meshonet.solvers.neural.differentiable.quad_unet.QuadUNet`."""
 
     widths: tuple[int, ...] = (2, 3, 6, 8)
     blocks: tuple[int, ...] = (0, 1, 1, 2)

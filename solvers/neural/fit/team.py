@@ -27,7 +27,7 @@ class Team:
         return self.rank == 0
 
     def share(self, rows: Tensor) -> tuple[Tensor, float]:
-        """Return this process's part of a batch, and the weight that makes the mean of all parts the batch's.
+        """Return this process's part of a batch, and its weight in the mean of the whole batch.
 
         A process without a part gets the first row at weight 0, since every process must take part in a step.
         """

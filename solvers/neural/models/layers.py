@@ -19,7 +19,7 @@ Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
 
 def dense_shapes(name: str, sizes: Sequence[int], stacked: int | None = None) -> Shapes:
-    """Return the shapes of a stack of dense layers; of `stacked` independent ones when given."""
+    """Return the array shapes of dense layers, or of `stacked` independent copies of them when given."""
     shapes: Shapes = {}
     lead = () if stacked is None else (stacked,)
     for k, (a, b) in enumerate(pairwise(sizes)):

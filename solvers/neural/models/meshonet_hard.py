@@ -57,7 +57,7 @@ class MeshONetHard(Architecture):
         return {**branch, **dense_shapes("trunk", (seen, *[self.width] * self.depth, self.features))}
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
-        """Return mean and spread of the sensors, size and modes (nodes, modes) of the differences."""
+        """Return mean and spread of the sensors, and size and modes (nodes, modes) of the differences."""
         seen = np.array([sensors(boundary, self.sensors) for boundary in samples.boundaries()])
         spread = seen.std(axis=0)
         size = np.sqrt((targets**2).mean())

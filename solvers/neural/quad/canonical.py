@@ -1,8 +1,9 @@
 """Boundaries in a canonical frame, where the steps after the network are taken.
 
-Descents amplify rounding: thirty steps around a corner turn 1e-16 into 1e-3. So that a domain moved, turned,
-scaled, mirrored or with its sides named otherwise takes the same steps to the bit, its edges are taken to a
-frame of their own, rounded there to 1e-9 of their size, and relabelled as the first of their images is:
+Descents amplify rounding: thirty steps around a corner turn 1e-16 into 1e-3. A domain that is moved, turned,
+scaled, mirrored or has its sides named otherwise must take the same steps to the bit. Its edges are therefore
+taken to a frame of their own and rounded there to 1e-9 of their size; of all their relabellings, a fixed rule
+chooses one:
 
 ========  ==================================================  ============================================
 o         the cut runs from 0 to 1                            mirrored if the mirror image comes first
@@ -59,7 +60,7 @@ class Canonical:
 
 
 def canonical(boundary: Boundary) -> Canonical:
-    """Return a quad or O boundary in its canonical frame; in its own if it cannot be rounded."""
+    """Return a quad or O boundary in its canonical frame, or unchanged if rounding would merge its nodes."""
     return _of_body(boundary) if boundary.periodic else _of_quad(boundary)
 
 

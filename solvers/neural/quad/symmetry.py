@@ -101,6 +101,6 @@ def lift(weight: Any, seen: Any, xp: Any) -> Any:
 
 
 def projection(weight: Any, elements: Any, xp: Any) -> Any:
-    """Return (2 heads, 8 in) from `weight` (heads, 2, in): vectors brought back from each element."""
+    """Return `weight` (heads, 2, in) as a matrix (2 heads, 8 in): the mean over the elements."""
     back = xp.einsum("gda,hac->hdcg", elements, weight) / ORDER
     return back.reshape(2 * len(weight), -1)

@@ -67,7 +67,7 @@ def even(strips: Any, n: int, xp: Any = np) -> Any:
 
 
 def factors(strips: Any, xp: Any = np) -> Any:
-    """Return what each strip (batch, m + 1, n) is multiplied by so that half a turn of it has area 1."""
+    """Return the factor for each strip (batch, m + 1, n) that makes the area of half its period 1."""
     heights = (strips[:, :-1, -1] - strips[:, :-1, 0]).imag.mean(1)
     return 1.0 / xp.sqrt(0.5 * TURN * heights)
 
