@@ -1,7 +1,5 @@
 """What every format can do, as a table: for terminals and for ``docs/formats.md``."""
 
-from __future__ import annotations
-
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
 

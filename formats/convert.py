@@ -1,7 +1,5 @@
 """From one format to another: what happens to a grid on its way, and what is written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -4,8 +4,6 @@ Seams are merged and cells counter-clockwise; formats of triangles get every qua
 shorter diagonal. https://github.com/nschloe/meshio
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

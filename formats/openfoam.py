@@ -5,8 +5,6 @@ folder around it. Where ``system`` lacks one of the three dictionaries without w
 looks at a mesh, a bare one is written. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path

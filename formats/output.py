@@ -1,7 +1,5 @@
 """Files that appear whole or not at all, whatever stops the program."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import functools

@@ -1,7 +1,5 @@
 """Which format a file is in: by its name, by its ending, by its content."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial

@@ -1,7 +1,5 @@
 """Where bytes come from: a file, standard input, or memory, under the name the user gave it."""
 
-from __future__ import annotations
-
 import io
 import stat
 import sys

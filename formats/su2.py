@@ -5,8 +5,6 @@ Written as text with 17 significant digits, nodes counted from 0; markers are wo
 cells and the lines of the markers make boundaries. https://su2code.github.io/docs_v7/Mesh-File/
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO

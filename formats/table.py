@@ -1,7 +1,5 @@
 """Every format that is read or written. Only the functions of those in use are loaded."""
 
-from __future__ import annotations
-
 import re
 from functools import partial
 from typing import Any

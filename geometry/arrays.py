@@ -1,7 +1,5 @@
 """Names for the arrays that everything passes around."""
 
-from __future__ import annotations
-
 from typing import Any, Literal, TypeAlias, TypeVar
 
 import numpy as np

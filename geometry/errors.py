@@ -8,8 +8,6 @@
     └── SolverError               an iteration diverged and its retries too     exit 3
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

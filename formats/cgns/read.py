@@ -1,7 +1,5 @@
 """Reading CGNS: the structured zones of a file, each a plane grid or a layer one cell thick."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 

@@ -5,8 +5,6 @@ nodes of the zone, which others pass over.
 https://cgns.org/standard/SIDS/SIDS.html
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path

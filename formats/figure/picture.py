@@ -1,7 +1,5 @@
 """A grid drawn to a file, its cells coloured by a quality metric."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

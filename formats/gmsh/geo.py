@@ -5,8 +5,6 @@ surfaces, split at the middle of i, since no transfinite surface may meet itself
 https://gmsh.info/doc/texinfo/gmsh.html#Structured-grids
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path

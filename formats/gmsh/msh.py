@@ -4,8 +4,6 @@
 converters such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterable
 from pathlib import Path

@@ -4,8 +4,6 @@ Lines make the boundary under the names of their physical groups; without lines,
 https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

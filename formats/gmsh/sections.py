@@ -3,8 +3,6 @@
 Every count is compared with what is left of the file before memory is taken.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple, TypeAlias
 

@@ -1,7 +1,5 @@
 """Reading HDF5 datasets: boundaries, grids, and the numbers that made them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterator
 from functools import partial

@@ -1,7 +1,5 @@
 """The shape that a closed line of points is: an airfoil or another outline."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a grid is besides its nodes, as short texts, for formats that have room for text."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Names and kinds of patches as solvers' files take them."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """The outer edges of a grid as a boundary, and the grid of a file whose topology nobody wrote down."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.formats.source import LARGEST

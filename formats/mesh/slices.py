@@ -1,7 +1,5 @@
 """A plane grid out of a three-dimensional file: one plane, or copies of one, in any index direction."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ One curve is the outline of a domain or a body; of two, one within the other, th
 the outer one its far field; several beside each other are a shape each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 

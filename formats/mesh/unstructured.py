@@ -1,7 +1,5 @@
 """A structured grid as an unstructured one: seams merged, cells and named edges by node number."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias

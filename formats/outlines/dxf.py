@@ -4,8 +4,6 @@ Lines, polylines, arcs, circles, ellipses and splines of the model space are joi
 curved ones become chords. https://ezdxf.mozman.at
 """
 
-from __future__ import annotations
-
 import io
 from collections.abc import Iterator
 from typing import Any

@@ -4,8 +4,6 @@ Fortran frames each record with its length before and after. Once the frames are
 are the same stream: integers of 4 bytes, then floats, then the integers of iblank.
 """
 
-from __future__ import annotations
-
 import itertools
 import struct
 from collections.abc import Sequence

@@ -6,8 +6,6 @@ an iblank array, so every layout is tried and those whose length is exactly the 
 https://www.grc.nasa.gov/WWW/wind/valid/plot3d.html
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ It goes with a Plot3D file of the same grid: flat, or one cell thick when both a
 cyclic order (i, j), (j, k), (k, i). https://crumsey.github.io/turbmodels/nmf_documentation.html
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Reading Plot3D grids of any layout, which their length and their cells tell."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import replace

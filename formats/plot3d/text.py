@@ -1,7 +1,5 @@
 """Plot3D as text: free format, commas, repeat counts ``r*v`` (in the dims too), Fortran ``D`` exponents."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 

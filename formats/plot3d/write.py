@@ -1,7 +1,5 @@
 """Writing Plot3D: 17 significant digits or float64, so that no wall cell is lost to rounding."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path

@@ -8,8 +8,6 @@ unit and the position stay as they are.
 https://m-selig.ae.illinois.edu/ads/coord_database.html
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 

@@ -8,8 +8,6 @@ edges have equal counts, the points are the nodes of the boundary as they stand;
 A single curve that ends in one trailing edge is taken for an airfoil.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path

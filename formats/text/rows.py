@@ -5,8 +5,6 @@ semicolons between columns) or run into the next one, ``0.5-0.01``. Blanks, tabs
 separate columns.
 """
 
-from __future__ import annotations
-
 import re
 from functools import lru_cache
 from typing import Literal, NamedTuple

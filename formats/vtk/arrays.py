@@ -1,7 +1,5 @@
 """Data arrays of VTK XML files: ascii, base64 inline, appended raw or base64, compressed by zlib or LZMA."""
 
-from __future__ import annotations
-
 import base64
 import binascii
 import re

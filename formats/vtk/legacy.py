@@ -4,8 +4,6 @@ Topology, name, parts and provenance go into a FIELD of bytes, which VTK and mes
 https://docs.vtk.org/en/latest/vtk_file_formats/vtk_legacy_file_format.html
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A grid with every quality metric as cell data, in a ``.vts`` file."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

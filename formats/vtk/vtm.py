@@ -3,8 +3,6 @@
 https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import replace

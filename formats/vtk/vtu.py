@@ -4,8 +4,6 @@ The cell array ``part`` is 0 inside and counts the boundary's parts from 1, in t
 sides south, east, north, west. https://github.com/nschloe/meshio
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

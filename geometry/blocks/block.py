@@ -13,8 +13,6 @@
        south (j = 0)
 """
 
-from __future__ import annotations
-
 from dataclasses import InitVar, dataclass
 from typing import TypeAlias
 

@@ -12,8 +12,6 @@
 As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias

@@ -1,7 +1,5 @@
 """Which grid of one set belongs to which of another."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import repeat
 from typing import Literal, TypeAlias

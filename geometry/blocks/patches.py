@@ -1,7 +1,5 @@
 """Named stretches of a boundary: what flow solvers call patches, markers or boundary conditions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import groupby

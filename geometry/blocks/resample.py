@@ -1,7 +1,5 @@
 """The edges of a boundary with other node counts, spaced as they were."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise

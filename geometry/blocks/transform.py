@@ -10,8 +10,6 @@
         south                 east                counted from their other end
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

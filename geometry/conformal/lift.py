@@ -20,8 +20,6 @@ a the half chord: at the foci of an ellipse. The way there is kernels/conformal/
 Theodorsen & Garrick, NACA Report 452 (1933); Karman & Trefftz, Z. Flugtech. Motorluftschiff. 9 (1918) 111.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -12,8 +12,6 @@ Theodorsen & Garrick, NACA Report 452 (1933); Henrici, Applied and Computational
 16.8.
 """
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Curves through given points, measured by arc length."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -3,8 +3,6 @@
 Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300-304.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

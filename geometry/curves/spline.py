@@ -9,8 +9,6 @@ Slopes are derivatives by chord length, so that they are near 1 in size; every i
 and one at its end, which differ from the neighbours' at corners only.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct

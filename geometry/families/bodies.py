@@ -4,8 +4,6 @@ Ellipses, polygons, rounded ones, stars, rounded rectangles and bullets, anywher
 rectangles, polygons and rounded rectangles 1.6 to 25 times their size, turned by any angle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Boundaries drawn at random from a family."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -3,8 +3,6 @@
 A new one is a function and its row in `FAMILIES`; corners of the shapes lie on nodes.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ circle; some domains are drawn out to a tail, bent around a centre or warped as 
 evenly or clustered.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -7,8 +7,6 @@ maps of a circle. Nothing here is taken from a collection of real airfoils.
 Kulfan, J. Aircraft 45 (2008) 142 (CST); Milne-Thomson, Theoretical Aerodynamics (1966) 7.32 (Karman-Trefftz).
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from math import comb
 from typing import Any

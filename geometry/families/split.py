@@ -9,8 +9,6 @@
 Xiao et al., arXiv 2501.11937, section IV.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Literal, get_args
 

@@ -1,7 +1,5 @@
 """The area of a polygon, and the sizes whose areas can be computed."""
 
-from __future__ import annotations
-
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 

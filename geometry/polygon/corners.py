@@ -1,7 +1,5 @@
 """Where a polygon turns, and which of its points are corners."""
 
-from __future__ import annotations
-
 import math
 from typing import TypeAlias
 

@@ -1,7 +1,5 @@
 """Mirror images of closed walls: whether a body is its own, and which of the two it is otherwise."""
 
-from __future__ import annotations
-
 from typing import TypeAlias
 
 import numpy as np

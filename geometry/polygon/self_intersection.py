@@ -1,7 +1,5 @@
 """Does a polygon cross itself, and where."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

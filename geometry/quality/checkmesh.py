@@ -21,8 +21,6 @@ merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/p
 primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace

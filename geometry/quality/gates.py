@@ -1,7 +1,5 @@
 """Gates: conditions on the quality of a grid that a user does not accept."""
 
-from __future__ import annotations
-
 import operator
 import re
 from collections.abc import Iterable, Mapping, Sequence

@@ -4,8 +4,6 @@ The growth at a node is the ratio of the two steps of a grid line that meet ther
 smaller: 1 for equal steps. Lines run on over the seam of an O grid and over the wake of a C grid.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -3,8 +3,6 @@
 A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 

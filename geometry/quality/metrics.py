@@ -24,8 +24,6 @@ Sources: C. J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-
 VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal

@@ -6,8 +6,6 @@ misses, or holds too many, all values of that metric are used. Either way the re
 `numpy.percentile` (linear interpolation between cells) to the last bit.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

@@ -15,8 +15,6 @@ Equiangle Skewness; C. J. Stimpson et al., SAND2007-1751 (2007); J. C. Vassberg 
 the AIAA Drag Prediction Workshops.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Everything that is measured of a grid: its metrics, its walls, a profile, its distance from another."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """The cells at a wall: how high the first ones are, and at what angle the grid lines leave it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

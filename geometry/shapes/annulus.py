@@ -1,7 +1,5 @@
 """A body within a far field that the input draws too."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

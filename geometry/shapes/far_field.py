@@ -1,7 +1,5 @@
 """Boundaries around a closed wall."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

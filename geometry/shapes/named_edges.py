@@ -1,7 +1,5 @@
 """Names carried over from the edges of a file to the patches of the boundary sampled from them."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import groupby

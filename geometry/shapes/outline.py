@@ -9,8 +9,6 @@
       A ---- south ---> B         far field is a circle around the middle of its box.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a geometry file holds before it is sampled."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Protocol
 

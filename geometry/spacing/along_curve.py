@@ -1,7 +1,5 @@
 """Nodes along a stretch of a curve by a spacing law, with the curve's corners on nodes."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 
 import numpy as np

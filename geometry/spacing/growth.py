@@ -1,7 +1,5 @@
 """Cells that grow by a constant ratio from a wall outwards."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The settings that turn a shape into edges of nodes."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 

@@ -1,7 +1,5 @@
 """Cell sizes that follow the shape: small at edges and where the curve turns, growing slowly in between."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

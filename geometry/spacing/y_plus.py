@@ -1,7 +1,5 @@
 """How high the first cell of a boundary layer must be: friction as on a flat plate."""
 
-from __future__ import annotations
-
 import math
 
 from meshonet.geometry.errors import InputError

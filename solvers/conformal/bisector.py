@@ -5,8 +5,6 @@ both are A/2. Winslow's equations get there only as the cells shrink; a nudge of
 node gets there at once, and dies out within a few cells.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats

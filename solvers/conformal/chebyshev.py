@@ -8,8 +8,6 @@ Trefethen, Approximation Theory and Approximation Practice (2013), chapter 8; Be
 Lagrange Interpolation, SIAM Review 46 (2004) 501.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -10,8 +10,6 @@ as the sides' lengths say; T = log(outer length / inner length), so that a ring 
 as Winslow's equations have it. Kinks of the boundary do not reach inside.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats

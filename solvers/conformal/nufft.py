@@ -12,8 +12,6 @@ The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett,
 J. Sci. Comput. 41 (2019) C479.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

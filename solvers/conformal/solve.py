@@ -6,8 +6,6 @@ separable sum is evaluated at the grid's nodes. Boundaries that this cannot take
 and the solution says so.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress

@@ -13,8 +13,6 @@ preconditioner does the rest. Points cluster at the wall, where high modes live.
 Trefethen, Spectral Methods in MATLAB (2000), chapters 6 and 7.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any

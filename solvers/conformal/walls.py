@@ -1,7 +1,5 @@
 """The two walls of an O grid in the periodic strip, and whether the strip resolves them."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """From boundaries to grids by the model that is named, or by the method that measures best."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -1,7 +1,5 @@
 """Model files: safetensors with a header that says what the model is, checked before anything is used."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The interface of all trained operators, whatever their network: boundaries in, solutions out."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

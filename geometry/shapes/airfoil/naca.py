@@ -14,8 +14,6 @@ The thickness polynomial leaves a base of 0.0021 times the thickness in percent,
 X-3284 (1975).
 """
 
-from __future__ import annotations
-
 import re
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The smooth curve through the points of an airfoil, and the place on it farthest from the trailing edge."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

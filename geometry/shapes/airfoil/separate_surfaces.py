@@ -5,8 +5,6 @@ coincide or cross. Points there are moved across the chord, by half the missing 
 `MOST` chords.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

@@ -13,8 +13,6 @@
     lower surface ---+--``         stay; those on the base are dropped.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats

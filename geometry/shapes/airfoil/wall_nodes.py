@@ -10,8 +10,6 @@ symmetric section has symmetric nodes at every count. The first cells of the sid
 the base beside them.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

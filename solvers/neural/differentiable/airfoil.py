@@ -3,8 +3,6 @@
 The arithmetic of `meshonet.solvers.conformal.solve` on tensors, without guard.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import torch
 from torch import Tensor

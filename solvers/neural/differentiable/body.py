@@ -1,7 +1,5 @@
 """O grids around bodies in torch: `neural.quad.o_grids` on tensors, without polish and guard."""
 
-from __future__ import annotations
-
 from typing import ClassVar
 
 import numpy as np

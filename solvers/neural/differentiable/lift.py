@@ -4,8 +4,6 @@ Decisions are taken from there: which nodes are corners and tips, on which branc
 node lies.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

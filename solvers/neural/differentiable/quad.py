@@ -1,7 +1,5 @@
 """Four-sided grids in torch: `neural.quad.coarse_grids` on tensors, without polish and guard."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import torch

@@ -6,8 +6,6 @@ Ronneberger, Fischer, Brox, U-Net, MICCAI 2015, with residual blocks and group c
 (`meshonet.solvers.neural.quad.symmetry`). Inference in numpy is `meshonet.solvers.neural.quad.network`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """`algebraic.resample.quad` on tensors: grids on few nodes evaluated at many, with gradients."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

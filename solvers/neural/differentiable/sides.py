@@ -1,7 +1,5 @@
 """Arguments of differentiable operators: nodes of sides in batches, an operator by name or as an object."""
 
-from __future__ import annotations
-
 from typing import Any, ClassVar
 
 import torch

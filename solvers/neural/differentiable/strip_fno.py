@@ -1,7 +1,5 @@
 """The strip network in torch: the layers of `meshonet.solvers.neural.strip.network`, differentiable."""
 
-from __future__ import annotations
-
 import torch
 from torch import Tensor, nn
 

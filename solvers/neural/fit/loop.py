@@ -1,7 +1,5 @@
 """The training loop of every model, read from top to bottom; what it trains, and where it goes on from."""
 
-from __future__ import annotations
-
 import os
 import time
 from abc import abstractmethod

@@ -1,7 +1,5 @@
 """What both ways of training a model of the paper's have in common: its arrays, its figures, its file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Training of the paper's models: batches over geometries and over places drawn at random."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any, ClassVar

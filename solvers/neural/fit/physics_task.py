@@ -1,7 +1,5 @@
 """Training of physics-informed networks, all geometries of a dataset at once."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, ClassVar
 

@@ -1,7 +1,5 @@
 """Settings of a training run: the same settings, data and machine give the same weights."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Literal

@@ -1,7 +1,5 @@
 """Training of the quad operator on Winslow's and variational grids of the same domains (`quad_grids`)."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass

@@ -1,7 +1,5 @@
 """Angles of cells, in a quad network's loss and in its figures beside the grids that it was trained on."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

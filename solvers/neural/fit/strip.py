@@ -1,7 +1,5 @@
 """Training of the strip operator, from solved strips to its file."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path

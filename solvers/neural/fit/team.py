@@ -1,7 +1,5 @@
 """The processes that train together: one, or those that torchrun started."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
 

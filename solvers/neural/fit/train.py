@@ -1,7 +1,5 @@
 """The trainer of every model: a task made of its data, the loop, held-out figures, and the model file."""
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The interface of the models that are trained on solved grids."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal

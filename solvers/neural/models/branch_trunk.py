@@ -17,8 +17,6 @@ Applied Mechanics and Engineering 393 (2022) 114778, sections 3.1.4 and 3.1.6; J
 Scientific Computing 44 (2022) A3490.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar
 

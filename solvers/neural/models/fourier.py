@@ -12,8 +12,6 @@ periodic, so h is continued by zeros before it is transformed. They answer on th
 Li et al., Fourier Neural Operator for Parametric Partial Differential Equations, arXiv 2010.08895.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache

@@ -4,8 +4,6 @@ A network is a mapping from names to arrays; ``name/0/weight`` (in, out) and ``n
 first layer.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any, TypeAlias

@@ -15,8 +15,6 @@ of a smooth trained trunk fold cells there. Lu et al., Computer Methods in Appli
 it adds to H beyond them may fold cells.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 

@@ -10,8 +10,6 @@ trained file answers these geometries, at any resolution, and no others. Chen et
 Computers 38 (2022) 4409; an improved method, arXiv 2210.09546 (auxiliary lines).
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar

@@ -1,7 +1,5 @@
 """An operator of the paper's kind, trained on solved grids: its answer on the nodes of any grid."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """Places of the computational square: of sensors and of nodes, and how their coordinates are lifted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -11,8 +11,6 @@ quad      origin and unit from the corners                    the least of the r
 ========  ==================================================  ============================================
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from itertools import product
 

@@ -4,8 +4,6 @@ At every node of a grid in its own frame: the grid, its steps and their changes,
 is the module, numpy or torch, that arrays are of.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 LATENT = 33  # nodes along xi and eta of the grid the network sees

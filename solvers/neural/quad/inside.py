@@ -8,8 +8,6 @@ rises without bound towards the wall, so it is least where the body is thickest.
 grows with the body; of equal places that nearest to the wall's first node is taken.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

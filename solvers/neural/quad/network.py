@@ -13,8 +13,6 @@ once, the kernels are those of an ordinary convolutional network, which is compi
 Ronneberger et al., U-Net, MICCAI 2015.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import pairwise, product

@@ -10,8 +10,6 @@ Turning, moving and scaling only move the strip, a mirrored body has the mirrore
 of the way further round shifts it: the network's answer does the same, to rounding.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """The operator for four-sided domains and for bodies: one network with two answers, then polish."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor

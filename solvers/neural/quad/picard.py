@@ -13,8 +13,6 @@ Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 
 (1965) 547-560.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The network's coarse grids, improved there and on all nodes: by descent, or towards Winslow's solution."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 

@@ -11,8 +11,6 @@ element), the element fastest; arrays are of numpy or of torch where `xp` is the
 Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
 """
 
-from __future__ import annotations
-
 from typing import Any, TypeAlias
 
 import numpy as np

@@ -8,8 +8,6 @@ The map is conformal, so that Winslow's equations and the angles of cells are th
 moving and scaling a body only moves its strip. What is even in the strip grows evenly outwards in the plane.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

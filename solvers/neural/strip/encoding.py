@@ -5,8 +5,6 @@ how far the walls are from straight, so the network sees walls of unit size and 
 size^2. Functions take and return arrays of numpy or torch: `xp` is the module.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

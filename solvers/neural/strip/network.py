@@ -10,8 +10,6 @@ Li et al., Fourier Neural Operator for Parametric Partial Differential Equations
 torch are `meshonet.solvers.neural.differentiable.strip_fno`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

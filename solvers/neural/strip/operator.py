@@ -1,7 +1,5 @@
 """The airfoil operator: the conformal solver, started from what a network adds to the harmonic base."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Self
