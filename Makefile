@@ -5,11 +5,11 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs wheel clean
+.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs wheel clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
-	@echo 'make test    the test suite'
+	@echo 'make test    the test suite; make test-fast: its core, in less than a minute'
 	@echo 'make test-clients  files written here, read by cgnscheck and OpenFOAM'
 	@echo 'make fuzz    every reader against hostile files, MINUTES=10 each; make kills: commands stopped at random'
 	@echo 'make lint    style, types and import contracts'
@@ -48,6 +48,13 @@ demo: $(VENV)/.installed
 # --- checks
 test: $(VENV)/.developing
 	$(BIN)/python -m pytest $(TESTS)
+
+# the core of it, in less than a minute on two cores
+FAST := tests/geometry tests/test_api.py tests/test_architecture.py tests/solvers/test_tfi.py tests/solvers/test_multigrid.py \
+  tests/solvers/test_march.py tests/solvers/test_pipeline.py tests/solvers/test_guard.py tests/formats/test_hdf5.py \
+  tests/formats/test_vts.py tests/cli/test_cli_infer.py
+test-fast: $(VENV)/.developing
+	$(BIN)/python -m pytest -n 2 $(FAST)
 
 # programs that read what is written here, from Debian: needs to be root, or them installed
 test-clients: $(VENV)/.developing

@@ -1,4 +1,4 @@
-"""Build of the compiled kernels: all C below ``kernels``, bound by one extension, ``meshonet.kernels._native``."""
+"""Build of the kernels: all C below ``kernels``, bound by one extension, ``meshonet.kernels._native``."""
 
 import os
 import sys

@@ -31,8 +31,7 @@ from shapes import Shape, airfoil_files, members, random_airfoils, random_domain
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.families.arch import FAMILY as ARCH
-from meshonet.geometry.families.family import FAMILIES
+from meshonet.geometry.families.family import FAMILIES, family
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.spacing.sampling import Sampling
@@ -200,7 +199,7 @@ def times(kept: Kept) -> str:
     for label, shape, ways in (
         ("sharp edge", sharp, {OURS: infer}),
         ("blunt edge", blunt, {OURS: infer, **network, **COMMON}),
-        ("arch", partial(ARCH.boundary, 0.3), {**general, **COMMON}),
+        ("arch", partial(family("arch").boundary, 0.3), {**general, **COMMON}),
         ("all", sharp, copy),
     ):
         for way, make in ways.items():

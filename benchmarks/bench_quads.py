@@ -37,8 +37,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.energy.variational import solve as variational
-from meshonet.solvers.neural.quad.coarse_grids import evaluate
-from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.coarse_grids import Edges, evaluate
 from meshonet.solvers.neural.quad.encoding import LATENT, frame
 from meshonet.solvers.neural.quad.picard import approach
 from meshonet.solvers.neural.registry import load

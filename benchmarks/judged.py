@@ -14,7 +14,7 @@ from shapes import Shape
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.coarsen import coarser_boundary
+from meshonet.geometry.blocks.transform import coarser_boundary
 from meshonet.geometry.errors import MeshonetError
 from meshonet.geometry.quality.measure import count_folded, per_cell
 from meshonet.solvers.elliptic.solve import solve as winslow

@@ -10,10 +10,8 @@ from meshonet.formats.format import Heights
 from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
 from meshonet.formats.source import LARGEST, open_source
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.coarsen import coarser_grid
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.normalise import normalised
-from meshonet.geometry.blocks.rotate import turned
+from meshonet.geometry.blocks.transform import coarser_grid, normalised, turned
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.sampling import Sampling
 

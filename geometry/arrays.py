@@ -53,11 +53,7 @@ def array_like(values: NDArray[Any], like: Any, xp: Any) -> Any:
 
 
 def planar_nodes(ni: int, nj: int) -> Floats:
-    """Return an uninitialised (ni, nj, 2) array whose x and y planes are each contiguous.
-
-    Kernels run over one coordinate at a time; ``nodes[..., 0]`` of this layout is a C-contiguous
-    (ni, nj) array, so no copy stands between a kernel and a grid.
-    """
+    """Return an uninitialised (ni, nj, 2) array whose x and y planes are each contiguous, as kernels need."""
     return np.moveaxis(np.empty((2, ni, nj)), 0, -1)
 
 

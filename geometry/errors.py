@@ -24,19 +24,11 @@ class MeshonetError(Exception):
 class InputError(MeshonetError):
     """Input that cannot be used, said as: place: what is wrong; what to do.
 
-    Parameters
-    ----------
-    problem : what is wrong, with the offending value.
-    remedy : what the user can do about it.
-    source : file the problem is in; a caller that knows it better may set it later.
-    place : where in the source, e.g. ``line 12`` or ``dataset 'south'``.
-    parameter : the parameter the problem is in, by its name in Python.
+    `problem` has the offending value, `remedy` is what the user can do, `source` a file (which a caller may
+    set later), `place` one in it, ``line 12``, and `parameter` the Python name of the parameter concerned.
+    Problem and remedy refer to parameters in braces, ``{far_field}``: in Python these read ``far_field``, on
+    the command line ``--far-field`` (`spelled`).
 
-    Problem and remedy refer to parameters in braces, ``{far_field}``: in Python these read
-    ``far_field``, on the command line ``--far-field`` (`spelled`).
-
-    Examples
-    --------
     >>> print(InputError("'abc' is not a number", "remove the line", source="a.dat", place="line 12"))
     a.dat: line 12: 'abc' is not a number; remove the line
     """
@@ -62,8 +54,6 @@ class InputError(MeshonetError):
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
     """Return `text`, its names of parameters in braces passed through `spelling`; double braces stay single.
 
-    Examples
-    --------
     >>> spelled("give {far_field} as 'a-{{index}}'", lambda name: "--" + name.replace("_", "-"))
     "give --far-field as 'a-{index}'"
     """
@@ -73,7 +63,7 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: indices of its lower-left node and the physical position of its centre."""
+    """A folded cell: the indices of its lower-left node and its centre."""
 
     i: int
     j: int
@@ -82,13 +72,7 @@ class BadCell:
 
 
 class NoValidGridError(MeshonetError):
-    """Every way tried ended in folded cells.
-
-    Parameters
-    ----------
-    problem : what was tried and the count of folded cells left.
-    worst : the worst cells, ten at the most.
-    """
+    """Every way tried ended in folded cells: what was tried, how many are left, and the worst of them."""
 
     exit_code = 3
 

@@ -64,10 +64,9 @@ class MultigridLevel:
     def correct(self, coarse: MultigridLevel) -> float: ...
 
 # energy
-def variational_workspace(ni: int, nj: int) -> int: ...
 def variational_energy(
     z: Floats, aspect: float, shape: float, smoothness: float, epsilon: float, periodic: bool,
-    relief: Floats | None, gradient: Floats, work: Floats,
+    relief: Floats | None, gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
 def newton(z: Floats, aspect: float, shape: float, smoothness: float, most: int, won: float = 0.0) -> int: ...
 
@@ -91,19 +90,18 @@ class VariationalDescent:
     ) -> tuple[float, float, int]: ...  # fmt: skip
 
 # hyperbolic
-def hyperbolic_scratch(n: int) -> int: ...
 def hyperbolic_march(
     x: Floats, y: Floats, steps: Floats, dissipation: float, even: float, tolerated: float, bend: float,
-    implicit: float, volume: float, sweeps: int, rise: int, scratch: Floats, ends: Floats | None = None,
+    implicit: float, volume: float, sweeps: int, rise: int, ends: Floats | None = None,
     widening: Floats | None = None,
 ) -> None: ...  # fmt: skip
 
 # layers
 def layer_steps(steps: Floats, length: float, first: float, last: float, constant: int) -> float: ...
 def layer_lines(
-    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int, scratch: Floats
+    x: Floats, y: Floats, X: Floats, Y: Floats, first: float, last: float, constant: int
 ) -> float: ...
-def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats, scratch: Floats) -> None: ...
+def redistribute(x: Floats, y: Floats, first: Floats, fade: Floats) -> None: ...
 
 # conformal: `maps` are a geometry.lift.Lift
 Removed: TypeAlias = tuple[complex, complex, complex, complex, float]

@@ -11,19 +11,14 @@ from meshonet.formats.output import check_place
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.progress import Cycle, Row
 
-COLUMNS = ("input", *(each.name for each in fields(Row)))
-"""Of the file."""
-
-INTERVAL = 0.1
-"""Least seconds between two texts on the terminal."""
+COLUMNS = ("input", *(each.name for each in fields(Row)))  # of the file
+INTERVAL = 0.1  # least seconds between two texts on the terminal
 
 
 class Live:
     """Shows cycles on the terminal, ten a second at the most.
 
-    Parameters
-    ----------
-    show : takes a line.
+    `show`: takes a line.
     """
 
     def __init__(self, show: Callable[[str], None]) -> None:

@@ -31,8 +31,6 @@ def explained(error: Exception, name: str = "") -> str:
 def option(parameter: str) -> str:
     """Return how the command line spells a parameter.
 
-    Examples
-    --------
     >>> option("far_field"), option("from_format")
     ('--far-field', '--from')
     """
@@ -42,8 +40,6 @@ def option(parameter: str) -> str:
 def with_options(text: str) -> str:
     """Return a note of the library, its ``{parameters}`` spelled as options.
 
-    Examples
-    --------
     >>> with_options("the far field is cut off; set {far_field}")
     'the far field is cut off; set --far-field'
     """

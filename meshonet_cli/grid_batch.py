@@ -27,8 +27,7 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from meshonet_cli.options import CheckOptions, FileOptions, LayerOptions, SamplingOptions, SideOptions
 
-SHARED = 16
-"""Members that one of several processes gets at a time at the most, when they are solved together."""
+SHARED = 16  # members that one of several processes gets at a time at the most, when they are solved together
 
 
 @dataclass(frozen=True)
@@ -82,10 +81,7 @@ def request_of(
 ) -> GridRequest:
     """Return the request that options describe, `parameters` by the names of its fields.
 
-    Raises
-    ------
-    InputError
-        as `GridRequest`; a gate that is none.
+    Raises InputError: as `GridRequest`; a gate that is none.
     """
     for block in blocks:
         parameters |= vars(block)
@@ -113,10 +109,7 @@ def write_grids(
     history : file that the cycles go to.
     jobs : processes at work.
 
-    Raises
-    ------
-    InputError
-        several members and room for one.
+    Raises InputError: several members and room for one.
     """
     destination = Destination(output, files.to_format, "grids")
     prepare(sources, destination, session)

@@ -15,12 +15,8 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
 
     The name is left out so that the same input and settings give the same bytes wherever they are written.
 
-    Parameters
-    ----------
-    arguments : of the program, its name not among them; None means those it was started with.
+    `arguments`: of the program, its name not among them; None means those it was started with.
 
-    Examples
-    --------
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
     """

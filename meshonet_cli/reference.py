@@ -9,8 +9,7 @@ from collections.abc import Iterator
 from meshonet_cli import app
 from meshonet_cli.commands import COMMANDS
 
-WIDTH = 98
-"""Columns of the help texts."""
+WIDTH = 98  # columns of the help texts
 
 _HEAD = """# Commands
 

@@ -8,12 +8,15 @@ import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from meshonet.formats.source import printable
 from meshonet.geometry.errors import InputError, MeshonetError
 from meshonet_cli.errors import explained, with_options
 from meshonet_cli.stopping import check
+
+if TYPE_CHECKING:
+    from meshonet_cli.batch.timed import Timed
 
 GATE_NOT_MET = 1
 _BAR_LENGTH = 24
@@ -31,32 +34,13 @@ class Printed(Protocol):
         ...
 
 
-class Brief(Printed, Protocol):
-    """A report that can be short, for batches."""
-
-    def line(self) -> str:
-        """Return it on one line."""
-        ...
-
-
-class Written(Brief, Protocol):
-    """A report of something that is in a file."""
-
-    def finished(self, path: str | None) -> None:
-        """Note where the result is."""
-        ...
-
-
 class Session:
     """Prints what happens and remembers the worst exit code.
 
     Results for programs (``--json``) and tables go to standard output, everything else to standard error.
 
-    Parameters
-    ----------
-    quiet : no progress and no reports, only warnings and errors.
-    as_json : one JSON object a member on standard output, in place of reports.
-    debug : tracebacks of failing members too.
+    `quiet`: no progress and no reports, only warnings and errors. `as_json`: one JSON object a member on
+    standard output, in place of reports. `debug`: tracebacks of failing members too.
     """
 
     def __init__(self, *, quiet: bool = False, as_json: bool = False, debug: bool = False) -> None:
@@ -102,7 +86,7 @@ class Session:
         """Print what the user should know even when quiet."""
         self._write(f"warning: {text}")
 
-    def report(self, report: Brief) -> None:
+    def report(self, report: Timed) -> None:
         """Report a member that is done: as JSON, in full when it is alone, on one line in a batch."""
         self.done += 1
         if self.as_json:
@@ -110,7 +94,7 @@ class Session:
         else:
             self.note(report.line() if self.batch else report.lines())
 
-    def written(self, report: Written, path: str) -> None:
+    def written(self, report: Timed, path: str) -> None:
         """Report a member whose result is in the file `path`."""
         report.finished(path)
         self.report(report)
@@ -118,10 +102,7 @@ class Session:
     def show(self, report: Printed) -> None:
         """Print a report that is itself the result: on standard output, in full, even when quiet."""
         self.done += 1
-        if self.as_json:
-            self.result(report.as_json())
-        else:
-            self.print(report.lines())
+        self.conclude(report)
 
     def conclude(self, total: Printed) -> None:
         """Print the report of all members together: on standard output, even when quiet."""

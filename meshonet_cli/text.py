@@ -17,8 +17,6 @@ def aligned(rows: list[list[str]]) -> str:
 def figure(value: float) -> str:
     """Return a number as a table shows it.
 
-    Examples
-    --------
     >>> figure(90.12345), figure(0.000123456), figure(1234567.0), figure(0.0)
     ('90.12', '0.0001235', '1.235e+06', '0')
     """

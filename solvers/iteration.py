@@ -11,11 +11,8 @@ from meshonet.geometry.errors import InputError
 def check_settings(boundary: Boundary, tol: float | None, max_cycles: int, initial: Grid | None) -> None:
     """Raise InputError unless an iterative solver can take the settings for `boundary`.
 
-    Parameters
-    ----------
-    tol : at which it stops, None for its own.
-    max_cycles : or iterations, on the finest level.
-    initial : grid to start from, None for none.
+    `tol`: at which it stops, None for its own. `max_cycles`: or iterations, on the finest level. `initial`:
+    grid to start from, None for none.
     """
     if tol is not None and not 0 < tol < 1:
         raise InputError(f"tolerance {tol:g} is not between 0 and 1", "use e.g. 1e-5", parameter="tol")

@@ -40,10 +40,7 @@ class Method(Protocol):
     def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
         """Return a solution for each of the boundaries, which may start from a grid each.
 
-        Raises
-        ------
-        MeshonetError
-            one of them cannot be solved; the others are then best solved one by one.
+        Raises MeshonetError: one of them cannot be solved; the others are then best solved one by one.
         """
         ...
 
@@ -63,6 +60,11 @@ class OneByOne:
         raise NotImplementedError
 
 
+def solved(method: Method, boundary: Boundary, start: Grid | None) -> Solution:
+    """Return the solution of one boundary by `method`."""
+    return method.solve([boundary], None if start is None else [start])[0]
+
+
 @dataclass(frozen=True)
 class Wrapper(OneByOne):
     """Solves by calling another method, whose name it has."""
@@ -74,26 +76,18 @@ class Wrapper(OneByOne):
         """That of the method."""
         return self.method.name
 
-    def inner(self, boundary: Boundary, start: Grid | None = None) -> Solution:
+    def inner(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
         """Return the other method's solution of one boundary."""
-        return self.method.solve([boundary], None if start is None else [start])[0]
+        return solved(self.method, boundary, initial)
 
 
 @dataclass(frozen=True)
 class Each(OneByOne):
     """A function of one boundary as a method.
 
-    Parameters
-    ----------
-    name : in `METHODS`.
-    target : a function of a boundary, its settings and perhaps ``initial``, a grid to start from; or
-        ``module:name`` of one, which is loaded when it is needed.
-    settings : keywords of the function.
-
-    Raises
-    ------
-    InputError
-        a setting that the function does not have.
+    `name`: in `METHODS`. `target`: a function of a boundary, its settings and perhaps ``initial``, a grid to
+    start from; or ``module:name`` of one, which is loaded when it is needed. `settings`: keywords of the
+    function. Raises InputError: a setting that the function does not have.
     """
 
     name: str
@@ -176,7 +170,7 @@ METHODS: Mapping[str, Row] = MappingProxyType(
             "meshonet.solvers.conformal.solve:Conformal",
             "Winslow's equations around a body, in the strip that a conformal map makes of its domain",
         ),
-        "operator": Row("meshonet.solvers.neural.method:Operator", "a neural operator", solves=False),
+        "operator": Row("meshonet.solvers.neural.inference:Operator", "a neural operator", solves=False),
     }
 )
 """Methods by name; ``operator:NAME`` is the operator of that name."""
@@ -185,13 +179,8 @@ METHODS: Mapping[str, Row] = MappingProxyType(
 def method_named(name: str, **settings: Any) -> Method:
     """Return the method of that name with the settings.
 
-    Raises
-    ------
-    InputError
-        no such method; a setting that it does not have.
+    Raises InputError: no such method; a setting that it does not have.
 
-    Examples
-    --------
     >>> method_named("winslow", tol=1e-8).settings
     {'tol': 1e-08}
     """

@@ -14,8 +14,7 @@ from meshonet.formats.source import Source
 from meshonet.geometry.arrays import SIDES, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.grid import Grid, Origin
 from meshonet.geometry.blocks.patches import Kind, Patch
 from meshonet.geometry.errors import InputError
 

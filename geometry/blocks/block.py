@@ -38,21 +38,11 @@ _KINDS = {(2, 2), (2, 3), (3, 3)}
 class Block:
     """Nodes of one block; validates itself.
 
-    Parameters
-    ----------
-    nodes : (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface; float64, any unit of length, kept in
-        planar layout (see `meshonet.geometry.arrays`).
-    finite : the nodes are known to be finite: the check, a tenth of the time of some methods, is left out.
+    `nodes` (ni, nj, 2), (ni, nj, nk, 3), or (ni, nj, 3) on a surface, in any unit of length, are kept as
+    float64 in planar layout (see `meshonet.geometry.arrays`). Nodes known to be `finite` are not checked for
+    that, which takes a tenth of the time of some methods.
 
-    Raises
-    ------
-    InputError
-        nodes of another shape, fewer than 2 along a direction, or not finite.
-
-    Examples
-    --------
-    >>> Block(np.zeros((4, 3, 2))).counts
-    (4, 3)
+    Raises InputError: nodes of another shape, fewer than 2 along a direction, or not finite.
     """
 
     nodes: Floats
@@ -88,13 +78,7 @@ def face_of(values: AnyArray, side: Side) -> AnyArray:
 
 
 def face_counts(counts: tuple[int, ...], side: Side) -> tuple[int, ...]:
-    """Return the nodes along each direction of a side of a block with `counts` nodes.
-
-    Examples
-    --------
-    >>> face_counts((5, 4, 3), "south")
-    (5, 3)
-    """
+    """Return the nodes along each direction of a side of a block with `counts` nodes."""
     axis = PLACES[side][0]
     return counts[:axis] + counts[axis + 1 :]
 

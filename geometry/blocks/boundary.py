@@ -24,8 +24,7 @@ import numpy as np
 from meshonet.geometry.arrays import SIDES, TOPOLOGIES, Floats, Side, Topology, read_only
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
+from meshonet.geometry.blocks.grid import UNKNOWN, Grid, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.blocks.resample import resample_edges, resample_patches
 from meshonet.geometry.blocks.validate import check_edges
@@ -54,21 +53,16 @@ class Boundary(Connected):
     topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where south lies on itself.
     patches : named stretches of the sides; empty means those of `default_patches`.
     name : what the input called this shape.
-    wall : the curve that `south` was sampled from, when there is one. It lets the operator see the
-        body between the nodes.
-    chord : the length that spacings are given in: the chord of an airfoil, the largest extent of another
-        body. 0 stands for the distance of the first node of `south`, a wake left out, from the one farthest
-        from it.
+    wall : the curve that `south` was sampled from, if any: it lets operators see the body between nodes.
+    chord : unit of spacings: an airfoil's chord, another body's largest extent. 0 stands for the distance of
+        the first node of the body from the farthest.
     sensors : (m, 2) nodes that an operator's branches read (`with_sensors`), when asked for.
     notes : sentences a user should read, such as that an outline was changed.
     origin : the numbers that made it and what it is kept for, of a sample of a dataset.
     sampled : whether the nodes were chosen here, on curves, and may be chosen otherwise.
 
-    Raises
-    ------
-    InputError
-        an edge of the wrong shape, with a node that is not finite or repeated, edges that do not
-        meet, a left-handed outline, a ``c`` without a wake.
+    Raises InputError: an edge of the wrong shape, with a node that is not finite or repeated, edges that do
+    not meet, a left-handed outline, a ``c`` without a wake.
     """
 
     south: Floats
@@ -94,9 +88,8 @@ class Boundary(Connected):
         for side, opposite in (("south", "north"), ("west", "east")):
             n, m = len(getattr(self, side)), len(getattr(self, opposite))
             if n != m:
-                raise InputError(
-                    f"{side} has {n} nodes and {opposite} has {m}", "opposite edges need equal counts"
-                )
+                counts = f"{side} has {n} nodes and {opposite} has {m}"
+                raise InputError(counts, "opposite edges need equal counts")
         self._check_corners()
         object.__setattr__(self, "connections", connections_of(self.topology, self.south, self.nj))
         if not self.chord:
@@ -141,10 +134,7 @@ class Boundary(Connected):
         (the odd one included) is on the body and the rest on the far field. Fixed places of the computational
         domain, as an operator needs them: Xiao et al., arXiv 2501.11937, section III.
 
-        Raises
-        ------
-        InputError
-            fewer than 2 sensors, or more than there are nodes.
+        Raises InputError: fewer than 2 sensors, or more than there are nodes.
         """
         rings = [self.south[:-1], self.north[:-1]] if self.around_body else [self.outline()]
         most = len(rings) * len(rings[0])
@@ -155,15 +145,9 @@ class Boundary(Connected):
         return replace(self, sensors=np.concatenate(chosen))
 
     def boundary(self, sampling: Sampling) -> Boundary:
-        """Return this boundary with the node counts of `sampling`.
+        """Return this boundary with the node counts of `sampling`, if other than its own, corners kept.
 
-        Edges are used as they are when the counts are absent or equal; others resample the curves through
-        the nodes, corners kept (`meshonet.geometry.blocks.resample`).
-
-        Raises
-        ------
-        InputError
-            `sampling` asks for anything else: another topology, a spacing, a far field ...
+        Raises InputError: `sampling` asks for anything else: another topology, a spacing, a far field ...
         """
         self._check_sampling(sampling)
         ni, nj = sampling.ni or self.ni, sampling.nj or self.nj
@@ -182,20 +166,11 @@ class Boundary(Connected):
                 "leave {topology} out, or give the shape instead of its edges",
                 source=self.name,
             )
-        implied = "curvature" if sampling.viscous else "auto"  # thin cells imply that law
-        settings = {
-            "spacing": sampling.spacing not in ("auto", implied),
-            "le_spacing": sampling.le_spacing is not None,
-            "te_spacing": sampling.te_spacing is not None,
-            "far_field": sampling.far_field is not None,
-            "corners": sampling.corners is not None,
-            "te": sampling.te != "auto",
-            "wake": sampling.wake is not None,
-            "wake_nodes": sampling.wake_nodes is not None,
-            "normalise": sampling.normalise,
-        }
-        for name, is_set in settings.items():
-            if is_set:
+        thin = sampling.viscous and sampling.spacing == "curvature"  # thin cells imply that law
+        law = "curvature" if thin else "auto"
+        settled = Sampling(sampling.ni, sampling.nj, sampling.topology, law, viscous=sampling.viscous)
+        for name, value in vars(settled).items():
+            if getattr(sampling, name) != value:
                 raise InputError(
                     f"{{{name}}} says how a shape becomes edges, and these are edges already",
                     f"leave {{{name}}} out, or give the shape",
@@ -254,7 +229,6 @@ def _edge(side: str, points: Floats) -> Floats:
     same = np.flatnonzero((np.diff(edge, axis=0) == 0).all(axis=1))
     if same.size:
         x, y = edge[same[0]]
-        raise InputError(
-            f"{side} nodes {same[0]} and {same[0] + 1} are the same point ({x:.6g}, {y:.6g})", "remove one"
-        )
+        nodes = f"{side} nodes {same[0]} and {same[0] + 1}"
+        raise InputError(f"{nodes} are the same point ({x:.6g}, {y:.6g})", "remove one")
     return edge

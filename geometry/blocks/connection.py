@@ -33,10 +33,7 @@ Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
 class Motion:
     """Rigid motion that carries one of two periodic sides to the other: x -> turn x + shift.
 
-    Parameters
-    ----------
-    shift : of every coordinate; empty is none.
-    turn : rotation matrix, row by row; empty is none.
+    `shift` is that of every coordinate, `turn` a rotation matrix row by row; empty ones do nothing.
     """
 
     shift: tuple[float, ...] = ()
@@ -50,16 +47,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Connection:
-    """A part of one side and a part of another, the donor, whose nodes are the same.
-
-    Parameters
-    ----------
-    block, side, range : first and last node along each direction of that side.
-    donor, donor_side, donor_range : the same of the other side, ascending too.
-    orientation : for each direction of the side, the donor's that runs along it, counted from 1, negative
-        where it runs the other way.
-    transform : what carries the nodes of the side to the donor's, when they are periodic.
-    """
+    """A part of one side and a part of another, the donor, whose nodes are the same; both ranges ascend."""
 
     block: int
     side: Side
@@ -68,7 +56,9 @@ class Connection:
     donor_side: Side
     donor_range: Range
     orientation: tuple[int, ...]
+    """The donor's direction along each of the side's, counted from 1, negative where they are opposed."""
     transform: Motion | None = None
+    """What carries the nodes of the side to the donor's, when they are periodic."""
 
     def nodes(self, face: Face) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the nodes of both sides in one order (n, d) or (n, m, d), the first moved by `transform`."""
@@ -85,9 +75,8 @@ class Connection:
         """Raise InputError unless the nodes of both sides are the same, bitwise."""
         own, donor = self.nodes(face)
         if own.shape != donor.shape:
-            raise InputError(
-                f"{self} joins {own.shape[:-1]} nodes to {donor.shape[:-1]}", "connect equal counts"
-            )
+            counts = f"{own.shape[:-1]} nodes to {donor.shape[:-1]}"
+            raise InputError(f"{self} joins {counts}", "connect equal counts")
         if np.array_equal(own, donor):
             return
         place = np.argwhere((own != donor).any(axis=-1))[0]
@@ -98,9 +87,8 @@ class Connection:
         )
 
     def __str__(self) -> str:
-        return (
-            f"the connection of {self.side} of block {self.block} to {self.donor_side} of block {self.donor}"
-        )
+        ends = f"{self.side} of block {self.block} to {self.donor_side} of block {self.donor}"
+        return f"the connection of {ends}"
 
     def stretches(self, block: int) -> list[tuple[Side, int, int]]:
         """Return side, first and last node of what it takes of the boundary of a planar block."""
@@ -126,8 +114,6 @@ def c_wake(ni: int, cells: int) -> Connection:
 def topology_of(counts: Sequence[tuple[int, ...]], connections: Sequence[Connection]) -> Topology:
     """Return what the connections make of blocks with `counts` nodes along their directions.
 
-    Examples
-    --------
     >>> topology_of([(9, 5)], ()), topology_of([(9, 5)], [o_seam(5)]), topology_of([(9, 5)], [c_wake(9, 2)])
     ('quad', 'o', 'c')
     """
@@ -148,10 +134,7 @@ def wake_cells(connections: Sequence[Connection]) -> int:
 
 
 def wake_nodes(south: Floats) -> int:
-    """Return how many nodes at the start of `south` (ni, 2) are repeated in reverse at its end; 0 if all are.
-
-    This is how a wake is found in nodes that came without connections.
-    """
+    """Return how many nodes `south` (ni, 2) begins with are repeated in reverse at its end; 0 if all are."""
     half = south[: len(south) // 2]
     differs = (half != south[::-1][: len(half)]).any(axis=1)
     return int(np.argmax(differs)) if differs.any() else 0
@@ -160,10 +143,7 @@ def wake_nodes(south: Floats) -> int:
 def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connection, ...]:
     """Return the connections of a block of `topology`, found in its south side (ni, 2), with nj rows.
 
-    Raises
-    ------
-    InputError
-        a topology of no single block; a C block without a wake.
+    Raises InputError: a topology of several blocks; a C block without a wake.
     """
     if topology == "quad":
         return ()
@@ -175,10 +155,8 @@ def connections_of(topology: Topology, south: Floats, nj: int) -> tuple[Connecti
     all_doubled = len(south) % 2 == 1 and np.array_equal(south[:half], south[: -half - 1 : -1])
     cells = (half if all_doubled else wake_nodes(south)) - 1  # all but the middle: a wall of two cells
     if cells < 1:
-        raise InputError(
-            "the south side of a C grid does not begin and end with the nodes of a wake",
-            "make both sides of the wake coincide, or call it quad",
-        )
+        remedy = "make both sides of the wake coincide, or call it quad"
+        raise InputError("the south side of a C grid does not begin and end with the nodes of a wake", remedy)
     return (c_wake(len(south), cells),)
 
 

@@ -24,7 +24,6 @@ import numpy as np
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connected, Connection, connections_of, topology_of, wake_cells
-from meshonet.geometry.blocks.metadata import UNKNOWN, Origin
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
 
@@ -32,23 +31,26 @@ if TYPE_CHECKING:
     from meshonet.geometry.quality.measure import Quality
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
+class Origin:
+    """Names and values of the numbers that made a sample, and ``train``, ``test`` or nothing."""
+
+    parameters: tuple[tuple[str, float], ...] = ()
+    split: str = ""
+
+
+UNKNOWN = Origin()
+"""Of a sample that no dataset holds."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Grid(Connected):
-    """Blocks, patches and connections; validates itself.
+    """At least one block, named stretches of the sides, and where sides are the same nodes; validates itself.
 
-    Parameters
-    ----------
-    blocks : at least one.
-    patches : named stretches of the sides.
-    connections : where sides of blocks are the same nodes.
-    name : what the input called this shape.
-    provenance : how the grid was made: method, settings, version.
-    origin : that of its boundary.
+    `name` is what the input called the shape, `provenance` how the grid was made: method, settings, version;
+    `origin` is that of its boundary.
 
-    Raises
-    ------
-    InputError
-        no block; a patch outside its side; connected sides whose nodes differ.
+    Raises InputError: no block; a patch outside its side; connected sides whose nodes differ.
     """
 
     blocks: tuple[Block, ...]
@@ -77,33 +79,17 @@ class Grid(Connected):
         *,
         finite: bool = False,
     ) -> Grid:
-        """Return the grid of a single block, its connections told by the nodes.
+        """Return the grid of a single block (see `Block`), its connections found in the nodes.
 
-        Parameters
-        ----------
-        nodes, finite : see `Block`.
-        topology : ``quad``, ``o`` or ``c``. The wake of a ``c`` is where the south side lies on itself.
-        patches : empty means those of `default_patches`.
-        name, provenance, origin : see above.
-
-        Raises
-        ------
-        InputError
-            see `Block`; an O grid that is not closed, a C grid without a wake.
-
-        Examples
-        --------
-        >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij")
-        >>> Grid.from_nodes(np.stack([x, y], axis=-1)).topology
-        'quad'
+        The wake of a ``c`` is where the south side lies on itself; no `patches` means `default_patches`.
+        Raises InputError: see `Block`; an O grid that is not closed, a C grid without a wake.
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
-            raise InputError(
-                f"column ni-1 differs from column 0 at j={j}", "close the O grid or call it quad"
-            )
+            open_at = f"column ni-1 differs from column 0 at j={j}"
+            raise InputError(open_at, "close the O grid or call it quad")
         connections = connections_of(topology, block.nodes[:, 0], nj)
         named = tuple(patches) or default_patches(topology, ni, nj, wake_cells(connections))
         return cls((block,), named, connections, name, provenance or {}, origin)
@@ -117,9 +103,8 @@ class Grid(Connected):
     def nodes(self) -> Floats:
         """(ni, nj, 2) nodes of the only block."""
         if len(self.blocks) != 1:
-            raise InputError(
-                f"a grid of {len(self.blocks)} blocks", "take the nodes of its blocks one by one"
-            )
+            remedy = "take the nodes of its blocks one by one"
+            raise InputError(f"a grid of {len(self.blocks)} blocks", remedy)
         return self.blocks[0].nodes
 
     @property
@@ -142,6 +127,11 @@ class Grid(Connected):
         """(ni, nj) y coordinates, C-contiguous, a view."""
         return self.nodes[..., 1]
 
+    def __repr__(self) -> str:
+        sizes = ", ".join(" x ".join(map(str, block.nodes.shape[:-1])) for block in self.blocks)
+        name = f"{self.name!r}, " if self.name else ""
+        return f"Grid({name}{self.topology}, {sizes} nodes, patches {[p.name for p in self.patches]})"
+
     def face(self, block: int, side: Side) -> Floats:
         """Return the nodes of a side of a block."""
         return self.blocks[block].face(side)
@@ -152,11 +142,7 @@ class Grid(Connected):
         return outer_patches(self.patches, (self.ni, self.nj), connected)
 
     def walls(self) -> list[Patch]:
-        """Return the walls, told by the names of patches.
-
-        Where no name tells of a wall these are the unnamed stretches of the body, or the south and the north
-        side of a four-sided grid.
-        """
+        """Return patches named as walls; without these, a body's or south's and north's unnamed stretches."""
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()
         walls = [p for p in outer if p.kind == "wall" or (p.kind == "other" and p.side in body)]
@@ -185,10 +171,7 @@ class Grid(Connected):
     def to_pyvista(self) -> Any:
         """Return the grid as a `pyvista.StructuredGrid` in the plane z = 0.
 
-        Raises
-        ------
-        InputError
-            pyvista is not installed.
+        Raises InputError: pyvista is not installed.
         """
         try:
             from pyvista import StructuredGrid

@@ -13,13 +13,10 @@ Pairing: TypeAlias = Literal["auto", "name", "order"]
 
 
 class GridMatcher:
-    """Finds for each of many grids the one it belongs to in a reference set.
+    """Finds for each of many grids the one it belongs to in a reference set, which is read as far as needed.
 
-    Parameters
-    ----------
-    grids : the set, read as far as is needed: a set in the same order as the grids is not kept in memory.
-    pairing : by ``name``, by ``order``, or ``auto``: a single grid serves all; several are matched by name
-        when they have different names and that of the first grid is among them, else by order.
+    They are matched by ``name`` or ``order``; with ``auto`` a single grid serves all, several are matched by
+    name when they have different names and that of the first grid is among them, else by order.
     """
 
     def __init__(self, grids: Iterator[Grid], pairing: Pairing = "auto") -> None:
@@ -30,10 +27,7 @@ class GridMatcher:
     def match(self, name: str) -> Grid:
         """Return the grid that belongs to the one called `name`, or to the next one.
 
-        Raises
-        ------
-        InputError
-            there is none.
+        Raises InputError: there is none.
         """
         if self._pairing == "auto":
             self._pairing = self._decided(name)

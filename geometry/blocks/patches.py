@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import groupby
 from typing import Literal, TypeAlias
 
 from meshonet.geometry.arrays import SIDES, Side, Topology
@@ -26,8 +27,6 @@ _SIGNS: tuple[tuple[Kind, tuple[str, ...]], ...] = (
 def kind_of(name: str) -> Kind:
     """Return the kind of boundary that the name of a patch tells of.
 
-    Examples
-    --------
     >>> kind_of("lower wall"), kind_of("slot 3")
     ('wall', 'other')
     """
@@ -39,14 +38,9 @@ def kind_of(name: str) -> Kind:
 class Patch:
     """Nodes ``start`` to ``stop``, both included, of one side of a block, under a name.
 
-    Parameters
-    ----------
-    name : what the patch is called in files.
-    side : of its block. South and north count nodes along i, west and east along j.
-    start, stop : first and last node along the side.
-    across : the same along the second direction of a side of a block of three; None is all of it.
-    block : number of the block.
-    kind : of boundary; derived from the name unless set.
+    South and north count nodes along i, west and east along j; `across` is the first and last node along the
+    second direction of a side of a block of three, None all of it. The kind of boundary is derived from the
+    name unless set.
     """
 
     name: str
@@ -77,11 +71,6 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
 
     ``quad`` has its four sides, ``o`` a wall and a far field (west and east are the seam), ``c`` a wake of
     `wake` cells on both sides of a wall, and a far field around them.
-
-    Examples
-    --------
-    >>> [patch.name for patch in default_patches("o", 5, 4)]
-    ['wall', 'farfield']
     """
     i, j = ni - 1, nj - 1
     if topology == "quad":
@@ -100,30 +89,24 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
 
 
 def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
-    """Raise InputError when a patch has no name, an unknown block or side, or leaves its side.
+    """Raise InputError for a patch without a name, of an unknown block or side, or that leaves its side.
 
-    Parameters
-    ----------
-    patches : to check.
-    counts : of the nodes along each direction, for every block.
+    `counts` are the nodes of every block along each direction.
     """
     for patch in patches:
-        sides = SIDES if not 0 <= patch.block < len(counts) else tuple(PLACES)[: 2 * len(counts[patch.block])]
+        what, exists = f"patch {patch.name!r}", 0 <= patch.block < len(counts)
+        sides = tuple(PLACES)[: 2 * len(counts[patch.block])] if exists else SIDES
         if not patch.name or patch.side not in sides:
-            raise InputError(
-                f"patch {patch.name!r} on side {patch.side!r} is not usable",
-                "name it and use " + "/".join(sides),
-            )
-        if not 0 <= patch.block < len(counts):
-            raise InputError(
-                f"patch {patch.name!r} is on block {patch.block} of {len(counts)}", "count blocks from 0"
-            )
+            remedy = "name it and use " + "/".join(sides)
+            raise InputError(f"{what} on side {patch.side!r} is not usable", remedy)
+        if not exists:
+            raise InputError(f"{what} is on block {patch.block} of {len(counts)}", "count blocks from 0")
         side = face_counts(counts[patch.block], patch.side)
         for (start, stop), count in zip(patch.range(side), side, strict=True):
             if not 0 <= start < stop < count:
+                remedy = "keep it inside the side and at least one cell long"
                 raise InputError(
-                    f"patch {patch.name!r} runs from node {start} to {stop} of a side with {count} nodes",
-                    "keep it inside the side and at least one cell long",
+                    f"{what} runs from node {start} to {stop} of a side with {count} nodes", remedy
                 )
 
 
@@ -132,13 +115,8 @@ def outer_patches(
 ) -> list[Patch]:
     """Return the outer boundary of a planar block, each of its edges in one patch.
 
-    Where patches overlap the later one counts; edges without one are called by their side.
-
-    Parameters
-    ----------
-    patches : of the block.
-    counts : its nodes along xi and eta.
-    inside : side, first and last node of stretches that are connected, and so no boundary.
+    Where patches overlap the later one counts; edges without one are called by their side. `counts` are the
+    nodes along xi and eta, `inside` the side, first and last node of stretches that are connected.
     """
     outer: list[Patch] = []
     for side in SIDES:
@@ -149,11 +127,10 @@ def outer_patches(
         for connected, start, stop in inside:
             if connected == side:
                 owners[start:stop] = [None] * (stop - start)
-        start = 0
-        for stop in range(1, len(owners) + 1):
-            if stop == len(owners) or owners[stop] is not owners[start]:
-                owner = owners[start]
-                if owner is not None:
-                    outer.append(replace(owner, start=start, stop=stop))
-                start = stop
+        stop = 0
+        for _, cells in groupby(owners, key=id):
+            owner, *others = cells
+            start, stop = stop, stop + 1 + len(others)
+            if owner is not None:
+                outer.append(replace(owner, start=start, stop=stop))
     return outer

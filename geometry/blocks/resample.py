@@ -19,19 +19,11 @@ _ACROSS: tuple[Side, Side] = ("west", "east")
 
 
 def resample_edge(nodes: Floats, m: int, *, closed: bool) -> Floats:
-    """Return `m` nodes (m, 2) on the curve through `nodes` (n, 2), spaced by the same law.
+    """Return `m` nodes (m, 2), at least 2, on the curve through `nodes` (n, 2), spaced by the same law.
 
-    Arc length as a function of the place along the edge, 0 to 1, is kept; corners of the curve stay
-    nodes as far as `m` suffices; the end nodes are kept bitwise.
+    Arc length as a function of the place along the edge, 0 to 1, is kept; corners of the curve stay nodes as
+    far as `m` suffices; the end nodes, the same of a closed edge, are kept bitwise.
 
-    Parameters
-    ----------
-    nodes : a closed edge repeats its first node at the end.
-    m : at least 2.
-    closed : the edge returns to its start.
-
-    Examples
-    --------
     >>> resample_edge(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]), 5, closed=False)[:, 0].tolist()
     [0.0, 0.5, 1.0, 1.5, 2.0]
     """
@@ -55,16 +47,9 @@ def resample_edges(
 ) -> dict[Side, Floats]:
     """Return the four `edges` of a block with ni nodes along xi and nj along eta.
 
-    Parameters
-    ----------
-    edges : by side.
-    closed : south and north are closed.
-    wake : cells at each end of south whose nodes are the same; they get their share of the cells.
+    The `wake` cells at each end of south, whose nodes are the same, get their share of the cells.
 
-    Raises
-    ------
-    InputError
-        too few nodes for a closed edge, or for the wall between the two sides of a wake.
+    Raises InputError: too few nodes for a closed edge, or for the wall between the two sides of a wake.
     """
     if closed and ni < 4:
         raise InputError(f"{ni} nodes around a body", "use at least 4")

@@ -11,7 +11,7 @@ sides of a quad that are one line, the cut of a grid that goes round.
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,57 +20,17 @@ from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import Crossing, find_crossings
 
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.boundary import Boundary
+
 REMEDY = "correct these points: no grid can be made inside edges that cross"
 _MOST = 4096
 _SEAM = 1e-6
 """Opposite sides are one line when they are no farther apart than this, in lengths of their shortest cell."""
 
 
-class Edges(Protocol):
-    """What is checked of a boundary (`meshonet.geometry.blocks.boundary.Boundary`)."""
-
-    @property
-    def south(self) -> Floats:
-        """(ni, 2) nodes."""
-
-    @property
-    def north(self) -> Floats:
-        """(ni, 2) nodes."""
-
-    @property
-    def west(self) -> Floats:
-        """(nj, 2) nodes."""
-
-    @property
-    def east(self) -> Floats:
-        """(nj, 2) nodes."""
-
-    @property
-    def around_body(self) -> bool:
-        """Whether south is a body in a far field."""
-
-    @property
-    def periodic(self) -> bool:
-        """Whether south and north are closed."""
-
-    @property
-    def wake(self) -> int:
-        """Cells of the wake at each end of south."""
-
-    def outline(self) -> Floats:
-        """Return the closed outline (n, 2)."""
-
-
-def check_edges(boundary: Edges) -> None:
-    """Raise InputError, with the place, when edges of `boundary` cross or touch, or a body lies outside.
-
-    Examples
-    --------
-    >>> from meshonet.geometry.blocks.boundary import Boundary
-    >>> t = np.linspace(0.0, 1.0, 5)
-    >>> south, west = np.stack([t, 0.0 * t], axis=1), np.stack([0.0 * t, t], axis=1)
-    >>> check_edges(Boundary(south, south + [0.0, 1.0], west, west + [1.0, 0.0]))
-    """
+def check_edges(boundary: Boundary) -> None:
+    """Raise InputError, with the place, when edges of `boundary` cross or touch, or a body lies outside."""
     if not boundary.around_body and not find_crossings(boundary.outline(), limit=1):
         return
     lines = _lines(boundary)
@@ -84,12 +44,11 @@ def check_edges(boundary: Edges) -> None:
         raise InputError(_where(boundary, path, crossing), REMEDY)
     if len(lines) > 1 and boundary.around_body and not _inside(lines[0][0], lines[-1]):
         x, y = lines[0][0]
-        raise InputError(
-            f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field", "use a far field around the body"
-        )
+        outside = f"the body, at ({x:.6g}, {y:.6g}), lies outside its far field"
+        raise InputError(outside, "use a far field around the body")
 
 
-def _lines(boundary: Edges) -> list[Floats]:
+def _lines(boundary: Boundary) -> list[Floats]:
     """Return lines (n, 2) that may not cross, the outermost last."""
     south, north, west, east = boundary.south, boundary.north, boundary.west, boundary.east
     if boundary.periodic or _coincide(west, east):
@@ -119,7 +78,7 @@ def _shares_end(path: Floats, crossing: Crossing, ends: Floats) -> bool:
     return bool((at == ends).all(axis=1).any() and (u[0] * v[1] != u[1] * v[0] or u @ v < 0))
 
 
-def _where(boundary: Edges, path: Floats, crossing: Crossing) -> str:
+def _where(boundary: Boundary, path: Floats, crossing: Crossing) -> str:
     """Return which edges cross, behind which of their nodes, and where."""
     (a, k), (b, m) = (_place(boundary, path[n : n + 2]) for n in (crossing.first, crossing.second))
     at = f"({crossing.x:.6g}, {crossing.y:.6g})"
@@ -128,7 +87,7 @@ def _where(boundary: Edges, path: Floats, crossing: Crossing) -> str:
     return f"{a} and {b} cross at {at}, behind node {k} of {a} and node {m} of {b}"
 
 
-def _place(boundary: Edges, segment: Floats) -> tuple[str, int]:
+def _place(boundary: Boundary, segment: Floats) -> tuple[str, int]:
     """Return the side that a segment (2, 2) of it lies on, and the number of the node it begins at there."""
     for side in SIDES:
         edge = getattr(boundary, side)

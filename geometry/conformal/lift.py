@@ -83,33 +83,21 @@ def mirrored(nodes: Floats) -> Complexes:
 
 
 def lift_body(wall: Complexes, *, swap: bool = False) -> tuple[Lift, Complexes, tuple[int, ...]]:
-    """Return the lift of a body, its wall in the strip and its trailing corners.
+    """Return the lift of a body, its wall (n,) in the strip, phi rising from 0, and its trailing corners.
 
-    Parameters
-    ----------
-    wall : (n,) nodes counter-clockwise from the trailing edge, first node not repeated.
-    swap : remove the second corner of a blunt edge first. The two removals do not commute, so a mirrored
-        body is lifted to the mirrored strip when its corners are swapped.
+    `wall` (n,) is counter-clockwise from the trailing edge, first node not repeated. `swap` removes the
+    second corner of a blunt edge first: the two removals do not commute, so a mirrored body is lifted to the
+    mirrored strip when its corners are swapped.
 
-    Returns
-    -------
-    lift, w, corners : the map; the (n,) wall points psi + i phi, phi from 0 upwards; the nodes that are
-        the sharp edge, or the corners of the blunt one.
-
-    Raises
-    ------
-    InputError
-        fewer than 8 nodes, or a wall that does not wind once around the pole.
+    Raises InputError: fewer than 8 nodes, or a wall that does not wind once around the pole.
     """
     if len(wall) < 8:
         raise InputError(f"the wall has {len(wall)} nodes", "use at least 8")
     ring = np.ascontiguousarray(wall, complex)
     centre, quarter, removed, pole, phase, w, corners, winding = _native.lift_body(ring, swap)
     if not 0.9 < winding < 1.1:
-        raise InputError(
-            "the wall does not wind once around its middle",
-            "use a method without a conformal map for this shape",
-        )
+        remedy = "use a method without a conformal map for this shape"
+        raise InputError("the wall does not wind once around its middle", remedy)
     return Lift(centre, quarter, tuple(Corner(*removal) for removal in removed), pole, phase), w, corners
 
 

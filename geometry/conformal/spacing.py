@@ -33,17 +33,10 @@ DENSE = 640  # points along the whole wall that stand for the curve
 def conformal_knots(curve: Curve, marks: Floats, count: int) -> Floats:
     """Return arc lengths (count,) on a closed curve at equal steps of its circle's angle.
 
-    Parameters
-    ----------
-    curve : closed, clockwise, its arc length 0 where the first node belongs.
-    marks : rising arc lengths in (0, length) that must be nodes, e.g. the corners of a blunt edge. The
-        angles between are shared out smoothly.
-    count : nodes; the last is the curve's length, its first node again.
+    The curve is closed and clockwise, with its arc length 0 at the first node, which is the last again.
+    `marks`, rising arc lengths in (0, length), become nodes, and the angles between are shared out smoothly.
 
-    Raises
-    ------
-    InputError
-        the lifted wall is not star-shaped, or the iteration does not settle.
+    Raises InputError: the lifted wall is not star-shaped, or the iteration does not settle.
     """
     clockwise = _one_way(curve, marks, count, mirror=False)
     mirrored_wall = _one_way(curve, curve.length - marks[::-1], count, mirror=True)
@@ -72,15 +65,13 @@ def _dense(curve: Curve, marks: Floats) -> tuple[Floats, Floats]:
     u counts pieces: on piece k, u = k + v with s = s_k + length (1 - cos pi v)/2.
     """
     ends = np.concatenate([[0.0], marks, [curve.length]])
-    pieces_s, pieces_u = [], []
+    s, u = [], []
     for k, (a, b) in enumerate(pairwise(ends)):
         n = max(24, round(DENSE * np.sqrt((b - a) / curve.length)))
         v = np.arange(n) / n
-        pieces_s.append(a + (b - a) * 0.5 * (1.0 - np.cos(np.pi * v)))
-        pieces_u.append(k + v)
-    return np.append(np.concatenate(pieces_s), curve.length), np.append(
-        np.concatenate(pieces_u), len(ends) - 1.0
-    )
+        s.append(a + (b - a) * 0.5 * (1.0 - np.cos(np.pi * v)))
+        u.append(k + v)
+    return np.concatenate([*s, [curve.length]]), np.concatenate([*u, [len(ends) - 1.0]])
 
 
 def _circle_angle(phi: Floats, psi: Floats) -> Floats:
@@ -107,17 +98,11 @@ def _circle_angle(phi: Floats, psi: Floats) -> Floats:
 def _shared_out(marks: Floats, count: int) -> Floats:
     """Return rising angles (count,) from 0 to 2 pi, near equal steps, with every mark on a node."""
     cells = count - 1
-    nodes = np.clip(
-        np.round(marks / (2.0 * np.pi) * cells),
-        1 + np.arange(len(marks)),
-        cells - 1 - np.arange(len(marks))[::-1],
-    )
-    return _monotone(
-        np.concatenate([[0.0], nodes, [float(cells)]]),
-        np.concatenate([[0.0], marks, [2.0 * np.pi]]),
-        np.arange(count, dtype=np.float64),
-        periodic=True,
-    )
+    rank = np.arange(len(marks))
+    nodes = np.clip(np.round(marks / (2.0 * np.pi) * cells), 1 + rank, cells - 1 - rank[::-1])
+    knots = np.concatenate([[0.0], nodes, [float(cells)]])
+    angles = np.concatenate([[0.0], marks, [2.0 * np.pi]])
+    return _monotone(knots, angles, np.arange(count, dtype=np.float64), periodic=True)
 
 
 def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
@@ -133,18 +118,14 @@ def _smooth_inverse(t: Floats, u: Floats, s: Floats, at: Floats) -> Floats:
 
 
 def _monotone(x: Floats, y: Floats, at: Floats, *, periodic: bool) -> Floats:
-    """Return the piecewise cubic through rising (x, y) that rises everywhere, at points inside x.
-
-    As `meshonet.geometry.curves.monotone`, but the slopes at the ends are those of the end intervals;
-    `periodic` lets the two ends share one.
-    """
+    """Return the monotone cubic through rising (x, y) with its end intervals' slopes, one if `periodic`."""
     h = np.diff(x)
     rise = np.diff(y) / h
     if periodic:
-        h, rise = np.append(h, h[0]), np.append(rise, rise[0])
-    inner = inner_slopes(h, rise)
-    slope = np.concatenate([inner[-1:], inner]) if periodic else np.concatenate([rise[:1], inner, rise[-1:]])
-    h = np.diff(x)
+        inner = inner_slopes(np.append(h, h[0]), np.append(rise, rise[0]))
+        slope = np.concatenate([inner[-1:], inner])
+    else:
+        slope = np.concatenate([rise[:1], inner_slopes(h, rise), rise[-1:]])
     k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(h) - 1)
     v = (at - x[k]) / h[k]
     value = (

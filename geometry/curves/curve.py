@@ -22,22 +22,13 @@ _EDGES = np.arange(_STEPS + 1) / _STEPS
 class Curve:
     """A smooth curve bitwise through given points, one cubic an interval (`meshonet.geometry.curves.spline`).
 
-    Parameters
-    ----------
-    points : (n, 2), any unit of length, neighbours distinct, at least 2 (closed: 3). A closed curve may
-        repeat its first point at the end.
-    closed : the curve returns from the last point to the first.
-    corners : indices of points where the tangent may jump, the ends of an open curve besides; None finds
-        them (`meshonet.geometry.polygon.corners`).
-    straight : (intervals,) true where the curve is to follow the chord instead of the spline.
+    The `points` (n, 2) are in any unit of length, neighbours distinct, at least 2 (closed: 3); a closed curve
+    may repeat its first at the end. At `corners`, indices of points, the tangent may jump; None finds them
+    (`meshonet.geometry.polygon.corners`). Where `straight` (intervals,) is true it follows the chord.
 
-    Raises
-    ------
-    InputError
-        too few points, a point that is not finite or equals its neighbour, a corner out of range.
+    Raises InputError: too few points, a point that is not finite or equals its neighbour, a corner out of
+    range.
 
-    Examples
-    --------
     >>> square = Curve(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), closed=True)
     >>> square.length, square.corners.tolist()
     (4.0, [0.0, 1.0, 2.0, 3.0])
@@ -71,9 +62,8 @@ class Curve:
         else:
             self.corner_index = read_only(distinct(np.asarray(corners, dtype=np.intp)))
             if self.corner_index.size and (self.corner_index[0] < 0 or self.corner_index[-1] >= n):
-                raise InputError(
-                    f"a curve of {n} points has no corner {self.corner_index[-1]}", "count points from 0"
-                )
+                remedy = "count points from 0"
+                raise InputError(f"a curve of {n} points has no corner {self.corner_index[-1]}", remedy)
         ends = np.concatenate([self.points, self.points[:1]]) if closed else self.points
         chord = np.diff(ends, axis=0)
         h = np.hypot(chord[:, 0], chord[:, 1])[:, None]
@@ -107,10 +97,9 @@ class Curve:
         return i, t
 
     def at(self, s: Floats) -> Floats:
-        """Return the points (m, 2) at arc lengths `s` (m,).
+        """Return the points (m, 2) at arc lengths `s` (m,), clipped to the ends of an open curve.
 
-        A closed curve takes any s, an open one clips it to its ends. The points at `knots` are the given
-        ones, bitwise.
+        The points at `knots` are the given ones, bitwise.
         """
         i, t = self._locate(s)
         points = np.empty((len(t), 2))
@@ -119,21 +108,10 @@ class Curve:
 
     def tangent(self, s: Floats) -> Floats:
         """Return unit tangents (m, 2) at arc lengths `s` (m,); at a corner, of the side that leaves it."""
-        d = self._derivative(*self._locate(s))
-        return np.asarray(d / _norm(d)[..., None])
-
-    def _derivative(self, i: Indices, t: Floats) -> Floats:
+        i, t = self._locate(s)
         d = np.empty((len(t), 2))
         curve_slopes(self._cubic, i, t, d)
-        return d
-
-    def curvature(self, s: Floats) -> Floats:
-        """Return the curvature (m,), 1/length, at arc lengths `s` (m,), positive where it turns left."""
-        i, t = self._locate(s)
-        d = self._derivative(i, t)
-        _, _, c, e = self._cubic
-        bend = 2 * c[i] + 6 * t[..., None] * e[i]
-        return np.asarray((d[..., 0] * bend[..., 1] - d[..., 1] * bend[..., 0]) / _norm(d) ** 3)
+        return np.asarray(d / np.hypot(d[:, 0], d[:, 1])[:, None])
 
     def polyline(self, places: Floats) -> Floats:
         """Return points on the curve at `places`, 0 to below 1, of each interval, and an open one's end."""
@@ -155,16 +133,11 @@ def _checked(points: Floats, closed: bool) -> Floats:
         nodes = nodes[:-1]
     least = 3 if closed else 2
     if len(nodes) < least:
-        raise InputError(
-            f"{len(nodes)} points make no {'closed ' if closed else ''}curve", f"give at least {least}"
-        )
+        kind = "closed curve" if closed else "curve"
+        raise InputError(f"{len(nodes)} points make no {kind}", f"give at least {least}")
     step = np.diff(nodes, axis=0, append=nodes[:1]) if closed else np.diff(nodes, axis=0)
     same = np.flatnonzero((step == 0).all(axis=1))
     if same.size:
         x, y = nodes[same[0]]
         raise InputError(f"curve point {same[0]} and the next are the same, ({x:.6g}, {y:.6g})", "remove one")
     return nodes
-
-
-def _norm(d: Floats) -> Floats:
-    return np.asarray(np.hypot(d[..., 0], d[..., 1]))

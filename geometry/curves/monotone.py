@@ -23,11 +23,6 @@ def monotone_cubic(x: Floats, y: Floats, at: Floats) -> Floats:
     """Return the monotone cubic through (x, y), both (n,) and increasing, at `at` (m,) within them.
 
     The slopes at the ends are those of parabolas through three points, limited.
-
-    Examples
-    --------
-    >>> monotone_cubic(np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 2.0]), np.array([0.5, 2.0])).tolist()
-    [0.5, 2.0]
     """
     h, delta = np.diff(x), np.diff(y) / np.diff(x)
     slope = np.full(len(x), delta[0])

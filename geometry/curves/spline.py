@@ -1,5 +1,10 @@
 """Tangents of a spline through points: twice continuous where the points allow, limited where they do not.
 
+A cubic spline overshoots next to a short interval or an unmarked kink: there the tangent at a point is kept
+between the directions of the chords before and after it. Where two points close together make a step, turning
+one way and back, even such a tangent makes a wide bulge in the long interval beside them: there it is kept
+near the long chord.
+
 Slopes are derivatives by chord length, so that they are near 1 in size; every interval has one at its start
 and one at its end, which differ from the neighbours' at corners only.
 """
@@ -9,22 +14,22 @@ from __future__ import annotations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, distinct
-from meshonet.geometry.curves.limiter import limited
-from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.polygon.corners import Indices, angle_between, turning
 from meshonet.kernels._native import solve_tridiagonal
+
+SLACK = 0.25
+"""How far a tangent may leave the angle between its two chords, as a part of the turns around it."""
+LEAST_SLACK = np.radians(0.5)
+LONGEST = 2.0
+"""Largest size of a slope: a longer one makes a loop or a cusp."""
 
 
 def spline_slopes(points: Floats, *, closed: bool, corners: Indices) -> tuple[Floats, Floats]:
     """Return the slopes (intervals, 2) at the start and at the end of each interval.
 
-    Between corners the curve is the cubic spline whose tangent and curvature are continuous, with a
-    parabola in the intervals next to a corner. `meshonet.geometry.curves.limiter` then removes overshoots.
-
-    Parameters
-    ----------
-    points : (n, 2), neighbours distinct; a closed curve does not repeat its first.
-    closed : there is an interval from the last point to the first.
-    corners : indices of the points where the tangent may jump.
+    Between `corners`, indices of points (n, 2), the curve is the cubic spline whose tangent and curvature are
+    continuous, with a parabola in the intervals next to a corner; overshoots are then removed (`limited`). A
+    closed curve does not repeat its first point.
     """
     if closed and corners.size == 0:
         slope = _periodic(points)
@@ -85,3 +90,90 @@ def _periodic(points: Floats) -> Floats:
     v = up / pivot
     factor = (right[0, :2] + v * right[-1, :2]) / (1 + right[0, 2] + v * right[-1, 2])
     return np.asarray(right[:, :2] - right[:, 2:] * factor)
+
+
+def limited(
+    points: Floats, start: Floats, stop: Floats, *, closed: bool, corners: Indices
+) -> tuple[Floats, Floats]:
+    """Return slopes (intervals, 2) at the start and at the end of each interval, within their limits.
+
+    Beside a corner, one of the points (n, 2) where the tangent may jump, there is one chord only: the tangent
+    may turn from it by as much as the polygon does at the other end of the interval.
+    """
+    n = len(points)
+    chord = np.roll(points, -1, axis=0) - points  # an open curve's last is not used
+    turn = turning(points, closed=closed)
+    free = np.ones(n, dtype=bool)
+    free[corners] = False
+    if not closed:
+        free[[0, -1]] = False
+    turn[~free] = 0.0
+    low, high, slack = _ranges(turn, np.hypot(chord[:, 0], chord[:, 1]))
+    behind, ahead = np.roll(turn, 1), np.roll(turn, -1)
+    to_stop = (
+        np.where(free, low, np.minimum(behind, 0) - slack),
+        np.where(free, high, np.maximum(behind, 0) + slack),
+    )
+    to_start = (
+        np.where(free, low - turn, -np.maximum(ahead, 0) - slack),
+        np.where(free, high - turn, -np.minimum(ahead, 0) + slack),
+    )
+    k = np.arange(len(start))
+    start = _turned(start, chord[k], to_start[0][k], to_start[1][k])
+    stop = _turned(stop, chord[k], to_stop[0][(k + 1) % n], to_stop[1][(k + 1) % n])
+    inner = corners if closed else corners[(corners > 0) & (corners < n - 1)]
+    return _edges_kept_open(start, stop, chord, inner)
+
+
+def _ranges(turn: Floats, length: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return least and largest angle (n,) of the tangents from the chords before their points, and the slack.
+
+    Between the two chords, give or take the slack. Where one of the intervals is a step, its ends turning
+    opposite ways, the tangent leaves the other, outer chord by less the shorter the step is beside it.
+    """
+    step_after = turn * np.roll(turn, -1) < 0
+    step_before = np.roll(step_after, 1)
+    before = np.roll(length, 1)
+    short = np.where(step_after, length, before)
+    weight = np.where(step_after != step_before, np.minimum(1.0, 2 * short / (length + before)), 1.0)
+    reach = turn * weight
+    size = np.abs(reach)
+    slack = SLACK * np.maximum(size, np.maximum(np.roll(size, 1), np.roll(size, -1))) + LEAST_SLACK
+    near_after = step_before & ~step_after  # near the chord after the point: from turn - reach to turn
+    low = np.where(near_after, turn - np.maximum(reach, 0), np.minimum(reach, 0)) - slack
+    high = np.where(near_after, turn - np.minimum(reach, 0), np.maximum(reach, 0)) + slack
+    return low, high, slack
+
+
+def _edges_kept_open(start: Floats, stop: Floats, chord: Floats, corners: Indices) -> tuple[Floats, Floats]:
+    """Return slopes that follow the chords at sharp edges where the two sides would otherwise cross.
+
+    Behind a corner of more than 120 degrees lies a wedge; the tangents are to leave at least a quarter of
+    the angle that the chords enclose.
+    """
+    before, after = chord[corners - 1], chord[corners]
+    angle, kept = angle_between(before, after), angle_between(stop[corners - 1], start[corners])
+    open_by = np.where(np.sign(kept) == np.sign(angle), np.pi - np.abs(kept), np.abs(kept) - np.pi)
+    closed_up = (np.abs(angle) > np.radians(120.0)) & (open_by < 0.25 * (np.pi - np.abs(angle)))
+    if not closed_up.any():
+        return start, stop
+    start, stop, at = start.copy(), stop.copy(), corners[closed_up]
+    start[at] = chord[at] / np.hypot(chord[at, 0], chord[at, 1])[:, None]
+    stop[at - 1] = chord[at - 1] / np.hypot(chord[at - 1, 0], chord[at - 1, 1])[:, None]
+    return start, stop
+
+
+def _turned(slope: Floats, chord: Floats, least: Floats, most: Floats) -> Floats:
+    """Return slopes (n, 2), angles from the chord within `least` and `most`, no longer than `LONGEST`."""
+    angle = angle_between(chord, slope)
+    size = np.hypot(slope[:, 0], slope[:, 1])
+    wrong = np.flatnonzero((angle < least) | (angle > most) | (size > LONGEST))
+    if wrong.size == 0:
+        return slope
+    out = slope.copy()
+    unit = chord[wrong] / np.hypot(chord[wrong, 0], chord[wrong, 1])[:, None]
+    a = np.clip(angle[wrong], least[wrong], most[wrong])
+    length = np.minimum(size[wrong], LONGEST)
+    out[wrong, 0] = length * (unit[:, 0] * np.cos(a) - unit[:, 1] * np.sin(a))
+    out[wrong, 1] = length * (unit[:, 0] * np.sin(a) + unit[:, 1] * np.cos(a))
+    return out

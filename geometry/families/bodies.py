@@ -13,7 +13,6 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.families.edges import arc_lengths, as_nodes, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.far_field import straight
 from meshonet.geometry.spacing.along_curve import on_corners
@@ -208,3 +207,18 @@ def _even_steps(z: Complexes) -> Complexes:
     closed = np.append(z, z[0])
     length = arc_lengths(closed)
     return at_lengths(closed, length, np.linspace(0.0, length[-1], FINE, endpoint=False))
+
+
+def arc_lengths(z: Complexes) -> Floats:
+    """Return the arc length (n,) at each point of a polygon (n,), from 0."""
+    return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(z)))])
+
+
+def at_lengths(z: Complexes, length: Floats, at: Floats) -> Complexes:
+    """Return points (m,) of a polygon (n,), whose points lie at `length`, at arc lengths `at` (m,)."""
+    return np.interp(at, length, z.real) + 1j * np.interp(at, length, z.imag)
+
+
+def as_nodes(z: Complexes) -> Floats:
+    """Return (n, 2) nodes for complex ones (n,)."""
+    return np.stack([z.real, z.imag], axis=-1)

@@ -10,7 +10,7 @@ from importlib import import_module
 import numpy as np
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.grid import Origin
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.family import FAMILIES, Family, family
 from meshonet.geometry.families.split import split
@@ -25,19 +25,11 @@ RANDOM = {"procedural": "procedural", "four-sided": "four_sided", "bodies": "bod
 
 @dataclass(frozen=True)
 class Draw:
-    """One member of a family, not made yet.
-
-    Parameters
-    ----------
-    kind : name of the family.
-    family : one of the paper's six, or None for random shapes.
-    low, high : range of the parameter.
-    seed, index : make the random numbers of this member, whichever others are drawn.
-    split : what it is kept for.
-    """
+    """One member of a family, not made yet; `seed` and `index` alone make its random numbers."""
 
     kind: str
     family: Family | None
+    """One of the paper's six, or None for random shapes."""
     low: float
     high: float
     seed: int
@@ -71,16 +63,11 @@ def draws(
 ) -> list[Draw]:
     """Return `count` members of the family `name`, whose boundaries are not made yet.
 
-    Parameters
-    ----------
-    spread : ``A:B``, the range of the parameter, or None for that of the family.
-    seed : of all random numbers.
-    way : how members are split into those to train on and those to test on, or None for neither.
+    `spread` is ``A:B``, the range of the parameter, or None for that of the family, `seed` that of all random
+    numbers, `way` how members are split into those to train on and those to test on, or None for neither.
 
-    Raises
-    ------
-    InputError
-        no such family, a range that is none or leaves the family's, members that cannot be split.
+    Raises InputError: no such family, a range that is none or leaves the family's, members that cannot be
+    split.
     """
     if name not in (*FAMILIES, *RANDOM):
         known = "use one of " + ", ".join((*FAMILIES, *RANDOM))
@@ -120,7 +107,6 @@ def _range(text: str | None, kind: Family | None) -> tuple[float, float]:
         raise InputError(f"{text!r} is not a range", "use A:B with A <= B, e.g. 0.1:0.3", parameter="range")
     if not kind.least <= low <= high <= kind.most:
         bounds = f"{kind.least:g}:{kind.most:g}"
-        raise InputError(
-            f"{text} leaves what {kind.parameter} can be", f"stay in {bounds}", parameter="range"
-        )
+        problem = f"{text} leaves what {kind.parameter} can be"
+        raise InputError(problem, f"stay in {bounds}", parameter="range")
     return low, high

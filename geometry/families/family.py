@@ -1,73 +1,191 @@
-"""What a family is, and the list of them."""
+"""The paper's six families of shapes, each varied by one number.
+
+A new one is a function and its row in `FAMILIES`; corners of the shapes lie on nodes.
+"""
 
 from __future__ import annotations
 
-import importlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from meshonet.geometry.arrays import Topology
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.far_field import far_circle, straight
+from meshonet.geometry.spacing.along_curve import on_corners
 
-FAMILIES = ("arch", "hexagon", "wrench", "semicircle", "airfoil", "hole")
-"""Names of the families, each a module of this folder that ends in its `FAMILY`."""
+Corners = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
 class Family:
-    """A shape that one number varies.
-
-    Parameters
-    ----------
-    name : of the family.
-    parameter : what the number is, with its unit.
-    low, high : the range it is drawn from when none is given.
-    least, most : outside these there is no such shape.
-    topology : of the boundaries.
-    make : parameter, ni, nj to a boundary.
-    to_low : extrapolation goes from high values of the parameter to low ones.
-    """
+    """A shape that one number varies, drawn from `low` to `high` unless said otherwise."""
 
     name: str
     parameter: str
+    """What the number is, with its unit."""
     low: float
     high: float
     least: float
     most: float
+    """Outside these two there is no such shape."""
     topology: Topology
     make: Callable[[float, int, int], Boundary]
+    """Parameter, ni, nj to a boundary."""
     to_low: bool = False
+    """Extrapolation goes from high values of the parameter to low ones."""
 
     def boundary(self, parameter: float, ni: int, nj: int) -> Boundary:
         """Return the member at `parameter` with ni by nj nodes, called after both.
 
-        Raises
-        ------
-        InputError
-            the parameter is out of `least` to `most`, or the nodes are too few for the corners.
+        Raises InputError: the parameter is out of `least` to `most`, or too few nodes for the corners.
         """
         if not self.least <= parameter <= self.most:
-            raise InputError(
-                f"{self.name} with {self.parameter} {parameter:g}", f"use {self.least:g} to {self.most:g}"
-            )
+            what = f"{self.name} with {self.parameter} {parameter:g}"
+            raise InputError(what, f"use {self.least:g} to {self.most:g}")
         return self.make(parameter, ni, nj)
 
 
 def family(name: str) -> Family:
-    """Return the family of a name.
+    """Return the family of a name, or raise InputError.
 
-    Raises
-    ------
-    InputError
-        no such family.
-
-    Examples
-    --------
     >>> family("arch").boundary(0.25, 41, 21).north[20].tolist()
     [0.5, 1.25]
     """
     if name not in FAMILIES:
         raise InputError(f"family {name!r} is not known", "use one of " + ", ".join(FAMILIES))
-    member: Family = importlib.import_module(f"meshonet.geometry.families.{name}").FAMILY
-    return member
+    return FAMILIES[name]
+
+
+def polyline(corners: Corners, n: int, like: Corners | None = None) -> Floats:
+    """Return n nodes (n, 2) along straight pieces, in nearly equal steps, every corner bitwise a node.
+
+    With `like`, as many corners, each lies on the node where that polyline has it.
+
+    >>> polyline([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)], 5).tolist()
+    [[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]]
+    """
+    points = np.array(corners, dtype=np.float64)
+    pieces = np.diff(points if like is None else np.array(like), axis=0)
+    knots = np.concatenate([[0.0], np.cumsum(np.hypot(*pieces.T))])
+    s = on_corners(np.linspace(0.0, knots[-1], n), knots[1:-1])
+    nodes = np.stack([np.interp(s, knots, points[:, 0]), np.interp(s, knots, points[:, 1])], axis=1)
+    nodes[np.searchsorted(s, knots)] = points
+    return nodes
+
+
+def arch(height: float, ni: int, nj: int) -> Boundary:
+    """Case 1: return the unit square under an arch, y = 1 + h sin(pi x); a negative height hangs down.
+
+    Nodes at equal steps of x on top and bottom.
+    """
+    x = np.linspace(0.0, 1.0, ni)
+    top = np.stack([x, 1.0 + height * np.sin(np.pi * x)], axis=1)
+    top[-1] = 1.0, 1.0
+    return _upright(polyline([(0.0, 0.0), (1.0, 0.0)], ni), top, nj, f"arch-{height:.6g}")
+
+
+def hexagon(angle: float, ni: int, nj: int) -> Boundary:
+    """Case 2: return a hexagon whose top and bottom are kinked, both by `angle` degrees.
+
+    ::
+
+          .^.           the angle is that inside the kinks at (1/2, 1 + h) and (1/2, -h): 90 degrees
+        .'   '.         where h = 1/2, 180 where it is a square, more where the kinks point inwards
+       |       |
+        '.   .'
+          'v'
+    """
+    h = 0.5 / math.tan(math.radians(0.5 * angle))
+    south = polyline([(0.0, 0.0), (0.5, -h), (1.0, 0.0)], ni)
+    north = polyline([(0.0, 1.0), (0.5, 1.0 + h), (1.0, 1.0)], ni)
+    return _upright(south, north, nj, f"hexagon-{angle:.6g}")
+
+
+def wrench(opening: float, ni: int, nj: int) -> Boundary:
+    """Case 3: return a wrench, a unit square with a jaw in its top.
+
+    ::
+
+             .          .         the opening w is the width of the jaw, centred at x = 1/2, from y = 1 to
+             0.6;
+           .' |        | '.       its lips stand 0.05 outside it at y = 1.15
+         .'   |   w    |   '.
+        |     |________|     |    those at the bottom of the jaw turn by 270 degrees inside the domain, where
+        '--------------------'    elliptic grids fold
+
+    The kinks lie on the same nodes whatever the opening, those of nearly equal steps at 0.3: the boundary's
+    nodes move smoothly with it, and what is learnt from some openings holds for those between.
+    """
+    south, north = polyline([(0.0, 0.0), (1.0, 0.0)], ni), polyline(_jaw(opening), ni, like=_jaw(0.3))
+    return _upright(south, north, nj, f"wrench-{opening:.6g}")
+
+
+def _jaw(opening: float) -> Corners:
+    a, b = 0.5 - 0.5 * opening, 0.5 + 0.5 * opening
+    return [
+        (0.0, 1.0), (a - 0.05, 1.15), (a, 1.0), (a, 0.6), (b, 0.6), (b, 1.0), (b + 0.05, 1.15), (1.0, 1.0),
+    ]  # fmt: skip
+
+
+def semicircle(centre: float, ni: int, nj: int) -> Boundary:
+    """Case 4: return a channel, 2 by 1, with a semicircle of radius 0.2 on its floor at x = `centre`."""
+    radius, length = 0.2, 2.0
+    first, arc = centre - radius, np.pi * radius
+    whole = length - 2 * radius + arc
+    s = on_corners(np.linspace(0.0, whole, ni), np.array([first, first + arc]))
+    angle = np.clip((s - first) / radius, 0.0, np.pi)
+    behind = s >= first + arc
+    x = np.where(s <= first, s, np.where(behind, s - whole + length, centre - radius * np.cos(angle)))
+    y = np.where((s > first) & (s < first + arc), radius * np.sin(angle), 0.0)
+    south = np.stack([x, y], axis=1)
+    south[0], south[-1] = (0.0, 0.0), (length, 0.0)
+    return _upright(south, polyline([(0.0, 1.0), (length, 1.0)], ni), nj, f"semicircle-{centre:.6g}")
+
+
+def airfoil(ratio: float, ni: int, nj: int) -> Boundary:
+    """Case 5: return NACA 00xx, `ratio` chords thick, its edge closed, in a circle of 15 chords."""
+    # only here: the other families do not need them
+    from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+    from meshonet.geometry.shapes.airfoil.naca import POINTS, thickness
+    from meshonet.geometry.spacing.sampling import Sampling
+
+    x = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, POINTS))
+    half = thickness(x, ratio, sharp=True)
+    upper, lower = np.stack([x, half], axis=1), np.stack([x, -half], axis=1)
+    section = Airfoil(np.concatenate([upper[::-1], lower[1:]]), f"airfoil-{ratio:.6g}")
+    return section.boundary(Sampling(ni=ni, nj=nj))
+
+
+def hole(height: float, ni: int, nj: int) -> Boundary:
+    """Case 6: return a plate, 2 by 2 around (0, 0), with a round hole of radius 0.35 at y = `height`.
+
+    Clockwise from the hole's rightmost place.
+    """
+    ring = far_circle(np.array([0.0, height]), 0.35, ni, 0.0)
+    plate = polyline([(1.0, height), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, height)], ni)
+    cut = straight(ring[0], plate[0], nj)
+    return Boundary(ring, plate, cut, cut, topology="o", name=f"hole-{height:.6g}")
+
+
+def _upright(south: Floats, north: Floats, nj: int, name: str) -> Boundary:
+    """Return the boundary between bottom and top whose sides stand straight up."""
+    west, east = (polyline([tuple(south[k]), tuple(north[k])], nj) for k in (0, -1))
+    return Boundary(south, north, west, east, name=name)
+
+
+_KINKS = "angle of the kinks in degrees"
+FAMILIES: dict[str, Family] = {
+    member.name: member
+    for member in (
+        Family("arch", "height of the arch", -0.1, 0.4, -0.7, 2.0, "quad", arch),
+        Family("hexagon", _KINKS, 90.0, 150.0, 45.0, 260.0, "quad", hexagon, to_low=True),
+        Family("wrench", "opening of the jaw", 0.15, 0.45, 0.02, 0.85, "quad", wrench, to_low=True),
+        Family("semicircle", "x of the centre", 0.7, 1.3, 0.25, 1.75, "quad", semicircle),
+        Family("airfoil", "thickness in chords", 0.06, 0.24, 0.01, 0.6, "o", airfoil),
+        Family("hole", "y of the centre", -0.4, 0.4, -0.6, 0.6, "o", hole),
+    )
+}

@@ -13,7 +13,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.families.edges import arc_lengths, as_nodes, at_lengths
+from meshonet.geometry.families.bodies import arc_lengths, as_nodes, at_lengths
 from meshonet.geometry.polygon.self_intersection import find_crossing
 
 FINE = 601

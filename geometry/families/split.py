@@ -27,25 +27,13 @@ SHARE = 1 / 6
 def split(
     parameters: Sequence[float], way: str, *, seed: int = 0, share: float = SHARE, low: bool = False
 ) -> tuple[str, ...]:
-    """Return ``train`` or ``test`` for each member.
+    """Return ``train`` or ``test`` for each member, by its parameter, in one of `WAYS`.
 
-    Parameters
-    ----------
-    parameters : of the members.
-    way : one of `WAYS`.
-    seed : of ``random``.
-    share : of the members that are tested; at least one is, and at least two are trained on.
-    low : extrapolate to low values of the parameter.
+    Of the `share` that are tested at least one is, and at least two are trained on. `low` extrapolates to low
+    values of the parameter.
 
-    Raises
-    ------
-    InputError
-        an unknown way, fewer than three members, or all with the same parameter.
+    Raises InputError: an unknown way, fewer than three members, or all with the same parameter.
 
-    Examples
-    --------
-    >>> split([0.3, 0.1, 0.2], "interpolation")
-    ('train', 'train', 'test')
     >>> split([0.3, 0.1, 0.2], "extrapolation")
     ('test', 'train', 'train')
     """
@@ -64,5 +52,4 @@ def split(
         tested = order[first : first + count]
     else:
         tested = order[:count] if low else order[n - count :]
-    chosen = set(tested.tolist())
-    return tuple("test" if k in chosen else "train" for k in range(n))
+    return tuple("test" if k in tested else "train" for k in range(n))

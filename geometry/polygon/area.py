@@ -9,8 +9,6 @@ from meshonet.geometry.errors import InputError
 def polygon_area(points: Floats) -> float:
     """Return the signed area of a closed polygon (n, 2), positive when counter-clockwise.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> polygon_area(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]))
     2.0

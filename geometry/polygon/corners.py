@@ -35,11 +35,6 @@ def turning(points: Floats, *, closed: bool = False) -> Floats:
     """Return the angle (n,) in radians by which a polygon (n, 2) turns at each point.
 
     Left is positive; the ends of an open polygon turn by 0.
-
-    Examples
-    --------
-    >>> np.degrees(turning(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))).tolist()
-    [0.0, 90.0, 0.0]
     """
     ring = np.concatenate([points[-1:], points, points[:1]]) if closed else points
     step = ring[1:] - ring[:-1]
@@ -54,18 +49,8 @@ def find_corners(points: Floats, *, closed: bool = False, few: int = FEW) -> Ind
     as each of them, or more than `SHARP` and twice as much, or more than `ALWAYS`; or two side by side more
     than `SHARP` and five times as much as the points beyond them. Left out is the round end of a thin body
     given by few points, which turns by up to 155 degrees at one of them: there the thickness grows like the
-    square root of the distance, at an edge like the distance (`growth_exponent`).
-
-    Parameters
-    ----------
-    points : (n, 2), neighbours distinct.
-    closed : the last point is joined to the first.
-    few : a closed polygon of at most so many points is taken for one, not for samples of a round body.
-
-    Examples
-    --------
-    >>> find_corners(np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).tolist()
-    [1]
+    square root of the distance, at an edge like the distance (`growth_exponent`). A closed polygon of at most
+    `few` points (n, 2) is taken for one, not for samples of a round body.
     """
     angle = np.abs(turning(points, closed=closed))
     if not angle.max() > KINK:

@@ -31,8 +31,6 @@ class Crossing:
 def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
     """Return the first place where a polygon (n, 2) crosses or touches itself, or None when it is simple.
 
-    Examples
-    --------
     >>> find_crossing(np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]))
     Crossing(first=0, second=2, x=0.5, y=0.5)
     """
@@ -41,12 +39,7 @@ def find_crossing(points: Floats, *, closed: bool = True) -> Crossing | None:
 
 
 def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
-    """Raise InputError when a closed polygon (n, 2) crosses itself, with the place.
-
-    Parameters
-    ----------
-    places : (n,) where each point stands in its source, for the message.
-    """
+    """Raise InputError when a closed polygon (n, 2), its points at `places` of a source, crosses itself."""
     crossing = find_crossing(points)
     if crossing is not None:
         first, second = (
@@ -62,15 +55,9 @@ def check_outline(points: Floats, places: Sequence[str] = ()) -> None:
 def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> list[Crossing]:
     """Return places where segments of a polygon (n, 2) that are not neighbours meet, `limit` at the most.
 
-    A segment that runs back along its neighbour counts too. The segments are sorted along a
-    direction and only those that overlap along it are compared, so that a body of n segments takes about n
-    comparisons; a shape made to defeat this is searched with shapely's tree.
-
-    Parameters
-    ----------
-    points : (n, 2), neighbours distinct; a closed polygon does not repeat its first point.
-    closed : a segment joins the last point to the first.
-    limit : enough to know about.
+    A segment that runs back along its neighbour counts too; a closed polygon does not repeat its first point.
+    The segments are sorted along a direction and only those that overlap along it are compared, about n
+    comparisons for a body; a shape made to defeat this is searched with shapely's tree.
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]

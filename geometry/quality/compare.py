@@ -16,40 +16,24 @@ NEAR = 0.1
 
 @dataclass(frozen=True)
 class Difference:
-    """Distances between the nodes of two grids.
-
-    Parameters
-    ----------
-    max, mean : greatest and mean distance, in the grids' unit of length.
-    at : node (i, j) of the greatest.
-    relative_l2 : root of the mean squared distance over that of the other grid's coordinates, taken from
-        the mean of its nodes so that it does not depend on where the origin is.
-    near_wall : the same with the distances of the rows next to the wall only, the tenth of all rows from
-        j = 0 on.
-    boundary : greatest distance on the four sides; on the two walls of O grids.
-    """
+    """Distances between the nodes of two grids, in their unit of length."""
 
     max: float
     mean: float
     at: tuple[int, int]
+    """Node (i, j) of the greatest."""
     relative_l2: float
+    """Root of the mean squared distance over that of the reference's nodes from their mean."""
     near_wall: float
+    """The same with the distances in the tenth of all rows from j = 0 on."""
     boundary: float
+    """Greatest distance on the four sides; on the two walls of O grids."""
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:
-    """Return how far the nodes of `grid` are from those of `other`.
+    """Return how far the nodes of `grid` are from those of `reference`.
 
-    Raises
-    ------
-    InputError
-        their node counts differ.
-
-    Examples
-    --------
-    >>> square = np.stack(np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij"), axis=-1)
-    >>> compare(Grid.from_nodes(square + [3.0, 4.0]), Grid.from_nodes(square)).max
-    5.0
+    Raises InputError: their node counts differ.
     """
     if grid.nodes.shape != reference.nodes.shape:
         counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {reference.ni}x{reference.nj}"

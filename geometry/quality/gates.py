@@ -12,7 +12,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import Quality
 from meshonet.geometry.quality.metrics import NAMES
 
-_COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
+COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 NO_MORE: Mapping[str, float] = MappingProxyType({})
 _STATISTICS = ("min", "mean", "max", "p01", "p99")
 _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASCII)
@@ -20,23 +20,16 @@ _GATE = re.compile(r"\s*(\w+)(?:\.(\w+))?\s*(>=|<=|>|<)\s*([-+.\w]+)\s*", re.ASC
 
 @dataclass(frozen=True)
 class Gate:
-    """A condition that a grid must not fulfil: ``METRIC[.STATISTIC] OPERATOR VALUE``.
-
-    Parameters
-    ----------
-    text : as the user wrote it.
-    metric : a metric of `meshonet.geometry.quality.metrics`, ``folded``, the count of folded cells, or a
-        figure measured beside them.
-    statistic : min, mean, max, p01 or p99 of the metric over all cells.
-    compare : ``>``, ``>=``, ``<`` or ``<=``.
-    limit : in the metric's unit.
-    """
+    """A condition that a grid must not fulfil, from a user's ``METRIC[.STATISTIC] OPERATOR VALUE``."""
 
     text: str
     metric: str
+    """Of `meshonet.geometry.quality.metrics`, ``folded`` for folded cells, or a figure beside them."""
     statistic: str
+    """Of the metric over all cells: min, mean, max, p01 or p99."""
     compare: str
     limit: float
+    """In the metric's unit."""
 
     def broken(self, quality: Quality, more: Mapping[str, float] = NO_MORE) -> str | None:
         """Return a line for the user when `quality`, or a figure of `more`, fulfils it, else None."""
@@ -45,7 +38,7 @@ class Gate:
             value = getattr(quality[self.metric], self.statistic)
         else:
             value = quality.folded if self.metric == "folded" else more[self.metric]
-        if not _COMPARE[self.compare](value, self.limit):
+        if not COMPARE[self.compare](value, self.limit):
             return None
         what = f"{self.metric}.{self.statistic}" if has_statistics else self.metric
         return f"{what} is {value:.6g}, and {{fail_on}} '{self.text}'"
@@ -56,13 +49,8 @@ def parse_gate(text: str, more: Sequence[str] = ()) -> Gate:
 
     Without a statistic, ``>`` looks at the greatest cell and ``<`` at the least.
 
-    Raises
-    ------
-    InputError
-        `text` is no gate, or names an unknown metric or statistic.
+    Raises InputError: `text` is no gate, or names an unknown metric or statistic.
 
-    Examples
-    --------
     >>> parse_gate("max_angle > 170").statistic, parse_gate("scaled_jacobian.p01<0.2").statistic
     ('max', 'p01')
     """

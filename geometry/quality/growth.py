@@ -61,14 +61,7 @@ class Tally:
 
 
 def growth(grid: Grid) -> Growth:
-    """Return the growth of the steps of `grid` along xi and eta.
-
-    Examples
-    --------
-    >>> x, y = np.meshgrid([0.0, 1.0, 3.0, 5.0], [0.0, 1.0], indexing="ij")
-    >>> growth(Grid.from_nodes(np.stack([x, y], axis=-1)))
-    Growth(xi=Extreme(max=2.0, mean=1.5, at=(1, 0)), eta=None)
-    """
+    """Return the growth of the steps of `grid` along xi and eta."""
     xi, eta = Tally(), Tally()
     for i, block in strips(beyond_seam(grid), 2):
         xi.add(i + 1, 0, _ratios(block))

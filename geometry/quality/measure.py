@@ -15,7 +15,7 @@ from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
 from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
-from meshonet.geometry.quality.percentiles import Run, no_run, prepared
+from meshonet.geometry.quality.percentiles import no_run, prepared
 from meshonet.kernels import _native
 
 PERCENTS = (1.0, 99.0)
@@ -25,19 +25,13 @@ FEW = 1 << 18
 
 @dataclass(frozen=True)
 class Summary:
-    """One metric over all cells.
-
-    Parameters
-    ----------
-    min, mean, max : over all cells.
-    worst : the cell (i, j) with the worst value, the first of them.
-    p01, p99 : 1st and 99th percentile, None when they were not asked for.
-    """
+    """One metric over all cells; its percentiles, when they were asked for."""
 
     min: float
     mean: float
     max: float
     worst: tuple[int, int]
+    """The cell (i, j) with the worst value, the first of them."""
     p01: float | None = None
     p99: float | None = None
 
@@ -54,17 +48,16 @@ class Quality:
         """Return the summary of one metric."""
         return self.metrics[name]
 
+    def __str__(self) -> str:
+        head = f"{self.cells} cells, {self.folded} folded\n{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"
+        rows = [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
+        return "\n".join([head, *rows])
+
 
 def count_folded(nodes: Floats) -> int:
     """Return how many cells of `nodes` (ni, nj, 2) are folded.
 
     Fastest, and free of copies, in the planar layout of `meshonet.geometry.arrays`.
-
-    Examples
-    --------
-    >>> square = np.stack(np.meshgrid([0.0, 1.0, 2.0], [0.0, 1.0], indexing="ij"), axis=-1)
-    >>> count_folded(square), count_folded(square[::-1])
-    (0, 2)
     """
     return _native.count_folded(*_planes(nodes))
 
@@ -84,28 +77,24 @@ def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
     before = np.roll(edges, 1, axis=0)
     jacobian = before[..., 0] * edges[..., 1] - before[..., 1] * edges[..., 0]
     lengths = np.hypot(*np.moveaxis(edges, -1, 0)) * np.hypot(*np.moveaxis(before, -1, 0))
-    scaled = np.divide(jacobian, lengths, out=np.zeros_like(jacobian), where=lengths > 0).min(
-        axis=0, initial=1.0
-    )
+    scaled = np.divide(jacobian, lengths, out=np.zeros_like(jacobian), where=lengths > 0)
+    scaled = scaled.min(axis=0, initial=1.0)
     centre = points.mean(axis=0)
     order = np.argsort(scaled, kind="stable")[:limit]
     return [BadCell(int(i[k]), int(j[k]), float(centre[k, 0]), float(centre[k, 1])) for k in order]
 
 
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of `grid`.
+    """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
 
-    Parameters
-    ----------
-    grid : any topology; neighbours across the seam of ``o`` and the wake of ``c`` count.
-    percentiles : also find the 1st and 99th percentile of every metric, by linear interpolation between
-        cells. They take about a third of the time of the rest (`meshonet.geometry.quality.percentiles`).
+    The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take about a third
+    of the time of the rest (`meshonet.geometry.quality.percentiles`).
     """
     x, y = grid.x, grid.y
     cells = (grid.ni - 1) * (grid.nj - 1)
     run = prepared(x, y, PERCENTS) if percentiles and cells > FEW else no_run()
     values = np.empty((len(COMPILED) if percentiles and cells <= FEW else 0, grid.ni - 1, grid.nj - 1))
-    table, where = _run(grid, 0, values, run)
+    table, where = run.over(x, y, values, grid.periodic, grid.wake)
     metrics = {}
     for k, metric in enumerate(COMPILED):
         low, mean, high = (float(value) for value in table[k])
@@ -145,44 +134,21 @@ def widest_cell(nodes: Floats) -> tuple[int, int]:
 def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
     """Return min, mean, max of the cells' largest angles and the places of min and max, without a `Grid`."""
     x, y = _planes(nodes)
-    table, where = _summed(x, y, (False, 0), 0, np.empty((0, len(x) - 1, x.shape[1] - 1)), no_run())
+    table, where = no_run().over(x, y, np.empty((0, len(x) - 1, x.shape[1] - 1)))
     k = NAMES.index("max_angle")
     return table[k], where[k]
 
 
 def per_cell(grid: Grid, name: str) -> Floats:
-    """Return the metric `name` of every cell, (ni-1, nj-1).
-
-    Raises
-    ------
-    InputError
-        there is no such metric.
-    """
+    """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError when there is none."""
     if name not in NAMES:
         raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
     metric = METRICS[NAMES.index(name)]
     if metric.cells:
         return metric.cells(grid)
     cells = np.empty((1, grid.ni - 1, grid.nj - 1))
-    _run(grid, NAMES.index(name), cells, no_run())
+    no_run().over(grid.x, grid.y, cells, grid.periodic, grid.wake, NAMES.index(name))
     return np.asarray(cells[0])
-
-
-def _run(grid: Grid, first: int, values: Floats, run: Run) -> tuple[Floats, NDArray[np.int64]]:
-    """Run over all cells; return min, mean, max (metrics, 3) and the places of min and max (metrics, 2, 2).
-
-    `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
-    """
-    return _summed(grid.x, grid.y, (grid.periodic, grid.wake), first, values, run)
-
-
-def _summed(
-    x: Floats, y: Floats, joins: tuple[bool, int], first: int, values: Floats, run: Run
-) -> tuple[Floats, NDArray[np.int64]]:
-    """Return what `_run` does, for planes x and y; `joins` are whether they close and the cells of a wake."""
-    table, where = np.empty((len(COMPILED), 3)), np.empty((len(COMPILED), 2, 2), dtype=np.int64)
-    _native.measure_cells(x, y, *joins, table, where, first, values, run.brackets, run.counts, run.caught)
-    return table, where
 
 
 def _planes(nodes: Floats) -> Sequence[Floats]:

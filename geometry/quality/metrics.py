@@ -36,20 +36,14 @@ from meshonet.geometry.blocks.grid import Grid
 
 @dataclass(frozen=True)
 class Metric:
-    """A quality metric.
-
-    Parameters
-    ----------
-    name, unit, short : for reports.
-    worst : which of its ends is the bad one.
-    cells : gives its value (ni-1, nj-1) for every cell of a grid; None for those of the compiled kernel.
-    """
+    """A quality metric; `worst` says which of its ends is the bad one."""
 
     name: str
     unit: str
     worst: Literal["min", "max"]
     short: str
     cells: Callable[[Grid], Floats] | None = None
+    """Gives its value (ni-1, nj-1) for every cell of a grid; None for those of the compiled kernel."""
 
 
 # first those of the compiled kernel, in its order (kernels/geometry/cells.h), then those with a function

@@ -32,16 +32,24 @@ ROOM = 0.03
 class Run:
     """What one run over all cells needs beforehand and leaves behind, see `kernels.measure_cells`.
 
-    Parameters
-    ----------
-    brackets : (metrics, percentiles, 2).
-    counts : (metrics, percentiles, 4).
-    caught : (metrics, percentiles, room).
+    (metrics, percentiles, 2), (metrics, percentiles, 4) and (metrics, percentiles, room) numbers.
     """
 
     brackets: Floats
     counts: NDArray[np.int64]
     caught: Floats
+
+    def over(
+        self, x: Floats, y: Floats, values: Floats, periodic: bool = False, wake: int = 0, first: int = 0
+    ) -> tuple[Floats, NDArray[np.int64]]:
+        """Run over all cells; return min, mean, max (metrics, 3), and where min and max are (metrics, 2, 2).
+
+        `values` (n, ni-1, nj-1) is filled with n metrics from the `first` on.
+        """
+        table, where = np.empty((len(COMPILED), 3)), np.empty((len(COMPILED), 2, 2), dtype=np.int64)
+        tallies = self.brackets, self.counts, self.caught
+        measure_cells(x, y, periodic, wake, table, where, first, values, *tallies)
+        return table, where
 
     def percentile(self, metric: int, which: int, cells: int, percent: float) -> float | None:
         """Return percentile number `which` of a metric, None when the bracket does not hold it."""
@@ -97,9 +105,8 @@ def _sample(x: Floats, y: Floats) -> Floats:
     j, inside_j = _tiles(np.arange(TILES) * 0.6180339887498949 % 1.0, x.shape[1] - 1)
     tiles = (np.swapaxes(plane[i[:, :, None], j[:, None, :]], 0, 1) for plane in (x, y))
     u, v = (tile.reshape(i.shape[1], -1) for tile in tiles)
-    table, where, run = np.empty((n, 3)), np.empty((n, 2, 2), dtype=np.int64), no_run()
     values = np.empty((n, i.shape[1] - 1, u.shape[1] - 1))
-    measure_cells(u, v, False, 0, table, where, 0, values, run.brackets, run.counts, run.caught)
+    no_run().over(u, v, values)
     inside = np.zeros((TILES, i.shape[1] - 1, j.shape[1]), dtype=bool)
     # the last column of a tile joins it to the next one
     inside[..., :-1] = inside_i[:, :, None] & inside_j[:, None, :]
@@ -107,11 +114,10 @@ def _sample(x: Floats, y: Floats) -> Floats:
 
 
 def _tiles(t: NDArray[np.floating[Any]], cells: int) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-    """Return the nodes (tiles, size + 3) of tiles with a cell more to each side.
+    """Return the nodes (tiles, size + 3) of tiles with a cell more to each side, placed by t from 0 to 1.
 
-    They are placed by t (tiles,) from 0 to 1. Beyond the first and the last node the grid is mirrored, so
-    that cells there have neighbours of their own area. The second result (tiles, size + 2) says which cells
-    are in the tile and in the grid.
+    Beyond its ends the grid is mirrored, so that cells there have neighbours of their own area. The second
+    result (tiles, size + 2) says which cells are in the tile and in the grid.
     """
     size = min(TILE, cells)
     start = np.rint(t * (cells + size - 2)).astype(np.intp) - (size - 1)

@@ -17,7 +17,6 @@ the AIAA Drag Prediction Workshops.
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,6 +28,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh import Faces, faces
+from meshonet.geometry.quality.gates import COMPARE
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
 from meshonet.geometry.quality.measure import Quality
 from meshonet.geometry.quality.metrics import NAMES
@@ -36,7 +36,6 @@ from meshonet.geometry.quality.walls import WallRow, wall_row
 
 Level = Literal["warn", "fail"]
 Verdict = Literal["pass", "warn", "fail", "none"]
-_HOLDS = {">": operator.gt, ">=": operator.ge, "<": operator.lt}
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class Limit:
 
     def broken(self, value: float) -> bool:
         """Say whether `value` fulfils the condition; what is not a number does."""
-        return bool(_HOLDS[self.compare](value, self.value)) or value != value
+        return bool(COMPARE[self.compare](value, self.value)) or value != value
 
 
 @dataclass(frozen=True)
@@ -125,14 +124,7 @@ PROFILES: dict[str, tuple[Check, ...]] = {
 
 @dataclass(frozen=True, eq=False)
 class Figures:
-    """The figures of a grid by name, each group of them measured when it is first asked for.
-
-    Parameters
-    ----------
-    grid : what is measured.
-    quality : of it.
-    walls : its stretches of wall.
-    """
+    """The figures of a grid by name, each group of them measured when it is first asked for."""
 
     grid: Grid
     quality: Quality
@@ -173,11 +165,9 @@ class Figures:
 
     def _wall_growth(self) -> Extreme | None:
         sides = {patch.side for patch in self.walls}
-        along = [
-            self.growth.eta if sides & {"south", "north"} else None,
-            self.growth.xi if sides & {"west", "east"} else None,
-        ]
-        return max((extreme for extreme in along if extreme), key=lambda extreme: extreme.max, default=None)
+        families = (self.growth.eta, {"south", "north"}), (self.growth.xi, {"west", "east"})
+        leaving = [extreme for extreme, ends in families if extreme and sides & ends]
+        return max(leaving, key=lambda extreme: extreme.max, default=None)
 
     def _far_field(self) -> tuple[float, None] | None:
         if not self.grid.around_body or not self.walls:
@@ -190,23 +180,16 @@ class Figures:
 
 
 def profile_report(figures: Figures, profile: str) -> ProfileReport:
-    """Return the results of `profile`, one of `PROFILES`, for a grid.
-
-    Raises
-    ------
-    InputError
-        there is no such profile.
-    """
+    """Return the results of `profile` for a grid; raise InputError unless it is one of `PROFILES`."""
     if profile not in PROFILES:
         known = "use one of " + ", ".join(PROFILES)
         raise InputError(f"profile {profile!r} is not known", known, parameter="profile")
-    results = []
-    for check in PROFILES[profile]:
-        figure = figures.value(check.figure, low=check.limits[0].compare == "<")
-        if figure is None:
-            results.append(CheckResult(check, None, None, "none"))
-            continue
-        broken = [limit.level for limit in check.limits if limit.broken(figure[0])]
-        verdict: Verdict = "fail" if "fail" in broken else "warn" if broken else "pass"
-        results.append(CheckResult(check, *figure, verdict))
-    return ProfileReport(profile, tuple(results))
+    return ProfileReport(profile, tuple(_result(check, figures) for check in PROFILES[profile]))
+
+
+def _result(check: Check, figures: Figures) -> CheckResult:
+    figure = figures.value(check.figure, low=check.limits[0].compare == "<")
+    if figure is None:
+        return CheckResult(check, None, None, "none")
+    broken = [limit.level for limit in check.limits if limit.broken(figure[0])]
+    return CheckResult(check, *figure, "fail" if "fail" in broken else "warn" if broken else "pass")

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
@@ -14,27 +13,21 @@ from meshonet.geometry.quality.gates import Gate
 from meshonet.geometry.quality.growth import Extreme
 from meshonet.geometry.quality.measure import Quality, measure, worst_cells
 from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
+from meshonet.geometry.quality.walls import WallRow
 
 COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
 )  # fmt: skip
 """Figures of a comparison; gates may name them."""
-NO_FIGURES: Mapping[str, float] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far a grid is from a reference, and how its angles compare.
-
-    Parameters
-    ----------
-    difference : distances between the nodes.
-    folded : folded cells of the reference.
-    max_angle_ratio, mean_angle_ratio : angles of the grid over those of the reference.
-    """
+    """How far a grid is from a reference, and how its angles compare with its."""
 
     difference: Difference
     folded: int
+    """Folded cells of the reference."""
     max_angle_ratio: float
     mean_angle_ratio: float
 
@@ -47,28 +40,21 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class QualityReport:
-    """What was measured of a grid.
-
-    Parameters
-    ----------
-    grid : that was measured.
-    quality : every metric, with percentiles.
-    worst : folded cells, ten at the most.
-    figures : walls and growth.
-    profile : the verdicts of a profile, when one was named.
-    comparison : with a reference, when there was one.
-    """
+    """What was measured of a grid: with a profile and a reference, its verdicts and the comparison too."""
 
     grid: Grid
     quality: Quality
+    """Every metric, with percentiles."""
     worst: tuple[BadCell, ...]
+    """Folded cells, ten at the most."""
     figures: Figures
+    """Walls and growth."""
     profile: ProfileReport | None = None
     comparison: Comparison | None = None
 
     def broken(self, gates: Sequence[Gate]) -> list[str]:
         """Return a line for each gate, and each check of the profile, that is not met."""
-        compared = self.comparison.figures() if self.comparison else NO_FIGURES
+        compared = self.comparison.figures() if self.comparison else {}
         lines = [line for gate in gates if (line := gate.broken(self.quality, compared))]
         return lines + (self.profile.failures() if self.profile else [])
 
@@ -82,16 +68,7 @@ class QualityReport:
             "folded": self.quality.folded,
             "worst_cells": [vars(cell) for cell in self.worst],
             "quality": quality_dict(self.quality),
-            "walls": [
-                {
-                    "name": row.name,
-                    "side": row.side,
-                    "first_cell": vars(row.height),
-                    "off_square": vars(row.off_square),
-                    "equal_cells": row.equal_cells,
-                }
-                for row in self.figures.wall_rows
-            ],
+            "walls": [_wall(row) for row in self.figures.wall_rows],
         }
         if self.profile and growth:
             facts["growth"] = {"xi": _extreme(growth.xi), "eta": _extreme(growth.eta)}
@@ -104,17 +81,9 @@ class QualityReport:
 
 
 def quality_report(grid: Grid, profile: str | None = None, reference: Grid | None = None) -> QualityReport:
-    """Measure `grid`.
+    """Measure `grid`, judge it by a profile of `PROFILES` and compare it with a `reference` of the same size.
 
-    Parameters
-    ----------
-    profile : thresholds to judge by, one of `meshonet.geometry.quality.profiles.PROFILES`.
-    reference : grid of the same size to compare with.
-
-    Raises
-    ------
-    InputError
-        the reference has another size.
+    Raises InputError: no such profile, a reference of another size.
     """
     quality = measure(grid, percentiles=True)
     figures = Figures(grid, quality, grid.walls())
@@ -144,6 +113,11 @@ def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
     own, other = quality["max_angle"], measure(reference)
     angle = other["max_angle"]
     return Comparison(difference, other.folded, own.max / angle.max, own.mean / angle.mean)
+
+
+def _wall(row: WallRow) -> dict[str, Any]:
+    sizes = {"first_cell": vars(row.height), "off_square": vars(row.off_square)}
+    return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells}
 
 
 def _check(result: CheckResult) -> dict[str, Any]:

@@ -28,34 +28,20 @@ class Spread:
 
 @dataclass(frozen=True)
 class WallRow:
-    """The row of cells at one named stretch of wall.
-
-    Parameters
-    ----------
-    name, side : of the stretch.
-    height : distance from each wall node to the next node of the line that leaves it, in the grid's unit.
-    off_square : deviation from 90 degrees of the two angles of every cell at the wall.
-    equal_cells : how many cells from the wall on are as high as the first, within 1 %, at the node where they
-        are fewest; 32 at the most.
-    """
+    """The row of cells at one named stretch of wall."""
 
     name: str
     side: str
     height: Spread
+    """Distance from each wall node to the next node of the line that leaves it, in the grid's unit."""
     off_square: Spread
+    """Deviation from 90 degrees of the two angles of every cell at the wall."""
     equal_cells: int
+    """Cells from the wall on as high as the first, within 1 %, where they are fewest; 32 at the most."""
 
 
 def wall_row(grid: Grid, patch: Patch) -> WallRow:
-    """Return the figures of the cells at `patch` of the boundary of `grid`.
-
-    Examples
-    --------
-    >>> x, y = np.meshgrid([0.0, 1.0, 2.0], [0.0, 0.1, 0.2, 0.4], indexing="ij")
-    >>> row = wall_row(Grid.from_nodes(np.stack([x, y], axis=-1)), Patch("wall", "south", 0, 2))
-    >>> row.height.max, row.off_square.max, row.equal_cells
-    (0.1, 0.0, 2)
-    """
+    """Return the figures of the cells at `patch` of the boundary of `grid`."""
     lines = leaving(grid, patch)
     steps = np.diff(lines, axis=1)
     heights = np.hypot(steps[..., 0], steps[..., 1])

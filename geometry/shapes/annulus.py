@@ -17,14 +17,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 
 
 class Annulus:
-    """A body and the closed curve around it.
-
-    Parameters
-    ----------
-    body : the inner curve.
-    outer : the outer one, clockwise.
-    name : what the input called it.
-    """
+    """A body and the closed, clockwise curve around it."""
 
     topology: Topology = "o"
 
@@ -34,10 +27,7 @@ class Annulus:
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the O boundary: the body sampled as by itself, the outer curve in place of its circle.
 
-        Raises
-        ------
-        InputError
-            another topology, or a setting that the body has no use for.
+        Raises InputError: another topology, or a setting that the body has no use for.
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
@@ -47,10 +37,7 @@ class Annulus:
         return replace(boundary, north=north, west=cut, east=cut)
 
     def _around(self, circle: Floats) -> Floats:
-        """Return nodes (n, 2) of the outer curve in about equal steps, its corners among them.
-
-        They begin where the circle does, seen from its middle.
-        """
+        """Return nodes (n, 2) of the outer curve in about equal steps, from where the circle begins."""
         middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
         arcs = np.linspace(0.0, self._outer.length, 2049)[:-1]

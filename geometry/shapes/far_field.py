@@ -29,32 +29,21 @@ def straight(a: Floats, b: Floats, n: int) -> Floats:
     return np.asarray(nodes)
 
 
-TURNED = math.radians(10.0)
-"""A turn of the far field's start that is worth a note."""
+TURNED = 10.0
+"""A turn of the far field's start, in degrees, that is worth a note."""
 
 
-def _start(wall: Floats, centre: Floats) -> tuple[float, tuple[str, ...]]:
-    """Return the angle (radians) of the first far-field node around a wall (ni, 2), and a note of it."""
-    behind = _direction(wall, centre)
+def _start(wall: Floats, behind: float) -> tuple[float, str]:
+    """Return the angle of the first far-field node, in a body's map where its wall's is, and a note."""
     try:
         lift, w, _ = lift_body(mirrored(wall[:-1]))
     except InputError:
-        return behind, (
-            "the far field begins straight behind the first wall node: there is no conformal map",
-        )
+        return behind, "the far field begins straight behind the first wall node: there is no conformal map"
     lead = float(np.mean(w.imag - 2.0 * np.pi * np.arange(len(w)) / len(w)))
     start = -(float(np.angle(lift.quarter)) + lift.phase + lead)
-    turn = math.remainder(start - behind, 2.0 * math.pi)
-    if abs(turn) <= TURNED:
-        return start, ()
-    return start, (
-        f"the far field begins {math.degrees(turn):.1f} degrees from where the first wall node lies",
-    )
-
-
-def _direction(wall: Floats, centre: Floats) -> float:
-    """Return the angle (radians) of the first wall node, seen from the centre."""
-    return float(np.arctan2(wall[0, 1] - centre[1], wall[0, 0] - centre[0]))
+    turn = math.degrees(math.remainder(start - behind, 2.0 * math.pi))
+    note = f"the far field begins {turn:.1f} degrees from where the first wall node lies"
+    return start, note if abs(turn) > TURNED else ""
 
 
 def o_boundary(
@@ -68,28 +57,19 @@ def o_boundary(
     turned: bool = True,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the O boundary of a closed wall within a circle.
+    """Return the O boundary of a closed wall (ni, 2), clockwise, first node repeated, within a circle.
 
-    Parameters
-    ----------
-    wall : (ni, 2) clockwise, first node repeated at the end.
-    nj : nodes from the wall to the far field.
-    centre, radius : of the far field.
-    curve : the curve the wall was sampled from.
-    name : of the shape.
-    chord : its unit for spacings, see `Boundary`.
-    turned : whether the far field begins where the map below says, or, for marches that bring their own, in
-        the direction of the first node.
-    notes : see `Boundary`; a turn of more than `TURNED` is added.
-
-    The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal
-    map, which for a symmetric body is straight behind it: a grid in between is then not sheared. West and
-    east are the straight cut from there to the wall.
+    The far field runs clockwise at equal angles from where `wall[0]` is carried by the body's conformal map,
+    which for a symmetric body is straight behind it: a grid in between is then not sheared. Unless `turned`,
+    for marches that bring their own, it begins in the direction of the first node. West and east are the
+    straight cut from there to the wall. `curve`, `name`, `chord` and `notes` are those of `Boundary`; a turn
+    of more than `TURNED` is noted.
     """
     middle = np.asarray(centre, dtype=np.float64)
-    start, more = _start(wall, middle) if turned else (_direction(wall, middle), ())
+    start, note = float(np.arctan2(wall[0, 1] - middle[1], wall[0, 0] - middle[0])), ""
+    if turned:
+        start, note = _start(wall, start)
     north = far_circle(middle, radius, len(wall), start)
     cut = straight(wall[0], north[0], nj)
-    return Boundary(
-        wall, north, cut, cut, topology="o", name=name, wall=curve, chord=chord, notes=(*notes, *more)
-    )
+    notes = (*notes, note) if note else notes
+    return Boundary(wall, north, cut, cut, topology="o", name=name, wall=curve, chord=chord, notes=notes)

@@ -18,13 +18,9 @@ _BLOCK = 1 << 22  # distances worked out at a time
 
 
 class Labelled:
-    """A shape whose curve has names, which become patches of its boundaries.
+    """A shape whose curve consists of straight `edges` (n, 2, 2) with names (n,), which become patches.
 
-    Parameters
-    ----------
-    shape : what is sampled.
-    edges : (n, 2, 2) both ends of each straight edge of its curves.
-    names : (n,) name of each, empty for none.
+    Edges without one have an empty name.
     """
 
     def __init__(self, shape: Shape, edges: Floats, names: Sequence[str]) -> None:
@@ -66,8 +62,6 @@ class Labelled:
 def runs(side: Side, names: Sequence[str]) -> list[Patch]:
     """Return the patches of a side whose cells are called `names`; those without one are called by the side.
 
-    Examples
-    --------
     >>> runs("south", ["wall", "wall", "slot"])
     [Patch(name='wall', side='south', start=0, stop=2), Patch(name='slot', side='south', start=2, stop=3)]
     """

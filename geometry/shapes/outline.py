@@ -33,17 +33,11 @@ _LEAST_TURN = np.radians(30.0)  # a corner that turns less does not count as one
 class Outline:
     """A closed curve through points.
 
-    Parameters
-    ----------
-    points : (n, 2), at least 3, any unit, either way round; the first may be repeated at the end.
-    name : what the input called it.
-    corners : the four points that are corners of a quad domain, when the input says so; south-west first.
-    places : (n,) where each point stands in its source, for messages.
+    The `points` (n, 2), at least 3, are in any unit and either way round; the first may be repeated at the
+    end. `corners` are the four of a quad domain, when the input says so, south-west first; `places` (n,) say
+    where each point stands in its source, for messages.
 
-    Raises
-    ------
-    InputError
-        too few points, repeated ones, an outline that crosses itself or has no area.
+    Raises InputError: too few points, repeated ones, an outline that crosses itself or has no area.
     """
 
     notes: tuple[str, ...] = ()
@@ -81,43 +75,37 @@ class Outline:
         steps, ``cosine``, ``tanh`` with end steps a quarter of the mean, ``curvature``; around a smooth body
         ``auto`` is ``conformal`` (`meshonet.geometry.conformal.spacing`). Corners of the curve are nodes.
 
-        Raises
-        ------
-        InputError
-            a topology or spacing that does not fit, corners that are no points of the outline.
+        Raises InputError: a topology or spacing that does not fit, corners that are no points of the outline.
         """
-        if sampling.topology == "c":
-            raise InputError(
-                "topology c needs the trailing edge of an airfoil", "use o or quad", source=self.name
-            )
-        if sampling.le_spacing or sampling.te_spacing:
-            raise InputError(
-                "{le_spacing} and {te_spacing} need an airfoil", "leave them out", source=self.name
-            )
-        if sampling.te != "auto":
-            raise InputError("only an airfoil has a trailing edge", "leave {te} out", source=self.name)
-        if sampling.wake or sampling.wake_nodes:
-            raise InputError("only an airfoil has a wake", "leave {wake} out", source=self.name)
-        if sampling.normalise:
-            raise InputError("only an airfoil can be normalised", "leave {normalise} out", source=self.name)
         topology = self.topology if sampling.topology == "auto" else sampling.topology
-        if sampling.corners is not None:
-            if sampling.topology == "o":
-                raise InputError(
-                    "an O grid has no corners",
-                    "leave {corners} out, or use {topology} quad",
-                    source=self.name,
-                )
+        if sampling.corners is not None and sampling.topology == "auto":
             topology = "quad"
-        if topology == "quad" and sampling.far_field is not None:
-            raise InputError(
+        quad, steps = topology == "quad", sampling.le_spacing or sampling.te_spacing
+        for wrong, problem, remedy in (
+            (topology == "c", "topology c needs the trailing edge of an airfoil", "use o or quad"),
+            (steps, "{le_spacing} and {te_spacing} need an airfoil", "leave them out"),
+            (sampling.te != "auto", "only an airfoil has a trailing edge", "leave {te} out"),
+            (sampling.wake or sampling.wake_nodes, "only an airfoil has a wake", "leave {wake} out"),
+            (sampling.normalise, "only an airfoil can be normalised", "leave {normalise} out"),
+            (
+                sampling.corners is not None and not quad,
+                "an O grid has no corners",
+                "leave {corners} out, or use {topology} quad",
+            ),
+            (
+                sampling.far_field is not None and quad,
                 "a four-sided domain has no far field",
                 "leave {far_field} out, or use {topology} o",
-                source=self.name,
-            )
-        if topology == "quad" and sampling.spacing == "conformal":
-            raise InputError("conformal spacing needs a body in a far field", "use another", source=self.name)
-        return self._quad(sampling) if topology == "quad" else self._body(sampling)
+            ),
+            (
+                sampling.spacing == "conformal" and quad,
+                "conformal spacing needs a body in a far field",
+                "use another",
+            ),
+        ):
+            if wrong:
+                raise InputError(problem, remedy, source=self.name)
+        return self._quad(sampling) if quad else self._body(sampling)
 
     def _sharp(self) -> Indices:
         """Return the corners that point outwards, in order along the curve."""
@@ -129,18 +117,13 @@ class Outline:
         ni, nj = sampling.ni or DEFAULT_NI, sampling.nj or DEFAULT_NJ
         chosen = sampling.corners or self.corners
         corners = self._ordered_corners(chosen) if chosen is not None else self._sharpest_corners()
-        curve = Curve(
-            self.curve.points, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners))
-        )
-        knots = curve.knots[list(corners)]
+        points = self.curve.points
+        curve = Curve(points, closed=True, corners=np.union1d(self.curve.corner_index, np.array(corners)))
         edges = []
-        for k, count in enumerate((ni, nj, ni, nj)):
-            begin, end = knots[k], knots[(k + 1) % 4]
-            arcs = stretch_arcs(
-                curve, float(begin), float(end), count - 1, sampling.spacing, forward=self._left
-            )
-            edge = curve.at(arcs)
-            edge[0], edge[-1] = curve.points[corners[k]], curve.points[corners[(k + 1) % 4]]
+        for a, b, n in zip(corners, (*corners[1:], corners[0]), (ni, nj, ni, nj), strict=True):
+            begin, end = float(curve.knots[a]), float(curve.knots[b])
+            edge = curve.at(stretch_arcs(curve, begin, end, n - 1, sampling.spacing, forward=self._left))
+            edge[0], edge[-1] = points[a], points[b]
             edges.append(edge)
         south, east, north, west = edges
         return Boundary(south, north[::-1], west[::-1], east, topology="quad", name=self.name, sampled=True)
@@ -150,16 +133,12 @@ class Outline:
         n = len(self.curve.points)
         for corner in chosen:
             if not 0 <= corner < n:
-                raise InputError(
-                    f"corner {corner} of {n} points does not exist", f"use 0 to {n - 1}", source=self.name
-                )
+                what = f"corner {corner} of {n} points does not exist"
+                raise InputError(what, f"use 0 to {n - 1}", source=self.name)
         ahead = [(corner - chosen[0]) % n for corner in chosen]
         if ahead != sorted(ahead) and ahead[1:] != sorted(ahead[1:], reverse=True):
-            raise InputError(
-                f"corners {','.join(map(str, chosen))} are not in order along the outline",
-                "sort them",
-                source=self.name,
-            )
+            what = f"corners {','.join(map(str, chosen))} are not in order along the outline"
+            raise InputError(what, "sort them", source=self.name)
         ordered = [(chosen[0] + step) % n for step in sorted(ahead)]
         return tuple(ordered if self._left else [ordered[0], *ordered[:0:-1]])
 

@@ -26,10 +26,7 @@ class Shape(Protocol):
 def edges_of(shape: Shape, sampling: Sampling) -> Boundary:
     """Return the boundary of `shape`, looked through before anything is made of it, with the notes of both.
 
-    Raises
-    ------
-    InputError
-        what `shape` raises; edges that cross or touch, a body outside its far field.
+    Raises InputError: what `shape` raises; edges that cross or touch, a body outside its far field.
     """
     if isinstance(shape, Boundary):
         check_edges(shape)  # first as given, for the numbers of the user's own nodes

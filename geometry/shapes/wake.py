@@ -38,20 +38,12 @@ _LEAST_WALL = 5
 
 
 def cells_of_wake(ni: int, nodes_wanted: int | None, first: float, length: float) -> int:
-    """Return the cells of the wake of a C grid with `ni` nodes along xi.
+    """Return the cells of the wake of a C grid with `ni` nodes along xi, both sides of the wake included.
 
-    Parameters
-    ----------
-    ni : nodes of south, both sides of the wake included.
-    nodes_wanted : of the wake, the trailing edge included; None for cells that grow from `first` by 13 %, and
-        are 20 to 23 % of all.
-    first : the cell at the trailing edge.
-    length : of the wake.
+    `nodes_wanted` include the trailing edge; None is for cells that grow from `first` by 13 %, and are 20 to
+    23 % of all.
 
-    Raises
-    ------
-    InputError
-        no room for the wall.
+    Raises InputError: no room for the wall.
     """
     if nodes_wanted is not None:
         cells = nodes_wanted - 1
@@ -80,21 +72,17 @@ class Wake:
 
     In coordinates x along the axis and y to its left, y = tan(b) l (1 - exp(-x/l)), with b the angle of the
     bisector (at most 34°) and l the relaxation length.
-
-    Parameters
-    ----------
-    begin : (2,) the trailing edge.
-    axis : (2,) unit direction of the far end.
-    slope : tan(b).
-    relaxation : l.
-    length : of the wake along the axis.
     """
 
     begin: Floats
+    """(2,) the trailing edge."""
     axis: Floats
+    """(2,) unit direction of the far end."""
     slope: float
+    """tan(b)"""
     relaxation: float
     length: float
+    """Of the wake along the axis."""
 
     @classmethod
     def behind(cls, wall: Floats, axis: Floats, chord: float, length: float) -> Wake:
@@ -156,21 +144,13 @@ def c_boundary(
     chord: float = 0.0,
     notes: tuple[str, ...] = (),
 ) -> Boundary:
-    """Return the C boundary of a closed wall and the wake behind it.
+    """Return the C boundary of a closed wall (n, 2) and the wake (m, 2) from its edge to the outlet.
 
-    Parameters
-    ----------
-    wall : (n, 2) clockwise from the sharp trailing edge, which is repeated at the end.
-    nj : nodes from the wall to the far field.
-    wake : (m, 2) from the trailing edge to the outlet.
-    centre, radius : of the half circle in front.
-    axis : (2,) unit direction of the wake's far end.
-    curve, name, chord, notes : see `Boundary`.
+    The wall runs clockwise from the sharp trailing edge, which is repeated at the end. `centre` and `radius`
+    are those of the half circle in front, `axis` (2,) is the unit direction of the wake's far end; for
+    `curve`, `name`, `chord` and `notes` see `Boundary`.
 
-    Raises
-    ------
-    InputError
-        the wake leaves the far field, or crosses the wall.
+    Raises InputError: the wake leaves the far field, or crosses the wall.
     """
     south = np.concatenate([wake[:0:-1], wall[:-1], wake])
     normal = np.array([-axis[1], axis[0]])
@@ -179,24 +159,11 @@ def c_boundary(
         raise InputError("the wake does not reach the outlet inside the far field", "use a larger far field")
     north = _far_field(len(wall) - 1, len(wake) - 1, centre, radius, axis, behind)
     west, east = straight(south[0], north[0], nj), straight(south[-1], north[-1], nj)
-    return Boundary(
-        south,
-        north,
-        west,
-        east,
-        topology="c",
-        name=name,
-        wall=curve,
-        chord=chord,
-        notes=notes,
-    )
+    return Boundary(south, north, west, east, "c", name=name, wall=curve, chord=chord, notes=notes)
 
 
 def _far_field(body: int, wake: int, centre: Floats, radius: float, axis: Floats, behind: float) -> Floats:
-    """Return nodes of the far field (body + 2 wake + 1, 2), clockwise from below the outlet.
-
-    Equal steps around the front; behind it they grow or shrink evenly to the outlet.
-    """
+    """Return the far field (body + 2 wake + 1, 2), in equal steps in front, evenly changing ones behind."""
     normal = np.array([-axis[1], axis[0]])
     angle = np.linspace(-0.5 * np.pi, -1.5 * np.pi, body + 1)
     front = centre + radius * (np.cos(angle)[:, None] * axis + np.sin(angle)[:, None] * normal)

@@ -22,13 +22,8 @@ def stretch_arcs(
 ) -> Floats:
     """Return arc lengths (cells + 1,) on a closed curve from `begin` to `end`, all the way round when equal.
 
-    Parameters
-    ----------
-    curve : closed.
-    begin, end : arc lengths.
-    cells : wanted.
-    spacing : ``tanh`` has end cells a quarter of the mean; laws that need more than a curve are equal steps.
-    forward : along the curve's own direction, else against it.
+    They run along the curve's own direction, or against it unless `forward`. ``tanh`` has end cells a quarter
+    of the mean; laws that need more than a curve are equal steps.
     """
     sign = 1.0 if forward else -1.0
     length = (sign * (end - begin)) % curve.length or curve.length
@@ -50,13 +45,9 @@ def stretch_arcs(
 def on_corners(distance: Floats, corners: Floats, fixed: tuple[int, ...] = ()) -> Floats:
     """Return increasing distances (n,) moved along so that every corner (m,) is one of them.
 
-    The nearest node of each corner is put on it; those between are shared out evenly in index. The first,
-    the last and the `fixed` nodes stay.
+    The nearest goes to each corner; the first, the last and the `fixed` ones stay; the others are shared out.
 
-    Raises
-    ------
-    InputError
-        more corners than nodes to put on them.
+    Raises InputError: more corners than nodes to put on them.
     """
     if corners.size == 0:
         return distance

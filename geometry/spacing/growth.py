@@ -18,29 +18,20 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 
     first (gⁿ - 1)/(g - 1) = length
 
-    Raises
-    ------
-    InputError
-        equal cells of this size are too long already, or the ratio is above `LARGEST`.
+    Raises InputError: equal cells of this size are too long already, or the ratio is above `LARGEST`.
 
-    Examples
-    --------
     >>> growth_ratio(1.0, 7.0, 3)
     2.0
     """
     if first * cells > length * (1 + 1e-12):
-        raise InputError(
-            f"{cells} cells, of which the first is {first:.3g} high, are longer than the far field is away "
-            f"({length:.3g})",
-            "use a smaller wall spacing or fewer rows",
+        problem = (
+            f"{cells} cells, of which the first is {first:.3g} high, are longer than the far field is away"
         )
+        raise InputError(f"{problem} ({length:.3g})", "use a smaller wall spacing or fewer rows")
     wanted, most = length / first, math.log(LARGEST)
     if _sum(most, cells) < wanted:
-        raise InputError(
-            f"{cells} cells from {first:.3g} to the far field at {length:.3g} would grow by more than "
-            f"{LARGEST:g} each",
-            "use more rows or a larger wall spacing",
-        )
+        problem = f"{cells} cells from {first:.3g} to the far field at {length:.3g} would grow by more than"
+        raise InputError(f"{problem} {LARGEST:g} each", "use more rows or a larger wall spacing")
     if cells == 1 or wanted <= cells:
         return 1.0
     rate = min(math.log(wanted) / (cells - 1), most)  # where the last cell alone is as long: above the root
@@ -57,8 +48,6 @@ def growth_ratio(first: float, length: float, cells: int) -> float:
 def cells_for_growth(first: float, length: float, ratio: float) -> int:
     """Return the fewest cells that, from `first` on, reach `length` without growing by more than `ratio`.
 
-    Examples
-    --------
     >>> cells_for_growth(1.0, 7.0, 2.0), cells_for_growth(1.0, 7.1, 2.0), cells_for_growth(1.0, 7.0, 1.0)
     (3, 4, 7)
     """
@@ -72,8 +61,6 @@ def growing_steps(first: float, length: float, cells: int, constant: int = 1) ->
 
     The first `constant` ones are equal; the ratio is that of the others.
 
-    Examples
-    --------
     >>> growing_steps(1.0, 9.0, 5, 3).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
     """

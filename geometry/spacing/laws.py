@@ -21,17 +21,12 @@ Spacing: TypeAlias = str
 
 @dataclass(frozen=True)
 class Law:
-    """A spacing law.
-
-    Parameters
-    ----------
-    place : s(q), both 0 to 1, of a law that is the same along every stretch; None for those that depend on
-        the curve or on the cells at its ends.
-    sets_ends : the cells at the two ends of a stretch can be chosen.
-    """
+    """A spacing law."""
 
     place: Callable[[Floats], Floats] | None = None
+    """s(q), both 0 to 1; None for a law that depends on the curve or on the cells at its ends."""
     sets_ends: bool = False
+    """The cells at the two ends of a stretch can be chosen."""
 
 
 @dataclass(frozen=True)
@@ -75,16 +70,10 @@ class TanhLaw:
     def fitted(cls, cells: float, first: float, last: float, last_part: float = 1.0) -> TanhLaw:
         """Return the law whose first step of `cells` is `first` and whose last is `last`, to 1e-6 of them.
 
-        Parameters
-        ----------
-        cells : steps from 0 to 1; need not be whole when the last one goes on beyond 1.
-        first, last : parts of the whole.
-        last_part : how much of the last step lies before 1 (1 or 0.5).
+        Cells need not be whole when the last one goes on beyond 1, with `last_part` (1 or 0.5) of it before.
 
-        Raises
-        ------
-        InputError
-            the steps do not fit: they are too large together, or too few nodes lie between them.
+        Raises InputError: the steps do not fit: they are too large together, or too few nodes lie between
+        them.
         """
         start, end = first * cells, last * cells
         for _ in range(60):
@@ -133,14 +122,7 @@ def _inverse_sinc(b: float) -> float:
 
 
 def spacing_tanh(n: int, first: float, last: float) -> Floats:
-    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`).
-
-    Examples
-    --------
-    >>> steps = np.diff(spacing_tanh(21, 0.01, 0.02))
-    >>> [float(round(step, 6)) for step in (steps[0], steps[-1])]
-    [0.01, 0.02]
-    """
+    """Return n values from 0 to 1 whose first step is `first` and whose last is `last` (`TanhLaw`)."""
     return TanhLaw.fitted(n - 1, first, last)(np.linspace(0.0, 1.0, n))
 
 

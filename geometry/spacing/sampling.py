@@ -24,8 +24,8 @@ class Sampling:
 
     Parameters
     ----------
-    ni, nj : nodes along xi (around the body) and eta (away from it); None means what the shape has,
-        and for a curve `DEFAULT_NI` and `DEFAULT_NJ`.
+    ni, nj : nodes along xi (around the body) and eta (away from it); None means what the shape has, and
+        for a curve `DEFAULT_NI` and `DEFAULT_NJ`.
     topology : ``auto`` lets the shape choose.
     spacing : law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
         (``tanh`` where a cell is asked for), and ``uniform`` elsewhere.
@@ -41,10 +41,7 @@ class Sampling:
     viscous : the cells at the wall will be thin: ``auto`` topology is then C around sharp edges.
     normalise : put the leading edge at (0, 0) and the trailing edge at (1, 0).
 
-    Raises
-    ------
-    InputError
-        a value out of its range.
+    Raises InputError: a value out of its range.
     """
 
     ni: int | None = None
@@ -65,10 +62,13 @@ class Sampling:
         for name, count in (("ni", self.ni), ("nj", self.nj)):
             if count is not None and not 2 <= count <= MOST_NODES:
                 raise InputError(f"{name} is {count} nodes", f"use 2 to {MOST_NODES}")
-        if self.topology != "auto" and self.topology not in TOPOLOGIES:
-            raise InputError(f"topology {self.topology!r} is not known", "use auto/" + "/".join(TOPOLOGIES))
-        if self.spacing not in SPACINGS:
-            raise InputError(f"spacing {self.spacing!r} is not known", "use " + "/".join(SPACINGS))
+        for what, name, known in (
+            ("topology", self.topology, ("auto", *TOPOLOGIES)),
+            ("spacing", self.spacing, SPACINGS),
+            ("trailing edge", self.te, TRAILING_EDGES),
+        ):
+            if name not in known:
+                raise InputError(f"{what} {name!r} is not known", "use " + "/".join(known))
         for name, size in (("le_spacing", self.le_spacing), ("te_spacing", self.te_spacing)):
             if size is not None and not 1e-9 <= size <= 0.2:
                 raise InputError(f"{size:g} chords", "use 1e-9 to 0.2", parameter=name)
@@ -78,12 +78,9 @@ class Sampling:
             raise InputError(f"the wake is {self.wake:g} chords long", "use 0.5 to 1e6")
         if self.wake_nodes is not None and not 3 <= self.wake_nodes <= MOST_NODES:
             raise InputError(f"the wake has {self.wake_nodes} nodes", f"use 3 to {MOST_NODES}")
-        if self.te not in TRAILING_EDGES:
-            raise InputError(f"trailing edge {self.te!r} is not known", "use " + "/".join(TRAILING_EDGES))
         if self.corners is not None and len(set(self.corners)) != 4:
-            raise InputError(
-                f"corners {self.corners} are not four different points", "give four point indices"
-            )
+            problem = f"corners {self.corners} are not four different points"
+            raise InputError(problem, "give four point indices")
 
     @property
     def radius(self) -> float:

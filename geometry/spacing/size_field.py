@@ -42,33 +42,26 @@ def arcs_by_curvature(
     edge, each growing with the distance from it; `TURN` over the curvature, with growth limited alike; and a
     largest cell, such that the integral of ds/h is the number of cells. When the cells are too few for the
     first three, those of curvature and of the leading edge become larger, and growth is up to `HURRY` times
-    as fast (with `hurried`); when that does not suffice, all sizes are scaled up.
+    as fast (with `hurried`, as for C grids, whose wake takes half of the nodes); when that does not suffice,
+    all sizes are scaled up.
 
-    Parameters
-    ----------
-    curve : the wall.
-    stations : arc lengths of the lower end, of the nose and of the upper end.
-    cells : wanted.
-    chord : unit of the averaging window.
-    steps : cells at the trailing and at the leading edge.
-    exact : whether these are to be met, to 0.5 % where the adjustment suffices.
-    hurried : allow `HURRY`, as for C grids, whose wake takes half of the nodes.
+    `stations` are the arc lengths of the lower end, of the nose and of the upper end, `steps` the cells at
+    the trailing and at the leading edge, `exact` whether these are to be met, to 0.5 % where the adjustment
+    suffices.
     """
     lower, nose, upper = stations
     s = _samples(stations, steps)
     size = TURN / _bend(curve, s, chord)
     hurry = HURRY if hurried else 1.0
     known = _affordable(cells, s, lambda fewer: _known(s, size, stations, steps, exact[0], fewer, hurry))
-    mend, places = np.zeros(2), np.arange(cells + 1.0)
+    mend = np.zeros(2)
     away = np.minimum(s - lower, upper - s), np.abs(s - nose)
     for _ in range(12):
         relief = np.exp(
             sum(m * np.exp(-d / (_REACH * step)) for m, d, step in zip(mend, away, steps, strict=True))
         )
         density = _density(s, known, relief, cells)
-        count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
-        arcs = monotone_cubic(count * (cells / count[-1]), s, places)
-        arcs[0], arcs[-1] = lower, upper
+        arcs = _placed(s, density, cells)
         width = np.diff(arcs)
         got = 0.5 * (width[0] + width[-1]), width[np.searchsorted(arcs, nose) - 1]
         error = np.where(exact, np.log(np.array(steps) / np.array(got)), 0.0)
@@ -81,21 +74,20 @@ def arcs_by_curvature(
 def distances_by_curvature(curve: Curve, begin: float, way: float, cells: int) -> Floats:
     """Return distances (cells + 1,) along a closed curve from `begin` on, following curvature alone.
 
-    Parameters
-    ----------
-    curve : closed.
-    begin : arc length to start from.
-    way : length to go, negative against the curve's direction.
-    cells : wanted.
+    `way` is the length to go, negative against the curve's direction.
     """
     s = np.linspace(0.0, abs(way), 2 * _SAMPLES + 1)
     bend = _bend(curve, begin + np.sign(way) * s, curve.length)
     known = _quartic(limited_size(s, TURN / bend, GROWTH))
-    density = _density(s, known, np.ones_like(s), cells)
+    return _placed(s, _density(s, known, np.ones_like(s), cells), cells)
+
+
+def _placed(s: Floats, density: Floats, cells: int) -> Floats:
+    """Return cells + 1 places from the first to the last of s, cells of equal integrals of the density."""
     count = np.concatenate([[0.0], np.cumsum(0.5 * (density[1:] + density[:-1]) * np.diff(s))])
-    distance = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
-    distance[0], distance[-1] = 0.0, abs(way)
-    return distance
+    places = monotone_cubic(count * (cells / count[-1]), s, np.arange(cells + 1.0))
+    places[0], places[-1] = s[0], s[-1]
+    return places
 
 
 def _samples(stations: tuple[float, float, float], steps: tuple[float, float]) -> Floats:

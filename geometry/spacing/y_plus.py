@@ -14,22 +14,12 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
     """Return the distance from the wall, in chords, at which y+ has the value `y_plus`.
 
     The skin friction is that of a turbulent boundary layer on a flat plate at the distance x from its leading
-    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3. Schlichting, Boundary-Layer
-    Theory, 7th ed. (1979), chapter XXI.
+    edge: y+ = y u_τ/ν, u_τ/U = √(C_f/2), C_f = (2 log₁₀ Re_x - 0.65)^-2.3 (`SOURCE`). `reynolds` is that of
+    the chord, `chord_fraction` x in chords.
 
-    Parameters
-    ----------
-    y_plus : at the first node off the wall.
-    reynolds : of the chord.
-    chord_fraction : x in chords.
+    Raises InputError: a value out of its range, or so little of the chord that no boundary layer is turbulent
+    there.
 
-    Raises
-    ------
-    InputError
-        a value out of its range, or so little of the chord that no boundary layer is turbulent there.
-
-    Examples
-    --------
     >>> f"{first_cell(1.0, 6e6):.3g}"
     '4.23e-06'
     """
@@ -37,15 +27,11 @@ def first_cell(y_plus: float, reynolds: float, chord_fraction: float = 0.5) -> f
         raise InputError(f"a y+ of {y_plus:g}", "use more than 0 and at most 1e4", parameter="y_plus")
     if not 1e3 <= reynolds <= 1e12:
         raise InputError(f"a Reynolds number of {reynolds:g}", "use 1e3 to 1e12", parameter="reynolds")
+    local, part = reynolds * chord_fraction, f"{chord_fraction:g} of the chord"
     if not 0 < chord_fraction <= 1:
-        raise InputError(
-            f"{chord_fraction:g} of the chord", "use more than 0 and at most 1", parameter="chord_fraction"
-        )
-    if reynolds * chord_fraction < 1e3:
-        raise InputError(
-            f"a Reynolds number of {reynolds * chord_fraction:g} at {chord_fraction:g} of the chord",
-            "use a larger part, so that it is 1e3 or more",
-            parameter="chord_fraction",
-        )
-    friction = (2.0 * math.log10(reynolds * chord_fraction) - 0.65) ** -2.3
+        raise InputError(part, "use more than 0 and at most 1", parameter="chord_fraction")
+    if local < 1e3:
+        remedy = "use a larger part, so that it is 1e3 or more"
+        raise InputError(f"a Reynolds number of {local:g} at {part}", remedy, parameter="chord_fraction")
+    friction = (2.0 * math.log10(local) - 0.65) ** -2.3
     return y_plus / (reynolds * math.sqrt(0.5 * friction))

@@ -1,15 +1,8 @@
 cdef extern from "algebraic/tfi.h":
     ctypedef struct TfiEdges:
-        const double *south
-        const double *north
-        const double *west
-        const double *east
+        Read south, north, west, east
     void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
                   const TfiEdges *parameter) nogil
-
-cdef extern from "algebraic/combine.h":
-    void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
-                      const double *values, const double *bends, int rim) nogil
 
 cdef extern from "algebraic/evaluate.h":
     ctypedef struct Places:
@@ -21,16 +14,14 @@ cdef extern from "algebraic/evaluate.h":
         Places thin[2]
         double near, far, reach
     ctypedef struct Corners:
-        const double *south
-        const double *north
-        const double *west
-        const double *east
-        const double *opened
+        Read south, north, west, east, opened
         const unsigned char *straight
     void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, double *nodes) nogil
     ptrdiff_t evaluate_scratch(const Evaluation *e) nogil
     void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch,
                        double *nodes) nogil
+    void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
+                      const double *values, const double *bends, int rim) nogil
 
 
 cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:
@@ -42,13 +33,8 @@ cdef TfiEdges four_edges(tuple four, tuple along, tuple across) except *:
 
 
 def tfi(x, y, tuple xs, tuple ys, tuple parameters):
-    """Interpolate into the planes `x` and `y` (ni, nj).
-
-    `xs` and `ys` are the coordinates, `parameters` the values 0..1, of (south, north, west, east): (ni), (ni),
-    (nj), (nj).
-    """
-    cdef double *px = fills(x, y.shape)
-    cdef double *py = fills(y, x.shape)
+    """Interpolate into the planes `x` and `y` (ni, nj) between edges south, north, west and east."""
+    cdef Written px = fills(x, y.shape), py = fills(y, x.shape)
     cdef ptrdiff_t ni, nj
     ni, nj = x.shape
     cdef TfiEdges ex = four_edges(xs, (ni,), (nj,)), ey = four_edges(ys, (ni,), (nj,))
@@ -64,12 +50,9 @@ cdef TfiEdges moved(TfiEdges e, ptrdiff_t along, ptrdiff_t across) noexcept nogi
 
 
 def tfi_batch(nodes, tuple sides, tuple parameters):
-    """Interpolate into the planes `nodes` (batch, 2, ni, nj).
-
-    `sides` are (batch, 2, n) and `parameters` (batch, n) for south, north, west and east.
-    """
+    """Interpolate into the planes `nodes` (batch, 2, ni, nj) from edges (batch, 2, n)."""
     cdef ptrdiff_t batch = nodes.shape[0], ni = nodes.shape[2], nj = nodes.shape[3], b
-    cdef double *x = fills(nodes, (batch, 2, ni, nj))
+    cdef Written x = fills(nodes, (batch, 2, ni, nj))
     cdef TfiEdges ex = four_edges(sides, (batch, 2, ni), (batch, 2, nj)), ey
     cdef TfiEdges parameter = four_edges(parameters, (batch, ni), (batch, nj))
     with nogil:
@@ -80,17 +63,12 @@ def tfi_batch(nodes, tuple sides, tuple parameters):
 
 
 def add_spline_rows(x, first, weights, values, bends, bint rim):
-    """Add to row i of `x` (ni, nj) the rows first[i] and first[i]+1 of `values` and `bends` (m, nj).
-
-    `weights` (ni, 4) go to the two rows of values and the two of bends. The first and last column stay as
-    they are, and without `rim` the first and last row.
-    """
+    """Add to `x` (ni, nj) rows of a spline, `values` and `bends` (m, nj); see ``algebraic/evaluate.h``."""
     cdef ptrdiff_t ni, nj, m = len(values)
     ni, nj = x.shape
     cdef Places p = places((first, weights), ni, m)
-    cdef double *px = fills(x, (ni, nj))
-    cdef const double *v = reads(values, (m, nj))
-    cdef const double *c = reads(bends, (m, nj))
+    cdef Written px = fills(x, (ni, nj))
+    cdef Read v = reads(values, (m, nj)), c = reads(bends, (m, nj))
     with nogil:
         combine_rows(px, ni, nj, p.first, p.weights, v, c, rim)
 
@@ -120,19 +98,16 @@ cdef void next_grid(const Evaluation *e, Corners *c) noexcept nogil:
 
 
 def tfi_coarse(tuple sides, tuple thin, nodes):
-    """Fill the planes `nodes` (batch, 2, m, n) by transfinite interpolation of edges, by their own arc lengths.
-
-    `sides` are south, north (batch, 2, ni), west and east (batch, 2, nj), `thin` the `places` of m nodes in ni and of
-    n in nj.
-    """
+    """Fill the planes `nodes` (batch, 2, m, n) by transfinite interpolation of `sides` (batch, 2, ni or nj), by
+    their own arc lengths; `thin` are the places of m nodes in ni and of n in nj."""
     cdef ptrdiff_t batch = len(nodes), b
     cdef Evaluation e
     e.m, e.n, e.ni, e.nj = nodes.shape[2], nodes.shape[3], sides[0].shape[2], sides[2].shape[2]
     cdef Corners edges = corners_of(sides, batch, e.ni, e.nj)
     e.thin[0], e.thin[1] = places(thin[0], e.m, e.ni), places(thin[1], e.n, e.nj)
-    cdef double *to = fills(nodes, (batch, 2, e.m, e.n))
+    cdef Written to = fills(nodes, (batch, 2, e.m, e.n))
     scratch = np.empty(6 * (e.m + e.n))
-    cdef double *room = fills(scratch, scratch.shape)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         for b in range(batch):
             evaluate_begin(&e, &edges, room, to)
@@ -141,12 +116,9 @@ def tfi_coarse(tuple sides, tuple thin, nodes):
 
 
 def resample(coarse, tuple sides, tuple fine, opened, double near, double far, double reach, nodes, straight=None):
-    """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n).
+    """Fill the planes `nodes` (batch, 2, ni, nj) from grids `coarse` (batch, 2, m, n) inside `sides`.
 
-    `sides` are south, north (batch, 2, ni), west and east (batch, 2, nj); `fine` the `places` of ni nodes in m and of
-    nj in n. `opened` (batch, 4) is the share that is taken out of second derivatives at corners, up to `near` coarse
-    cells from them and none from `far` on; `straight` (batch, m, n) where all is. What is missed of an edge is felt
-    along `reach` of its steps.
+    The other arguments are those of ``algebraic/evaluate.h``: `fine` the places of ni nodes in m and of nj in n.
     """
     cdef ptrdiff_t batch = len(nodes), b
     cdef Evaluation e
@@ -157,10 +129,10 @@ def resample(coarse, tuple sides, tuple fine, opened, double near, double far, d
     if straight is not None:
         edges.straight = <const unsigned char *>numbers(straight, b"B", 1, (batch, e.m, e.n), False)
     e.fine[0], e.fine[1] = places(fine[0], e.ni, e.m), places(fine[1], e.nj, e.n)
-    cdef const double *given = reads(coarse, (batch, 2, e.m, e.n))
-    cdef double *to = fills(nodes, (batch, 2, e.ni, e.nj))
+    cdef Read given = reads(coarse, (batch, 2, e.m, e.n))
+    cdef Written to = fills(nodes, (batch, 2, e.ni, e.nj))
     scratch = np.empty(evaluate_scratch(&e))
-    cdef double *room = fills(scratch, scratch.shape)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         for b in range(batch):
             evaluate_grid(&e, given, &edges, room, to)

@@ -12,7 +12,7 @@
 
 #include "clones.h"
 #include "inwards.h"
-#include "tfi_row.h"
+#include "tfi.h"
 
 enum { TILE = 16 };
 
@@ -188,13 +188,7 @@ void evaluate_begin(const Evaluation *e, const Corners *edges, double *scratch, 
     TfiEdges three[3];
     for (int k = 0; k < 3; k++)
         three[k] = (TfiEdges){at[k][0], at[k][1], at[k][2], at[k][3]};
-    double *x = nodes, *y = nodes + m * n;
-    for (int side = 2; side < 4; side++) {
-        const ptrdiff_t row = side == 2 ? 0 : m - 1;
-        memcpy(x + row * n, at[0][side], (size_t)n * sizeof *x), memcpy(y + row * n, at[1][side], (size_t)n * sizeof *y);
-    }
-    for (ptrdiff_t i = 1; i < m - 1; i++)
-        fill_row(x + i * n, y + i * n, i, m, n, &three[0], &three[1], &three[2]);
+    tfi_fill(nodes, nodes + m * n, m, n, &three[0], &three[1], &three[2]);
 }
 
 ptrdiff_t evaluate_scratch(const Evaluation *e)
@@ -300,4 +294,18 @@ void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edg
     const ptrdiff_t last = (ni - 1) * nj;
     memcpy(x, edges->west, line), memcpy(y, edges->west + nj, line);
     memcpy(x + last, edges->east, line), memcpy(y + last, edges->east + nj, line);
+}
+
+MESHONET_CLONES
+void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
+                  const double *values, const double *bends, int rim)
+{
+    for (ptrdiff_t i = rim ? 0 : 1; i < (rim ? ni : ni - 1); i++) {
+        const double w0 = weights[4 * i], w1 = weights[4 * i + 1], w2 = weights[4 * i + 2], w3 = weights[4 * i + 3];
+        const double *restrict v0 = values + first[i] * nj, *restrict v1 = v0 + nj;
+        const double *restrict m0 = bends + first[i] * nj, *restrict m1 = m0 + nj;
+        double *restrict row = x + i * nj;
+        for (ptrdiff_t j = 1; j < nj - 1; j++)
+            row[j] += (w0 * v0[j] + w1 * v1[j]) + (w2 * m0[j] + w3 * m1[j]);
+    }
 }

@@ -1,6 +1,5 @@
 /* A grid on few nodes evaluated on many; see evaluate.c. */
-#ifndef MESHONET_EVALUATE_H
-#define MESHONET_EVALUATE_H
+#pragma once
 #include <stddef.h>
 
 /* For each of some uniform places the knot before it and the weights (4) of the values there and at the next, and of
@@ -35,4 +34,8 @@ ptrdiff_t evaluate_scratch(const Evaluation *e);
 
 /* Fill the planes nodes (2, ni, nj) from the planes coarse (2, m, n). */
 void evaluate_grid(const Evaluation *e, const double *coarse, const Corners *edges, double *scratch, double *nodes);
-#endif
+
+/* x (ni, nj) += w0 V[k] + w1 V[k+1] + w2 M[k] + w3 M[k+1] in rows 1 .. ni-2 (all rows with `rim`) and columns
+   1 .. nj-2; k = first[i], w = weights[i] (ni, 4); V and M are (m, nj). */
+void combine_rows(double *x, ptrdiff_t ni, ptrdiff_t nj, const ptrdiff_t *first, const double *weights,
+                  const double *values, const double *bends, int rim);

@@ -1,6 +1,5 @@
 /* How far inside what a grid misses of its edges is felt; the formula stands in inwards.py. */
-#ifndef MESHONET_INWARDS_H
-#define MESHONET_INWARDS_H
+#pragma once
 #include <math.h>
 #include <stddef.h>
 
@@ -107,4 +106,3 @@ MESHONET_INLINE Range joined(Range a, Range b)
 {
     return (Range){a.from < b.from ? a.from : b.from, a.to > b.to ? a.to : b.to};
 }
-#endif

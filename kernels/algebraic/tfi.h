@@ -1,5 +1,4 @@
-#ifndef MESHONET_TFI_H
-#define MESHONET_TFI_H
+#pragma once
 #include <stddef.h>
 
 /* One coordinate of the four edges. */
@@ -8,7 +7,6 @@ typedef struct {
     const double *west, *east;   /* (nj) */
 } TfiEdges;
 
-/* Fill rows first <= i < last of the planes x and y (ni, nj); see tfi.c. */
+/* Fill the planes x and y (ni, nj); see tfi.c. */
 void tfi_fill(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const TfiEdges *ex, const TfiEdges *ey,
               const TfiEdges *parameter);
-#endif

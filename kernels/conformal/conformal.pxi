@@ -23,18 +23,15 @@ cdef extern from "conformal/lift.h":
     void lift_expand(LiftCorner *corner) nogil
     double c_lift_bisect "lift_bisect"(const BodyLift *lift, const LineOff *line, double start, double limit) nogil
 
-cdef extern from "conformal/columns.h":
+cdef extern from "conformal/picard.h":
     void c_fourier_columns "fourier_columns"(const double *modes, ptrdiff_t m, ptrdiff_t highest, const double *gain,
                                              const double *unit, double *columns, ptrdiff_t count,
                                              ptrdiff_t width) nogil
-
-cdef extern from "conformal/picard.h":
     int PICARD_COUNT, PICARD_LEVELS
     ctypedef double *PicardRow "PicardRow *"
     ctypedef struct PicardMatrices:
         PicardRow d1, d2, inverse, vectors
-        const double *eigenvalues
-        const double *smooth
+        Read eigenvalues, smooth
     ctypedef struct PicardScratch:
         pass
     double c_picard_step "picard_step"(PicardRow c, double height, const PicardMatrices *m, PicardScratch *s) nogil
@@ -49,8 +46,7 @@ cdef extern from "conformal/strip_rows.h":
         double sharpness
         const WindowSum *sums
         ptrdiff_t n_sums
-        const double *along
-        const double *across
+        Read along, across
         ptrdiff_t n_nudges
         BodyLift lift
         const double *matrix
@@ -97,7 +93,7 @@ def lift_body(wall, bint swap):
     w, scratch = np.empty(n, complex), np.empty(3 * n)
     cdef const Cplx *nodes = reads_complex(wall, (n,))
     cdef Cplx *to = fills_complex(w)
-    cdef double *room = fills(scratch, (3 * n,))
+    cdef Written room = fills(scratch, (3 * n,))
     with nogil:
         count = lift_wall(nodes, n, swap, &found, to, corners, &winding, room)
     removed = []
@@ -141,11 +137,7 @@ def lift_beside(wall, ptrdiff_t tip, other):
 def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):
     """Return the shift of phi with which the line from `w` leaves a corner of the wall at equal angles.
 
-    Parameters
-    ----------
-    maps : `geometry.lift.Lift`.
-    corner, ahead, behind : nodes of the wall; `w` the line's first point, in the strip.
-    start, limit : of the shift, which is the start where none is found.
+    `maps` are a `geometry.lift.Lift`; the other arguments are those of ``conformal/lift.h``.
     """
     cdef BodyLift lift
     cdef LineOff line
@@ -155,14 +147,7 @@ def lift_bisect(maps, corner, ahead, behind, w, double start, double limit):
 
 
 def fourier_columns(modes, gain, unit, columns):
-    """Add Fourier sums' values to `columns` (count, 2, width), zeroed: real parts before imaginary ones.
-
-    Parameters
-    ----------
-    modes : (m, 2 K + 1), k = 0 .. K, -K .. -1; m <= width, a multiple of the kernel's lanes.
-    gain : (K + 1,) or more: what a mode is multiplied by.
-    unit : (count / 2,) exp(2 pi i j / count), count a power of two above 2 K.
-    """
+    """Add Fourier sums' values to `columns`, zeroed; the arguments are those of ``conformal/picard.h``."""
     cdef ptrdiff_t count = columns.shape[0], width = columns.shape[2], m = modes.shape[0]
     cdef ptrdiff_t highest = modes.shape[1] // 2
     if width % LANES or m > width or count & (count - 1) or count < 2:
@@ -170,9 +155,9 @@ def fourier_columns(modes, gain, unit, columns):
     if 2 * highest >= count or len(gain) <= highest:
         raise ValueError("modes do not fit")
     cdef const Cplx *c = reads_complex(modes, (m, 2 * highest + 1))
-    cdef const double *factors = reads(gain, gain.shape)
+    cdef Read factors = reads(gain, gain.shape)
     cdef const Cplx *roots = reads_complex(unit, (count // 2,))
-    cdef double *to = fills(columns, (count, 2, width))
+    cdef Written to = fills(columns, (count, 2, width))
     if m:
         with nogil:
             c_fourier_columns(<const double *>c, m, highest, factors, <const double *>roots, to, count, width)
@@ -181,24 +166,18 @@ def fourier_columns(modes, gain, unit, columns):
 def picard_step(c, double height, matrices, eigenvalues, smooth):
     """Take one step on modes `c` (2, 2 MODES + 1, LEVELS), real and imaginary parts; return the largest change.
 
-    Parameters
-    ----------
-    height : of the strip.
-    matrices : (4, LEVELS, LEVELS) transposed: first and second derivative, inverse of the eigenvectors of the
-        latter between the walls, the eigenvectors; zero in the walls' rows and columns.
-    eigenvalues : (LEVELS,) theirs, anything but zero for the walls.
-    smooth : (2 MODES + 1,) what an update's modes are multiplied by.
+    `matrices` (4, LEVELS, LEVELS) are those of ``conformal/picard.h``; `smooth` multiplies an update's modes.
     """
     cdef PicardMatrices m
     cdef double change
     cdef ptrdiff_t size = PICARD_LEVELS * PICARD_LEVELS
-    cdef const double *four = reads(matrices, (4, PICARD_LEVELS, PICARD_LEVELS))
-    cdef double *modes = fills(c, (2, PICARD_COUNT, PICARD_LEVELS))
+    cdef Read four = reads(matrices, (4, PICARD_LEVELS, PICARD_LEVELS))
+    cdef Written modes = fills(c, (2, PICARD_COUNT, PICARD_LEVELS))
     m.d1, m.d2, m.inverse = <PicardRow>four, <PicardRow>(four + size), <PicardRow>(four + 2 * size)
     m.vectors = <PicardRow>(four + 3 * size)
     m.eigenvalues, m.smooth = reads(eigenvalues, (PICARD_LEVELS,)), reads(smooth, (PICARD_COUNT,))
     scratch = np.empty(sizeof(PicardScratch) // 8)
-    cdef double *room = fills(scratch, scratch.shape)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         change = c_picard_step(<PicardRow>modes, height, &m, <PicardScratch *>room)
     return change
@@ -207,21 +186,14 @@ def picard_step(c, double height, matrices, eigenvalues, smooth):
 def strip_rows(x, y, order, lift, sums, double sharpness, along, across, matrix, cuts, ptrdiff_t begin, axis):
     """Write levels 1 .. nj - 2 of the rows in `order` to `x` and `y` (n + 1, nj); return whether they are finite.
 
-    Parameters
-    ----------
-    lift : `geometry.lift.Lift`.
-    sums : a point, how many follow with it, and their columns (Q, 2, width) by `waves.columns`.
-    sharpness : of the window of `waves`.
-    along, across : (nudges, n) and (nudges, points), whose products are added to phi.
-    matrix, cuts : of the panels, (PANEL_NODES, levels) and the levels where they meet, the first at `begin`.
-    axis : a point and the squared direction of the axis about which rows 2k and 2k + 1 of `order` are
-        mirror images, or None.
+    `lift` is a `geometry.lift.Lift`, `sums` are a point, how many follow with it, and their columns (Q, 2, width);
+    `axis` is a point and the squared direction of the axis of symmetry, or None; the others as in
+    ``conformal/strip_rows.h``.
     """
     cdef StripRows s
     cdef WindowSum *windows
     cdef ptrdiff_t nj = x.shape[1], rows = len(order), width = matrix.shape[1], i, start, count
-    cdef double *px = fills(x, y.shape)
-    cdef double *py = fills(y, x.shape)
+    cdef Written px = fills(x, y.shape), py = fills(y, x.shape)
     cdef const ptrdiff_t *places = reads_indices(order, (rows,))
     cdef double total
     s.n, s.m, s.n_nudges, s.panels, s.begin = len(x) - 1, across.shape[1], len(along), len(cuts) - 1, begin
@@ -255,7 +227,7 @@ def strip_rows(x, y, order, lift, sums, double sharpness, along, across, matrix,
         windows[s.n_sums].columns = reads(values, (len(values), 2, values.shape[2]))
         s.n_sums += 1 if len(values) and count else 0
     scratch = np.empty(8 * (s.m + LANES))
-    cdef double *room = fills(scratch, scratch.shape)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         total = c_strip_rows(&s, places, rows, px, py, nj, room)
     return bool(isfinite(total))

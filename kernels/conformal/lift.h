@@ -1,9 +1,8 @@
 /* The conformal lift of a body's wall; see lift.py for the maps and what decides them. */
-#ifndef MESHONET_LIFT_H
-#define MESHONET_LIFT_H
-
-#include "complex_pair.h"
+#pragma once
 #include <stddef.h>
+
+typedef struct { double re, im; } Cplx; /* a complex number that every compiler has */
 
 #define TERMS 13 /* of the series below */
 
@@ -45,5 +44,3 @@ double lift_bisect(const BodyLift *lift, const LineOff *line, double start, doub
 
 /* The nodes ahead of and behind `tip` that are .004 of the distance to `other` away from it. */
 void lift_beside(const Cplx *wall, ptrdiff_t n, ptrdiff_t tip, Cplx other, ptrdiff_t *ahead, ptrdiff_t *behind);
-
-#endif

@@ -1,10 +1,7 @@
 /* From strip points w = psi + i phi to the plane; see geometry/lift.py for the maps. */
-#ifndef MESHONET_LIFT_MAPS_H
-#define MESHONET_LIFT_MAPS_H
-
+#pragma once
 #include <math.h>
 
-#include "clones.h"
 #include "exponential.h"
 #include "lift.h"
 
@@ -21,26 +18,14 @@ extern double atan2(double, double) __attribute__((simd("notinbranch")));
 
 /* sin and cos for |x| < 1e5: quadrant by rounding, Cody & Waite reduction, Taylor on |r| < pi/4: 2 ulp */
 MESHONET_INLINE void fast_sincos(double x, double *s, double *c) {
+    static const double sine[7] = {-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362880.0, -1.0 / 39916800.0,
+                                   1.0 / 6227020800.0, -1.0 / 1307674368000.0};
+    static const double cosine[8] = {-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40320.0, -1.0 / 3628800.0,
+                                     1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
     double n = rint(x * 0.63661977236758134308);
     double r = ((x - n * 1.57079632673412561417e+00) - n * 6.07710050630396597660e-11) - n * 2.02226624879595063154e-21;
     double z = r * r;
-    double ps = -1.0 / 1307674368000.0;
-    ps = ps * z + 1.0 / 6227020800.0;
-    ps = ps * z - 1.0 / 39916800.0;
-    ps = ps * z + 1.0 / 362880.0;
-    ps = ps * z - 1.0 / 5040.0;
-    ps = ps * z + 1.0 / 120.0;
-    ps = ps * z - 1.0 / 6.0;
-    ps = r + r * z * ps;
-    double pc = 1.0 / 20922789888000.0;
-    pc = pc * z - 1.0 / 87178291200.0;
-    pc = pc * z + 1.0 / 479001600.0;
-    pc = pc * z - 1.0 / 3628800.0;
-    pc = pc * z + 1.0 / 40320.0;
-    pc = pc * z - 1.0 / 720.0;
-    pc = pc * z + 1.0 / 24.0;
-    pc = pc * z - 0.5;
-    pc = 1.0 + z * pc;
+    const double ps = r + r * z * polynomial(sine, 7, z), pc = 1.0 + z * polynomial(cosine, 8, z);
     int quadrant = (int)n & 3;
     double a = (quadrant & 1) ? pc : ps, b = (quadrant & 1) ? ps : pc;
     *s = (quadrant & 2) ? -a : a;
@@ -50,7 +35,7 @@ MESHONET_INLINE void fast_sincos(double x, double *s, double *c) {
 /* v = exp(psi + i (phi + phase)) */
 MESHONET_INLINE void unroll(const double *psi, const double *phi, double phase, long n, double *vr, double *vi) {
     for (long j = 0; j < n; j++) {
-        double s, c, r = fast_exp(psi[j]);
+        double s, c, r = exp_double(psi[j]);
         fast_sincos(phi[j] + phase, &s, &c);
         vr[j] = r * c;
         vi[j] = r * s;
@@ -70,7 +55,7 @@ MESHONET_INLINE void restore_corner(const LiftCorner *m, long n, double *restric
     for (long j = 0; j < n; j++) an[j] = atan2(vi[j], vr[j]);
     const double k = m->k;
     for (long j = 0; j < n; j++) {
-        double s, c, size = fast_exp(0.5 * k * (lr[j] > -600.0 ? lr[j] : -600.0)); /* at the corner itself: 0 */
+        double s, c, size = exp_double(0.5 * k * (lr[j] > -600.0 ? lr[j] : -600.0)); /* at the corner itself: 0 */
         fast_sincos(k * an[j], &s, &c);
         double rr = size * c, ri = size * s;
         double nr = m->q.re * rr - m->q.im * ri - m->p.re, ni = m->q.re * ri + m->q.im * rr - m->p.im;
@@ -136,5 +121,3 @@ MESHONET_INLINE void lift_to_plane(double *restrict psi_x, double *restrict phi_
         phi_y[j] = -(m->centre.im + m->quarter.re * zi + m->quarter.im * zr);
     }
 }
-
-#endif

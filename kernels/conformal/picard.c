@@ -1,45 +1,64 @@
-/* Modes and columns lie in rows of levels, so that every operation of a transform or product is one on whole
-   rows. Transforms leave and take the modes in bit-reversed order, which saves the reordering. */
+/* Transforms of many series at once, Picard's step in the strip, and Fourier sums of its solution.
 
+   Modes and columns lie in rows of levels, so that every operation of a transform or product is one on whole rows;
+   transforms leave and take the modes where their reversed bits say. Cooley & Tukey (1965). */
 #include "picard.h"
-
+#include "clones.h"
+#include "lanes.h"
 #include <math.h>
-
-#include "fft.h"
 
 #define LEVELS PICARD_LEVELS
 #define COUNT PICARD_COUNT
 #define COLUMNS PICARD_COLUMNS
 #define PARTS (LEVELS / LANES)
+#define BLOCK 128 /* rows that stay in the first-level cache while they are combined with each other */
 
 static const double TURN = 6.283185307179586476925;
+
+MESHONET_INLINE ptrdiff_t reversed(ptrdiff_t k, ptrdiff_t count)
+{
+    ptrdiff_t r = 0;
+    for (ptrdiff_t bit = 1; bit < count; bit *= 2) r = 2 * r + ((k & bit) != 0);
+    return r;
+}
+
+/* a, b <- a + u b, a - u b, for LANES series. */
+MESHONET_INLINE void pair_up(double *ar, double *ai, double *br, double *bi, const double *unit)
+{
+    const double wr = unit[0], wi = unit[1];
+    const Lanes b = OF(br), c = OF(bi), tr = wr * b - wi * c, ti = wr * c + wi * b, r = OF(ar), i = OF(ai);
+    AT(br) = r - tr, AT(bi) = i - ti;
+    AT(ar) = r + tr, AT(ai) = i + ti;
+}
+
+/* a, b <- a + b, (a - b) / u */
+MESHONET_INLINE void pair_down(double *ar, double *ai, double *br, double *bi, const double *unit)
+{
+    const double wr = unit[0], wi = -unit[1];
+    const Lanes tr = AT(ar) - AT(br), ti = AT(ai) - AT(bi);
+    AT(ar) += AT(br), AT(ai) += AT(bi);
+    AT(br) = wr * tr - wi * ti, AT(bi) = wr * ti + wi * tr;
+}
 
 MESHONET_INLINE int wavenumber(int mode) { return mode <= PICARD_MODES ? mode : mode - COUNT; }
 
 /* The row of a transform that holds a mode. */
 MESHONET_INLINE int place(int mode) { return (int)reversed(wavenumber(mode) & (COLUMNS - 1), COLUMNS); }
 
-/* Modes, bit-reversed, to columns: the sum of c_k exp(i k theta). WIDTH levels at a time stay in the cache. */
-MESHONET_INLINE void to_columns(PicardField *f, double (*unit)[2])
+/* Modes, bit-reversed, to columns: the sum of c_k exp(i k theta); or `back` to modes times COLUMNS. LANES levels at a
+   time stay in the cache. */
+MESHONET_INLINE void transform(PicardField *f, double (*unit)[2], const int back)
 {
-    for (int l = 0; l < LEVELS; l += WIDTH)
-        for (int size = 2; size <= COLUMNS; size *= 2)
+    for (int l = 0; l < LEVELS; l += LANES)
+        for (int size = back ? COLUMNS : 2; 2 <= size && size <= COLUMNS; size = back ? size / 2 : 2 * size)
             for (int j = 0; j < size / 2; j++)
                 for (int a = j; a < COLUMNS; a += size) {
                     const int b = a + size / 2;
-                    pair_up(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, unit[j * (COLUMNS / size)]);
-                }
-}
-
-/* Columns to modes, bit-reversed, times COLUMNS. */
-MESHONET_INLINE void to_modes(PicardField *f, double (*unit)[2])
-{
-    for (int l = 0; l < LEVELS; l += WIDTH)
-        for (int size = COLUMNS; size >= 2; size /= 2)
-            for (int j = 0; j < size / 2; j++)
-                for (int a = j; a < COLUMNS; a += size) {
-                    const int b = a + size / 2;
-                    pair_down(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, unit[j * (COLUMNS / size)]);
+                    const double *u = unit[j * (COLUMNS / size)];
+                    if (back)
+                        pair_down(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, u);
+                    else
+                        pair_up(f->re[a] + l, f->im[a] + l, f->re[b] + l, f->im[b] + l, u);
                 }
 }
 
@@ -51,13 +70,13 @@ MESHONET_INLINE void product(const PicardRow *rows, const PicardRow *matrix, Pic
         for (int p = 0; p < PARTS; p++) a[p] = b[p] = (Lanes){0};
         for (int m = 0; m < LEVELS; m++)
             for (int p = 0; p < PARTS; p++) {
-                const Lanes column = LOAD(matrix[m] + p * LANES);
-                ADD_PRODUCT(a[p], rows[r][m], column);
-                ADD_PRODUCT(b[p], rows[r + 1][m], column);
+                const Lanes column = OF(matrix[m] + p * LANES);
+                a[p] += rows[r][m] * column;
+                b[p] += rows[r + 1][m] * column;
             }
         for (int p = 0; p < PARTS; p++) {
-            STORE(out[r] + p * LANES, a[p]);
-            STORE(out[r + 1] + p * LANES, b[p]);
+            AT(out[r] + p * LANES) = a[p];
+            AT(out[r + 1] + p * LANES) = b[p];
         }
     }
 }
@@ -119,9 +138,9 @@ double picard_step(PicardRow *c, double height, const PicardMatrices *m, PicardS
     product(c, m->d2, one);
     place_modes(&s->ee, one, 0);
     PicardField *all[] = {&s->t, &s->tt, &s->e, &s->te, &s->ee};
-    for (int k = 0; k < 5; k++) to_columns(all[k], unit);
+    for (int k = 0; k < 5; k++) transform(all[k], unit, 0);
     residual(s, height);
-    to_modes(&s->residual, unit);
+    transform(&s->residual, unit, 1);
     for (int mode = 0; mode < COUNT; mode++)
         for (int l = 0; l < LEVELS; l++) {
             one[mode][l] = s->residual.re[place(mode)][l];
@@ -133,7 +152,7 @@ double picard_step(PicardRow *c, double height, const PicardMatrices *m, PicardS
     for (int r = 0; r < 2 * COUNT; r++)
         for (int l = 0; l < LEVELS; l++) c[r][l] -= one[r][l];
     place_modes(&s->t, one, 0);
-    to_columns(&s->t, unit);
+    transform(&s->t, unit, 0);
     double largest = 0.0, all_squares = 0.0;
     const double *re = s->t.re[0], *im = s->t.im[0];
     for (int l = 0; l < COLUMNS * LEVELS; l++) {
@@ -142,4 +161,37 @@ double picard_step(PicardRow *c, double height, const PicardMatrices *m, PicardS
         all_squares += square;
     }
     return isfinite(all_squares) ? sqrt(largest) : INFINITY;
+}
+
+/* Transforms of `size` rows from those of their halves. */
+MESHONET_INLINE void combine(double *rows, ptrdiff_t size, const double *unit, ptrdiff_t step, ptrdiff_t width)
+{
+    const ptrdiff_t half = size / 2, apart = 2 * width;
+    for (ptrdiff_t j = 0; j < half; j++) {
+        double *a = rows + j * apart, *b = a + half * apart;
+        pair_up(a, a + width, b, b + width, unit + 2 * j * step);
+    }
+}
+
+MESHONET_CLONES
+void fourier_columns(const double *modes, ptrdiff_t m, ptrdiff_t highest, const double *gain, const double *unit,
+                   double *columns, ptrdiff_t count, ptrdiff_t width)
+{
+    for (ptrdiff_t k = -highest; k <= highest; k++) {
+        const double factor = gain[k < 0 ? -k : k];
+        const double *from = modes + 2 * (k < 0 ? 2 * highest + 1 + k : k);
+        double *row = columns + reversed(k & (count - 1), count) * 2 * width;
+        for (ptrdiff_t l = 0; l < m; l++, from += 2 * (2 * highest + 1))
+            row[l] = factor * from[0], row[width + l] = factor * from[1];
+    }
+    for (ptrdiff_t l = 0; l < width; l += LANES) {
+        const ptrdiff_t block = count < BLOCK ? count : BLOCK;
+        for (ptrdiff_t a = 0; a < count; a += block)
+            for (ptrdiff_t size = 2; size <= block; size *= 2)
+                for (ptrdiff_t b = a; b < a + block; b += size)
+                    combine(columns + b * 2 * width + l, size, unit, count / size, width);
+        for (ptrdiff_t size = 2 * block; size <= count; size *= 2)
+            for (ptrdiff_t b = 0; b < count; b += size)
+                combine(columns + b * 2 * width + l, size, unit, count / size, width);
+    }
 }

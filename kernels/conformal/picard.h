@@ -1,6 +1,6 @@
-/* One step of Picard's iteration in the strip; see strip.py. */
-#ifndef MESHONET_PICARD_H
-#define MESHONET_PICARD_H
+/* Picard's iteration in the strip (strip.py) and samples of Fourier sums at equal steps (nufft.py). */
+#pragma once
+#include <stddef.h>
 
 #define PICARD_MODES 63
 #define PICARD_COUNT (2 * PICARD_MODES + 1)
@@ -12,7 +12,8 @@ typedef double PicardRow[PICARD_LEVELS];
 /* Real and imaginary parts, a row of levels for each mode or column. */
 typedef struct { PicardRow re[PICARD_COLUMNS], im[PICARD_COLUMNS]; } PicardField;
 
-/* Matrices are transposed: a row of levels times one of them. The eigenvectors have zeros for the two walls. */
+/* Matrices are transposed, a row of levels times one of them: first and second derivative, the inverse of the
+   eigenvectors of the latter, and these, with zeros for the two walls. */
 typedef struct {
     const PicardRow *d1, *d2, *inverse, *vectors;
     const double *eigenvalues, *smooth; /* (PICARD_LEVELS,), (PICARD_COUNT,) */
@@ -24,4 +25,8 @@ typedef struct { PicardField t, tt, e, te, ee, residual; PicardRow flat[2][2 * P
    Returns the largest change of a column's value. */
 double picard_step(PicardRow *c, double height, const PicardMatrices *m, PicardScratch *s);
 
-#endif
+/* `columns` (count, 2, width), zeroed, real parts before imaginary ones, from `modes` (m, 2 highest + 1) in
+   complex pairs, k = 0 .. highest, -highest .. -1, each times gain[|k|]; highest < count / 2, m <= width, a
+   multiple of LANES. `unit` (count / 2, 2) holds exp(2 pi i j / count). */
+void fourier_columns(const double *modes, ptrdiff_t m, ptrdiff_t highest, const double *gain, const double *unit,
+                   double *columns, ptrdiff_t count, ptrdiff_t width);

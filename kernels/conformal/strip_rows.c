@@ -5,8 +5,6 @@
    at both products: one side is 14 or 16 long, and a grid's rows lie far apart. */
 
 #include "strip_rows.h"
-
-#include "clones.h"
 #include "lanes.h"
 #include "lift_maps.h"
 
@@ -15,29 +13,25 @@
 /* The points of a row: psi and phi, then x and y; room for LANES more than there are. */
 typedef struct { double *x, *y; } Row;
 
-/* Whole lanes: what is added behind the last of m points is zero. */
-MESHONET_INLINE void gather(double *restrict out, const double *const *taken, const double *weights, ptrdiff_t m)
+/* `vectors` of LANES points from l on; what is added behind the last point of a row is zero. */
+MESHONET_INLINE void gather(double *restrict out, const double *const *taken, const double *weights, ptrdiff_t l,
+                            const int vectors)
+{
+    Lanes sum[4];
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; v++) sum[v] = OF(out + l + v * LANES);
+    for (int t = 0; t < TAPS; t++)
+#pragma GCC unroll 4
+        for (int v = 0; v < vectors; v++) sum[v] += weights[t] * OF(taken[t] + l + v * LANES);
+#pragma GCC unroll 4
+    for (int v = 0; v < vectors; v++) AT(out + l + v * LANES) = sum[v];
+}
+
+MESHONET_INLINE void gather_all(double *restrict out, const double *const *taken, const double *weights, ptrdiff_t m)
 {
     ptrdiff_t l = 0;
-    for (; l + 4 * LANES <= m; l += 4 * LANES) {
-        Lanes a = LOAD(out + l), b = LOAD(out + l + LANES), c = LOAD(out + l + 2 * LANES), d = LOAD(out + l + 3 * LANES);
-        for (int t = 0; t < TAPS; t++) {
-            const double w = weights[t], *column = taken[t] + l;
-            ADD_PRODUCT(a, w, LOAD(column));
-            ADD_PRODUCT(b, w, LOAD(column + LANES));
-            ADD_PRODUCT(c, w, LOAD(column + 2 * LANES));
-            ADD_PRODUCT(d, w, LOAD(column + 3 * LANES));
-        }
-        STORE(out + l, a);
-        STORE(out + l + LANES, b);
-        STORE(out + l + 2 * LANES, c);
-        STORE(out + l + 3 * LANES, d);
-    }
-    for (; l < m; l += LANES) {
-        Lanes a = LOAD(out + l);
-        for (int t = 0; t < TAPS; t++) ADD_PRODUCT(a, weights[t], LOAD(taken[t] + l));
-        STORE(out + l, a);
-    }
+    for (; l + 4 * LANES <= m; l += 4 * LANES) gather(out, taken, weights, l, 4);
+    for (; l < m; l += LANES) gather(out, taken, weights, l, 1);
 }
 
 /* Add the sum at node i of n to its points; waves.py has the window. */
@@ -48,12 +42,12 @@ MESHONET_INLINE void add_sum(const WindowSum *s, double sharpness, ptrdiff_t i, 
     double weights[TAPS];
     for (int t = 0; t < TAPS; t++) {
         const double u = (first + t - place) / (0.5 * TAPS), inside = 1.0 - u * u;
-        weights[t] = fast_exp(sharpness * (sqrt(inside > 0.0 ? inside : 0.0) - 1.0));
+        weights[t] = exp_double(sharpness * (sqrt(inside > 0.0 ? inside : 0.0) - 1.0));
         re[t] = s->columns + (((ptrdiff_t)first + t) & (s->count - 1)) * 2 * s->width;
         im[t] = re[t] + s->width;
     }
-    gather(row.x + s->from, re, weights, s->m);
-    gather(row.y + s->from, im, weights, s->m);
+    gather_all(row.x + s->from, re, weights, s->m);
+    gather_all(row.y + s->from, im, weights, s->m);
 }
 
 MESHONET_CLONES
@@ -91,18 +85,12 @@ MESHONET_INLINE void lay(double *const *out, int count, double (*c)[PANEL_NODES]
     ptrdiff_t j = from;
     if (count == ROWS)
         for (; j + LANES <= to; j += LANES) {
-            Lanes r0 = {0}, r1 = {0}, r2 = {0}, r3 = {0};
-            for (int k = 0; k < PANEL_NODES; k++) {
-                const Lanes basis = LOAD(matrix + k * width + j);
-                ADD_PRODUCT(r0, c[0][k], basis);
-                ADD_PRODUCT(r1, c[1][k], basis);
-                ADD_PRODUCT(r2, c[2][k], basis);
-                ADD_PRODUCT(r3, c[3][k], basis);
-            }
-            STORE(out[0] + j, r0);
-            STORE(out[1] + j, r1);
-            STORE(out[2] + j, r2);
-            STORE(out[3] + j, r3);
+            Lanes sum[ROWS] = {{0}};
+            for (int k = 0; k < PANEL_NODES; k++)
+#pragma GCC unroll 4
+                for (int r = 0; r < ROWS; r++) sum[r] += c[r][k] * OF(matrix + k * width + j);
+#pragma GCC unroll 4
+            for (int r = 0; r < ROWS; r++) AT(out[r] + j) = sum[r];
         }
     for (; j < to; j++)
         for (int r = 0; r < count; r++) {

@@ -1,7 +1,5 @@
 /* Rows of a grid from the columns of a strip solution; see evaluate.py. */
-#ifndef MESHONET_STRIP_ROWS_H
-#define MESHONET_STRIP_ROWS_H
-
+#pragma once
 #include <stddef.h>
 
 #include "lift.h"
@@ -33,5 +31,3 @@ typedef struct {
    sum of all points, finite when they are. */
 double strip_rows(const StripRows *s, const ptrdiff_t *order, ptrdiff_t count, double *x, double *y, ptrdiff_t nj,
                   double *scratch);
-
-#endif

@@ -1,27 +1,15 @@
 cdef extern from "elliptic/multigrid.h":
     ctypedef struct Differences:
-        const double *forward
-        const double *backward
-        const double *centred
+        Read forward, backward, centred
     ctypedef struct Transfer:
-        const double *right
-        const double *before
-        const double *at
-        const double *after
+        Read right, before, at, after
     ctypedef struct Control:
         ptrdiff_t terms
-        const double *along
-        const double *across
-        const double *reach
+        Read along, across, reach
     ctypedef struct Level:
         ptrdiff_t mi, mj
         int periodic
-        double *x
-        double *y
-        double *fx
-        double *fy
-        double *x0
-        double *y0
+        Written x, y, fx, fy, x0, y0
         Differences xi, eta
         Transfer xi_coarse, eta_coarse
         Control phi, psi
@@ -39,16 +27,9 @@ def multigrid_scratch(ptrdiff_t mi, ptrdiff_t mj):
 
 
 cdef class MultigridLevel:
-    """Pointers into the arrays of one level; the arrays are kept alive here.
-
-    Parameters
-    ----------
-    x, y : (mi + 1, mj + 1) nodes, changed in place.
-    xi, eta : weights (forward, backward, centred) of the differences, (mi + 1) and (mj + 1) each.
-    periodic : in xi.
-    scratch : `multigrid_scratch` doubles, shared between levels.
-    coarse : this level is below the finest: it needs a right side and a copy of what came down.
-    """
+    """Pointers into the arrays of one level, which are kept alive here: nodes `x`, `y` (mi + 1, mj + 1), changed in place;
+    weights (forward, backward, centred) of the differences along `xi` and `eta`; `scratch` that levels share. A `coarse`
+    one has a right side and a copy of what came down."""
 
     cdef Level level
     cdef list kept

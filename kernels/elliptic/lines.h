@@ -1,7 +1,5 @@
 /* Zebra line relaxation along eta and along xi, both colours in one pass over memory. */
-#ifndef MESHONET_LINES_H
-#define MESHONET_LINES_H
-#include "control.h"
+#pragma once
 #include "stencil.h"
 #include <string.h>
 
@@ -46,14 +44,7 @@ MESHONET_INLINE void eta_assemble_with(const Level *g, ptrdiff_t i, const EtaSys
 MESHONET_CLONES
 static void eta_assemble(const Level *g, ptrdiff_t i, const EtaSystem *s, int k, int mode)
 {
-    if (mode == (FORCED | CONTROLLED))
-        eta_assemble_with(g, i, s, k, FORCED | CONTROLLED);
-    else if (mode == CONTROLLED)
-        eta_assemble_with(g, i, s, k, CONTROLLED);
-    else if (mode == FORCED)
-        eta_assemble_with(g, i, s, k, FORCED);
-    else
-        eta_assemble_with(g, i, s, k, 0);
+    BY_MODE(mode, eta_assemble_with, g, i, s, k);
 }
 
 /* Solve `lanes` systems side by side (their recurrences overlap) and write lines i, i + 2, ... */
@@ -171,62 +162,26 @@ MESHONET_INLINE void expect_row(const Level *g, ptrdiff_t i, ptrdiff_t j0, int n
 #endif
 }
 
-/* Fixed ends: lines j0, j0 + 2, ... (n of them) between rows 0 and mi. */
-MESHONET_INLINE void xi_block_fixed(const Level *g, ptrdiff_t j0, int n, int mode)
+/* Lines j0, j0 + 2, ... (n of them) between rows 0 and mi. Periodic ones: with X_0 = 0 one solution q of rows 1 .. mi-1
+   meets the right side and another, p, has X_0 = 1 and no right side; row 0 then says which X = q + X_0 p is the line. */
+MESHONET_INLINE void xi_block(const Level *g, ptrdiff_t j0, int n, const int periodic, const int mode)
 {
-    double phi[BLOCK], psi[BLOCK];
-    const ptrdiff_t mi = g->mi, ld = g->mj + 1;
-    double *up = g->scratch, *px = up + BLOCK * (mi + 1), *py = px + BLOCK * (mi + 1);
-    for (int k = 0; k < n; k++)
-        up[k] = 0.0, px[k] = g->x[j0 + 2 * k], py[k] = g->y[j0 + 2 * k];
-    for (ptrdiff_t i = 1; i < mi; i++) {
-        const Rows r = rows_at(g, i);
-        double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
-        const double *restrict u1 = u - BLOCK, *restrict bx1 = bx - BLOCK, *restrict by1 = by - BLOCK;
-        expect_row(g, i + AHEAD, j0, n);
-        if (mode & CONTROLLED)
-            control_row(g, i, j0, 2, n, phi, psi);
-        MESHONET_INDEPENDENT
-        for (int k = 0; k < n; k++) {
-            const XiRow t = xi_row(g, &r, i, j0 + 2 * k, mode & CONTROLLED ? phi[k] : 0.0,
-                                   mode & CONTROLLED ? psi[k] : 0.0, mode);
-            const double w = 1.0 / (t.diagonal - t.lower * u1[k]);
-            u[k] = t.upper * w;
-            bx[k] = (t.bx - t.lower * bx1[k]) * w;
-            by[k] = (t.by - t.lower * by1[k]) * w;
-        }
-    }
-    double ex[BLOCK], ey[BLOCK];
-    for (int k = 0; k < n; k++)
-        ex[k] = g->x[mi * ld + j0 + 2 * k], ey[k] = g->y[mi * ld + j0 + 2 * k];
-    for (ptrdiff_t i = mi - 1; i > 0; i--) {
-        expect_row(g, i - AHEAD, j0, n);
-        const double *restrict u = up + i * BLOCK, *restrict bx = px + i * BLOCK, *restrict by = py + i * BLOCK;
-        double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
-        for (int k = 0; k < n; k++) {
-            x[2 * k] = ex[k] = bx[k] - u[k] * ex[k];
-            y[2 * k] = ey[k] = by[k] - u[k] * ey[k];
-        }
-    }
-}
-
-/* Periodic lines: with X_0 = 0 one solution of rows 1 .. mi-1 meets the right side and another, p, has X_0 = 1
-   and no right side; row 0 then says which combination X = q + X_0 p is the line. */
-MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int mode)
-{
-    double phi[BLOCK], psi[BLOCK];
-    const ptrdiff_t mi = g->mi, ld = g->mj + 1;
+    double phi[BLOCK], psi[BLOCK], ex[BLOCK], ey[BLOCK];
+    const ptrdiff_t mi = g->mi, ld = g->mj + 1, last = (mi - 1) * BLOCK;
     double *up = g->scratch, *qx = up + BLOCK * (mi + 1), *qy = qx + BLOCK * (mi + 1), *p = qy + BLOCK * (mi + 1);
     XiRow closing[BLOCK];
-    const Rows r0 = rows_at(g, 0);
-    if (mode & CONTROLLED)
-        control_row(g, 0, j0, 2, n, phi, psi);
-    for (int k = 0; k < n; k++) {
-        closing[k] = xi_row(g, &r0, 0, j0 + 2 * k, mode & CONTROLLED ? phi[k] : 0.0, mode & CONTROLLED ? psi[k] : 0.0,
-                            mode);
-        up[k] = qx[k] = qy[k] = 0.0, p[k] = 1.0;
-        qx[mi * BLOCK + k] = qy[mi * BLOCK + k] = 0.0, p[mi * BLOCK + k] = 1.0;
+    if (periodic) {
+        const Rows r = rows_at(g, 0);
+        if (mode & CONTROLLED)
+            control_row(g, 0, j0, 2, n, phi, psi);
+        for (int k = 0; k < n; k++) {
+            closing[k] = xi_row(g, &r, 0, j0 + 2 * k, mode & CONTROLLED ? phi[k] : 0.0,
+                                mode & CONTROLLED ? psi[k] : 0.0, mode);
+            p[k] = p[mi * BLOCK + k] = 1.0, qx[mi * BLOCK + k] = qy[mi * BLOCK + k] = 0.0;
+        }
     }
+    for (int k = 0; k < n; k++)
+        up[k] = 0.0, qx[k] = periodic ? 0.0 : g->x[j0 + 2 * k], qy[k] = periodic ? 0.0 : g->y[j0 + 2 * k];
     for (ptrdiff_t i = 1; i < mi; i++) {
         const Rows r = rows_at(g, i);
         double *restrict u = up + i * BLOCK, *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK;
@@ -244,35 +199,47 @@ MESHONET_INLINE void xi_block_periodic(const Level *g, ptrdiff_t j0, int n, int 
             u[k] = t.upper * w;
             bx[k] = (t.bx - t.lower * bx1[k]) * w;
             by[k] = (t.by - t.lower * by1[k]) * w;
-            bp[k] = -t.lower * bp1[k] * w;
+            if (periodic)
+                bp[k] = -t.lower * bp1[k] * w;
         }
     }
+    for (int k = 0; k < n && !periodic; k++)
+        ex[k] = g->x[mi * ld + j0 + 2 * k], ey[k] = g->y[mi * ld + j0 + 2 * k];
     for (ptrdiff_t i = mi - 1; i > 0; i--) {
         const double *restrict u = up + i * BLOCK;
         double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
+        double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
+        if (periodic) {
+            for (int k = 0; k < n; k++) {
+                bx[k] -= u[k] * bx[k + BLOCK];
+                by[k] -= u[k] * by[k + BLOCK];
+                bp[k] -= u[k] * bp[k + BLOCK];
+            }
+            continue;
+        }
+        expect_row(g, i - AHEAD, j0, n);
         for (int k = 0; k < n; k++) {
-            bx[k] -= u[k] * bx[k + BLOCK];
-            by[k] -= u[k] * by[k + BLOCK];
-            bp[k] -= u[k] * bp[k + BLOCK];
+            x[2 * k] = ex[k] = bx[k] - u[k] * ex[k];
+            y[2 * k] = ey[k] = by[k] - u[k] * ey[k];
         }
     }
-    double x0[BLOCK], y0[BLOCK];
-    const ptrdiff_t last = (mi - 1) * BLOCK;
+    if (!periodic)
+        return;
     for (int k = 0; k < n; k++) {
         const XiRow t = closing[k];
         const double w = 1.0 / (t.diagonal + t.lower * p[last + k] + t.upper * p[BLOCK + k]);
-        x0[k] = (t.bx - t.lower * qx[last + k] - t.upper * qx[BLOCK + k]) * w;
-        y0[k] = (t.by - t.lower * qy[last + k] - t.upper * qy[BLOCK + k]) * w;
-        g->x[j0 + 2 * k] = g->x[mi * ld + j0 + 2 * k] = x0[k];
-        g->y[j0 + 2 * k] = g->y[mi * ld + j0 + 2 * k] = y0[k];
+        ex[k] = (t.bx - t.lower * qx[last + k] - t.upper * qx[BLOCK + k]) * w;
+        ey[k] = (t.by - t.lower * qy[last + k] - t.upper * qy[BLOCK + k]) * w;
+        g->x[j0 + 2 * k] = g->x[mi * ld + j0 + 2 * k] = ex[k];
+        g->y[j0 + 2 * k] = g->y[mi * ld + j0 + 2 * k] = ey[k];
     }
     for (ptrdiff_t i = 1; i < mi; i++) {
         expect_row(g, i + AHEAD, j0, n);
         const double *restrict bx = qx + i * BLOCK, *restrict by = qy + i * BLOCK, *restrict bp = p + i * BLOCK;
         double *restrict x = g->x + i * ld + j0, *restrict y = g->y + i * ld + j0;
         for (int k = 0; k < n; k++) {
-            x[2 * k] = bx[k] + x0[k] * bp[k];
-            y[2 * k] = by[k] + y0[k] * bp[k];
+            x[2 * k] = bx[k] + ex[k] * bp[k];
+            y[2 * k] = by[k] + ey[k] * bp[k];
         }
     }
 }
@@ -281,14 +248,10 @@ MESHONET_CLONES
 static void xi_group(const Level *g, ptrdiff_t j0, ptrdiff_t lines, int forced)
 {
     const int n = (int)lines, mode = mode_of(g, forced);
-    if (mode == (FORCED | CONTROLLED))
-        g->periodic ? xi_block_periodic(g, j0, n, FORCED | CONTROLLED) : xi_block_fixed(g, j0, n, FORCED | CONTROLLED);
-    else if (mode == CONTROLLED)
-        g->periodic ? xi_block_periodic(g, j0, n, CONTROLLED) : xi_block_fixed(g, j0, n, CONTROLLED);
-    else if (mode == FORCED)
-        g->periodic ? xi_block_periodic(g, j0, n, FORCED) : xi_block_fixed(g, j0, n, FORCED);
+    if (g->periodic)
+        BY_MODE(mode, xi_block, g, j0, n, 1);
     else
-        g->periodic ? xi_block_periodic(g, j0, n, 0) : xi_block_fixed(g, j0, n, 0);
+        BY_MODE(mode, xi_block, g, j0, n, 0);
 }
 
 /* Both colours in one pass, as eta_lines. */
@@ -301,5 +264,3 @@ static void xi_lines(const Level *g, int forced)
         xi_group(g, behind, every_second(behind, ready < mj ? ready : mj, BLOCK), forced);
     }
 }
-
-#endif

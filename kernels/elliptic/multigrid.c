@@ -3,7 +3,7 @@
        L(x) = α (x_ξξ + φ x_ξ) - 2β x_ξη + γ (x_ηη + ψ x_η) = f,
        α = x_η·x_η,  β = x_ξ·x_η,  γ = x_ξ·x_ξ,    x = (x, y),
 
-   by central differences, with the control functions φ and ψ of control.h. x and y share their coefficients, so a line of nodes is one tridiagonal matrix with
+   by central differences, with the control functions φ and ψ of stencil.h. x and y share their coefficients, so a line of nodes is one tridiagonal matrix with
    two right sides. Signs: the matrix of a line has diagonal -(east + west + north + south) < 0. */
 #include "multigrid.h"
 #include "lines.h"
@@ -26,7 +26,7 @@ void multigrid_smooth(const Level *level, int forced)
 
 /* ---- residual, restriction, correction ---- */
 
-MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, int mode, double *restrict rx, double *restrict ry)
+MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, double *restrict rx, double *restrict ry, int mode)
 {
     const int forced = mode & FORCED;
     double *restrict phi = g->scratch + 8 * padded(g->mj), *restrict psi = phi + padded(g->mj);
@@ -53,15 +53,7 @@ MESHONET_INLINE void residual_row_with(const Level *g, ptrdiff_t i, int mode, do
 MESHONET_CLONES
 static void residual_row(const Level *g, ptrdiff_t i, int forced, double *rx, double *ry)
 {
-    const int mode = mode_of(g, forced);
-    if (mode == (FORCED | CONTROLLED))
-        residual_row_with(g, i, FORCED | CONTROLLED, rx, ry);
-    else if (mode == CONTROLLED)
-        residual_row_with(g, i, CONTROLLED, rx, ry);
-    else if (mode == FORCED)
-        residual_row_with(g, i, FORCED, rx, ry);
-    else
-        residual_row_with(g, i, 0, rx, ry);
+    BY_MODE(mode_of(g, forced), residual_row_with, g, i, rx, ry);
 }
 
 MESHONET_INLINE double squares(const double *restrict a, const double *restrict b, ptrdiff_t first, ptrdiff_t last)

@@ -1,6 +1,5 @@
 /* One level of the multigrid hierarchy for Winslow's system with control functions, and what can be done to it. */
-#ifndef MESHONET_MULTIGRID_H
-#define MESHONET_MULTIGRID_H
+#pragma once
 #include <stddef.h>
 
 /* Weights of the differences at the nodes of one direction, whose steps need not be equal:
@@ -54,4 +53,3 @@ double multigrid_restrict(const Level *fine, const Level *coarse, int forced);
 
 /* fine x += interpolation of coarse (x - x0), at the nodes solved for. Returns the sum of |coarse (x - x0)|^2. */
 double multigrid_correct(const Level *fine, const Level *coarse);
-#endif

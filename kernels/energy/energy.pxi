@@ -30,11 +30,10 @@ cdef extern from "energy/variational.h":
         Weights weights
         Spectrum spectrum
         Space space
-        double *z
-        double *gradient
+        Written z, gradient
         double value, smallest, reach, still
     int GOES_ON
-    size_t c_variational_workspace "variational_workspace"(ptrdiff_t ni, ptrdiff_t nj) nogil
+    size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj) nogil
     double c_variational_energy "variational_energy"(
         const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights, double *gx, double *gy,
         double *smallest, double *work) nogil
@@ -52,11 +51,6 @@ cdef extern from "Python.h":
     int PyErr_CheckSignals() except -1
 
 
-def variational_workspace(ptrdiff_t ni, ptrdiff_t nj):
-    """Return the doubles of workspace that `variational_energy` needs."""
-    return c_variational_workspace(ni, nj)
-
-
 cdef Weights weights_of(double aspect, double shape, double smoothness, double epsilon=0.0, bint periodic=False):
     cdef Weights w
     w.aspect, w.shape, w.smoothness, w.epsilon, w.periodic, w.relief = aspect, shape, smoothness, epsilon, periodic, NULL
@@ -64,20 +58,19 @@ cdef Weights weights_of(double aspect, double shape, double smoothness, double e
 
 
 def variational_energy(z, double aspect, double shape, double smoothness, double epsilon, bint periodic, relief,
-                       gradient, work):
+                       gradient):
     """Return (value, smallest corner Jacobian) for the planes z (2, ni, nj); fill `gradient` likewise.
 
-    The gradient is zero at fixed nodes: those of the rim, or with `periodic` rows (the last is the first) of the
-    first and the last column; the last row's is in the first then. `relief` (ni,) is the share of the angle term
-    that corners at nodes (i, 0) keep, or None. `epsilon` regularises; without it a folded
-    grid has an infinite value and no gradient.
+    It is zero at fixed nodes: those of the rim, or with `periodic` rows of the first and the last column. The other
+    arguments are the weights of ``energy/variational.h``.
     """
     cdef ptrdiff_t ni = z.shape[1], nj = z.shape[2]
     cdef Weights weights = weights_of(aspect, shape, smoothness, epsilon, periodic)
     cdef double total, smallest = 0.0
-    cdef const double *x = reads(z, (2, ni, nj))
-    cdef double *g = fills(gradient, (2, ni, nj))
-    cdef double *room = fills_room(work, c_variational_workspace(ni, nj))
+    cdef Read x = reads(z, (2, ni, nj))
+    cdef Written g = fills(gradient, (2, ni, nj))
+    work = np.empty(variational_workspace(ni, nj))
+    cdef Written room = fills(work, work.shape)
     if relief is not None:
         weights.relief = reads(relief, (ni,))
     with nogil:
@@ -86,24 +79,20 @@ def variational_energy(z, double aspect, double shape, double smoothness, double
 
 
 def newton(z, double aspect, double shape, double smoothness, int most, double won=0.0):
-    """Take steps of Newton's method from the planes z (2, ni, nj) of a valid grid, in place; return how many.
-
-    Of the Hessian as much is taken as makes it positive. There are `most` at the most, fewer where none helps
-    or after one that lowers the functional by less than `won` of it.
-    """
+    """Take steps of Newton's method from the planes z (2, ni, nj) of a valid grid, in place; return how many."""
     cdef ptrdiff_t ni = z.shape[1], nj = z.shape[2]
     cdef Weights weights = weights_of(aspect, shape, smoothness)
     cdef Band band
-    cdef double *x = fills(z, (2, ni, nj))
+    cdef Written x = fills(z, (2, ni, nj))
     cdef int done
     if ni < 3 or nj < 3:
         raise ValueError("planes without inner nodes")
     columns = np.empty(band_floats(&band, ni - 2, nj - 2), np.float32)
     moves = np.empty(2 * band.mi * band.mj + band.width, np.float32)
-    room = np.empty(6 * ni * nj + c_variational_workspace(ni, nj))
+    room = np.empty(6 * ni * nj + variational_workspace(ni, nj))
     band.column = fills_single(columns)
     cdef float *to = fills_single(moves)
-    cdef double *work = fills(room, room.shape)
+    cdef Written work = fills(room, room.shape)
     with nogil:
         done = newton_steps(&band, x, &weights, most, won, work, to)
     return done

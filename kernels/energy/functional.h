@@ -9,11 +9,9 @@
    same family in either direction; those along the rim count half. Where the rim itself turns so far that no angle there can be good, corners keep a
    share of their angle terms only. One row of cells, or of edges, at a time: first
    the forces of each into row buffers, which vectorises, then onto the nodes. */
-#ifndef MESHONET_FUNCTIONAL_H
-#define MESHONET_FUNCTIONAL_H
-#include "clones.h"
+#pragma once
+#include "exponential.h"
 #include "variational.h"
-#include <math.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -98,6 +96,8 @@ MESHONET_INLINE void scatter(const double *restrict s, const double *restrict n,
    with one division: x = 2^k m with m in [√½, √2), log m = 2 artanh s, s = (m - 1) / (m + 1). */
 MESHONET_INLINE double logarithm(double x, double *inverse)
 {
+    static const double c[9] = {1.0 / 3.0, 1.0 / 5.0, 1.0 / 7.0, 1.0 / 9.0, 1.0 / 11.0, 1.0 / 13.0, 1.0 / 15.0,
+                                1.0 / 17.0, 1.0 / 19.0};
     uint64_t bits, power;
     double m, k;
     memcpy(&bits, &x, sizeof bits);
@@ -109,11 +109,7 @@ MESHONET_INLINE double logarithm(double x, double *inverse)
     k -= 4503599627371519.0;
     const double both = 1.0 / (x * (m + 1.0)), s = (m - 1.0) * x * both, q = s * s;
     *inverse = (m + 1.0) * both;
-    double tail = 1.0 / 19.0;
-    tail = tail * q + 1.0 / 17.0, tail = tail * q + 1.0 / 15.0, tail = tail * q + 1.0 / 13.0;
-    tail = tail * q + 1.0 / 11.0, tail = tail * q + 1.0 / 9.0, tail = tail * q + 1.0 / 7.0;
-    tail = tail * q + 1.0 / 5.0, tail = tail * q + 1.0 / 3.0;
-    return k * 0.69314718055994530942 + 2.0 * s * (1.0 + q * tail);
+    return k * 0.69314718055994530942 + 2.0 * s * (1.0 + q * polynomial(c, 9, q));
 }
 
 /* Half the logarithm of |edge|² and its inverse, for one row of edges; `next` is the offset of an edge's end. */
@@ -221,4 +217,3 @@ MESHONET_INLINE void clear_rim(double *g, ptrdiff_t ni, ptrdiff_t nj, int period
     for (ptrdiff_t i = 0; i < ni; i++)
         g[i * nj] = g[i * nj + nj - 1] = 0.0;
 }
-#endif

@@ -7,8 +7,7 @@
 
    what is left is a sum of squares or, of the first, a convex function of u and J, so that it is never negative
    (the method of Gauss and Newton). `bent` of the rest is added: with all of it the Hessian is exact. */
-#ifndef MESHONET_HESSIAN_H
-#define MESHONET_HESSIAN_H
+#pragma once
 #include "clones.h"
 #include "functional.h"
 #include "spectral.h"
@@ -259,4 +258,3 @@ void solve_band(const Band *b, float *restrict r)
         r[c] = (r[c] - sum) / column[0];
     }
 }
-#endif

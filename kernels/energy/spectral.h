@@ -8,25 +8,20 @@
    Every mode is even or odd about the middle of its direction. So values are folded first, v(k) and its mirror image
    into (v(k) + v(-k)) / √2 and (v(k) - v(-k)) / √2, and each half has its own modes: half the work. Single precision
    is enough here. */
-#ifndef MESHONET_SPECTRAL_H
-#define MESHONET_SPECTRAL_H
+#pragma once
 #include "clones.h"
 #include "variational.h"
 #include <string.h>
 
 #define PANEL 32 /* columns of a product at a time: two vectors of 512 bits */
 
-#if defined(__GNUC__)
-typedef float Lanes __attribute__((vector_size(64), aligned(4)));
 #define LANES 16
-#else
-typedef float Lanes;
-#define LANES 1
-#endif
 #define VECTORS (PANEL / LANES)
 #define ROWS 12   /* of a product at a time: as many sums as registers hold */
 #define DEPTH 192 /* terms of a sum at a time: their panel stays in the first cache */
 #define FOLDED 0.70710678f
+
+typedef float Lanes __attribute__((vector_size(64), aligned(4)));
 
 /* `rows` (ROWS at the most) rows of c = a b, or of c += a b with `add`, one panel; b packed (k, PANEL), c with room for
    whole panels. */
@@ -122,16 +117,15 @@ MESHONET_INLINE void mix(float *restrict a, float *restrict b, ptrdiff_t n)
 /* Rows times the modes of both halves, or back. */
 static void along_rows(const float *w, const Transform *t, float *to, ptrdiff_t rows, int back, float *packed)
 {
-    const Half *e = &t->even, *o = &t->odd;
     const ptrdiff_t nodes = values_of(t), modes = modes_of(t);
-    if (back) {
-        product(w, modes, e->q_t, padded(e->nodes), to, nodes, rows, e->modes, e->nodes, packed);
-        product(w + padded(e->modes), modes, o->q_t, padded(o->nodes), to + padded(e->nodes), nodes, rows, o->modes,
-                o->nodes, packed);
-    } else {
-        product(w, nodes, e->q, padded(e->modes), to, modes, rows, e->nodes, e->modes, packed);
-        product(w + padded(e->nodes), nodes, o->q, padded(o->modes), to + padded(e->modes), modes, rows, o->nodes,
-                o->modes, packed);
+    for (int odd = 0; odd < 2; odd++) {
+        const Half *h = odd ? &t->odd : &t->even;
+        const ptrdiff_t n = padded(h->nodes), m = padded(h->modes);
+        if (back)
+            product(w, modes, h->q_t, n, to, nodes, rows, h->modes, h->nodes, packed);
+        else
+            product(w, nodes, h->q, m, to, modes, rows, h->nodes, h->modes, packed);
+        w += back ? m : n, to += back ? n : m;
     }
 }
 
@@ -161,4 +155,3 @@ MESHONET_INLINE void divide(const Spectrum *s, float *restrict w, float *restric
         along_rows(right, &s->eta, w, 2 * mi, 1, packed);
     }
 }
-#endif

@@ -6,8 +6,7 @@
 
    Nocedal and Wright, Numerical Optimization (2006), algorithm 7.4; the form in products: Chen, Wang and Zhou,
    NIPS 27 (2014). */
-#ifndef MESHONET_STEPS_H
-#define MESHONET_STEPS_H
+#pragma once
 #include "clones.h"
 #include "variational.h"
 #include <math.h>
@@ -119,5 +118,3 @@ static void remember(Descent *d, double factor, double slope)
         d->yz[slot][other] = d->yz[other][slot] = d->products[2 * other + 1] - before[2 * other + 1];
     }
 }
-
-#endif

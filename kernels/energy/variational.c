@@ -1,7 +1,6 @@
 /* Descent of the variational functional: L-BFGS (steps.h) with a preconditioner (frame.h); the functional's gradient
    over a grid from its rows of cells (functional.h), and its Hessian on a coarse one. */
 #include "variational.h"
-#include "coarse_space.h"
 #include "frame.h"
 #include "functional.h"
 #include "hessian.h"

@@ -1,6 +1,5 @@
 /* The variational functional of a grid, its gradient, and a descent of it; see variational.c. */
-#ifndef MESHONET_VARIATIONAL_H
-#define MESHONET_VARIATIONAL_H
+#pragma once
 #include <stddef.h>
 
 typedef struct {
@@ -40,7 +39,7 @@ typedef struct {
     float *column;
 } Band;
 
-/* Moves of inner nodes of a coarse grid, SPACE along a direction at the most; see coarse_space.h. */
+/* Moves of inner nodes of a coarse grid, SPACE along a direction at the most; see frame.h. */
 #define SPACE 16
 typedef struct {
     Band band;       /* the factor; no nodes: none of this */
@@ -96,4 +95,3 @@ int descent_step(Descent *d);
 
 /* The norm of the gradient. */
 double descent_slope(const Descent *d);
-#endif

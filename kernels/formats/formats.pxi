@@ -12,8 +12,8 @@ cdef extern from "formats/rows.h":
         const char *text
         const ptrdiff_t *at
         ptrdiff_t m
-    ptrdiff_t integer_rows(char *out, const int64_t *rows, ptrdiff_t n, row_form form) nogil
-    ptrdiff_t float_rows(char *out, const double *rows, ptrdiff_t n, row_form form, const power_of_ten *powers) nogil
+    ptrdiff_t c_put_rows "put_rows"(char *out, const void *rows, ptrdiff_t n, row_form form,
+                                    const power_of_ten *powers) nogil
 
 INTEGER_BYTES = MESHONET_INTEGER_BYTES
 FLOAT_BYTES = MESHONET_FLOAT_BYTES
@@ -60,11 +60,11 @@ def put_rows(out, rows, bytes text, at):
         raise ValueError("out is too small")
     cdef char *to = <char *>numbers(out, b"b", 1, out.shape, True)
     cdef const void *values = numbers(rows, b"i" if whole else b"d", 8, (n, m), False)
-    if not _known and not whole:
-        _learn_powers()
+    cdef const power_of_ten *powers = NULL
+    if not whole:
+        if not _known:
+            _learn_powers()
+        powers = _powers
     with nogil:
-        if whole:
-            count = integer_rows(to, <const int64_t *>values, n, form)
-        else:
-            count = float_rows(to, <const double *>values, n, form, _powers)
+        count = c_put_rows(to, values, n, form, powers)
     return count

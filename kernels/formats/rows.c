@@ -60,7 +60,6 @@ static char *put_exponent(char *out, int k)
    128 bits of their product, so that only a fraction next to one half leaves the rounding open. */
 static char *put_float(char *out, double value, const power_of_ten *powers)
 {
-#ifdef __SIZEOF_INT128__
     uint64_t bits;
     memcpy(&bits, &value, sizeof bits);
     const int biased = (int)(bits >> 52 & 0x7ff);
@@ -99,32 +98,16 @@ static char *put_float(char *out, double value, const power_of_ten *powers)
         out[1] = '.';
         return put_exponent(out + 18, k);
     }
-#else
-    (void)powers;
-    return put_float_slowly(out, value);
-#endif
 }
 
-ptrdiff_t integer_rows(char *out, const int64_t *rows, ptrdiff_t n, row_form form)
+ptrdiff_t put_rows(char *out, const void *rows, ptrdiff_t n, row_form form, const power_of_ten *powers)
 {
     char *at = out;
     for (ptrdiff_t k = 0; k < n; k++) {
         for (ptrdiff_t m = 0; m < form.m; m++) {
             at = put(at, form.text + form.at[m], form.at[m + 1] - form.at[m]);
-            at = put_integer(at, rows[k * form.m + m]);
-        }
-        at = put(at, form.text + form.at[form.m], form.at[form.m + 1] - form.at[form.m]);
-    }
-    return at - out;
-}
-
-ptrdiff_t float_rows(char *out, const double *rows, ptrdiff_t n, row_form form, const power_of_ten *powers)
-{
-    char *at = out;
-    for (ptrdiff_t k = 0; k < n; k++) {
-        for (ptrdiff_t m = 0; m < form.m; m++) {
-            at = put(at, form.text + form.at[m], form.at[m + 1] - form.at[m]);
-            at = put_float(at, rows[k * form.m + m], powers);
+            at = powers ? put_float(at, ((const double *)rows)[k * form.m + m], powers)
+                        : put_integer(at, ((const int64_t *)rows)[k * form.m + m]);
         }
         at = put(at, form.text + form.at[form.m], form.at[form.m + 1] - form.at[form.m]);
     }

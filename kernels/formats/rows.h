@@ -1,6 +1,5 @@
 /* Rows of numbers as text; see rows.c. */
-#ifndef MESHONET_ROWS_H
-#define MESHONET_ROWS_H
+#pragma once
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,7 +21,5 @@ typedef struct {
 
 enum { MESHONET_LEAST_POWER = -293, MESHONET_MOST_POWER = 324 };
 
-/* Both write n rows of m numbers to `out`, which has room, and return the bytes written. */
-ptrdiff_t integer_rows(char *out, const int64_t *rows, ptrdiff_t n, row_form form);
-ptrdiff_t float_rows(char *out, const double *rows, ptrdiff_t n, row_form form, const power_of_ten *powers);
-#endif
+/* Write n rows of m numbers, int64_t without `powers` and else double, to `out`, which has room; return the bytes written. */
+ptrdiff_t put_rows(char *out, const void *rows, ptrdiff_t n, row_form form, const power_of_ten *powers);

@@ -1,6 +1,6 @@
 #include "cells.h"
 
-#include "clones.h"
+#include "exponential.h"
 
 /* A cell and its edges; i runs along e0, j against e3:
 
@@ -34,32 +34,11 @@ MESHONET_INLINE double smaller(double a, double b) { return a < b ? a : b; }
 /* asin(s)/s as a polynomial in z = s*s on [0, 1/4]: Chebyshev interpolation of degree 12, relative error 3e-17. */
 MESHONET_INLINE double asin_over_s(double z)
 {
-    static const double c[13] = {1.0,
-                                 0.16666666666664945,
-                                 0.07500000000384784,
-                                 0.044642856806216,
-                                 0.030381959691850167,
-                                 0.02237174983251582,
-                                 0.017359778450540774,
-                                 0.013884853387846141,
-                                 0.012170069419059097,
-                                 0.006529622403221694,
-                                 0.01951249342600702,
-                                 -0.016185667777976222,
+    static const double c[13] = {1.0, 0.16666666666664945, 0.07500000000384784, 0.044642856806216,
+                                 0.030381959691850167, 0.02237174983251582, 0.017359778450540774, 0.013884853387846141,
+                                 0.012170069419059097, 0.006529622403221694, 0.01951249342600702, -0.016185667777976222,
                                  0.03187828814012674};
-    double p = c[12];
-    p = p * z + c[11];
-    p = p * z + c[10];
-    p = p * z + c[9];
-    p = p * z + c[8];
-    p = p * z + c[7];
-    p = p * z + c[6];
-    p = p * z + c[5];
-    p = p * z + c[4];
-    p = p * z + c[3];
-    p = p * z + c[2];
-    p = p * z + c[1];
-    return p * z + c[0];
+    return polynomial(c, 13, z);
 }
 
 /* Angle in degrees of a cosine. acos in the C library is a call, which would stop vectorisation. */
@@ -91,25 +70,19 @@ static ptrdiff_t cells_folded_in_row(const double *restrict x, const double *res
     return cells - (ptrdiff_t)good;
 }
 
-/* Indices (i, j) of the folded cells into pairs, `room` pairs at most; returns how many there are. */
-ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
+ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room)
 {
-    ptrdiff_t found = 0;
-    for (ptrdiff_t i = 0; i + 1 < ni; ++i) {
-        const double *xi = x + i * nj, *yi = y + i * nj;
-        ptrdiff_t left = cells_folded_in_row(xi, yi, nj, nj - 1);
-        for (ptrdiff_t j = 0; left > 0 && j + 1 < nj; ++j) {
-            if (!cells_folded_in_row(xi + j, yi + j, nj, 1))
-                continue;
-            if (found < room) {
-                pairs[2 * found] = i;
-                pairs[2 * found + 1] = j;
+    ptrdiff_t folded = 0;
+    for (ptrdiff_t i = 0; i + 1 < ni; ++i, x += nj, y += nj) {
+        const ptrdiff_t all = folded + cells_folded_in_row(x, y, nj, nj - 1);
+        for (ptrdiff_t j = 0; folded < all && folded < room && j + 1 < nj; ++j)
+            if (cells_folded_in_row(x + j, y + j, nj, 1)) {
+                pairs[2 * folded] = i;
+                pairs[2 * folded++ + 1] = j;
             }
-            ++found;
-            --left;
-        }
+        folded = all;
     }
-    return found;
+    return folded;
 }
 
 /* Magnitudes of the areas of one row of cells into area[1 ... nj-1]; area[0] and area[nj] repeat their neighbours. */
@@ -335,12 +308,4 @@ void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, con
     }
     for (ptrdiff_t k = 0; k < METRICS; ++k)
         run->summary[3 * k + 1] /= (double)((ni - 1) * cells);
-}
-
-ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj)
-{
-    ptrdiff_t folded = 0;
-    for (ptrdiff_t i = 0; i + 1 < ni; ++i)
-        folded += cells_folded_in_row(x + i * nj, y + i * nj, nj, nj - 1);
-    return folded;
 }

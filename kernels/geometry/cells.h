@@ -1,17 +1,12 @@
 /* Measures of the cells of a structured grid, whose nodes are the planes x and y (ni, nj). */
-#ifndef MESHONET_CELLS_H
-#define MESHONET_CELLS_H
-
+#pragma once
 #include <stddef.h>
 #include <stdint.h>
 
 enum { MAX_ANGLE, MIN_ANGLE, SKEWNESS, SCALED_JACOBIAN, ASPECT_RATIO, ORTHOGONALITY, AREA_RATIO, METRICS };
 
-/* How many cells have a corner Jacobian that is not positive. */
-ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj);
-
-/* Their indices (i, j) in order, `room` pairs at the most; returns how many there are. */
-ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room);
+/* How many cells have a corner Jacobian that is not positive; the indices (i, j) of the first `room` go into pairs. */
+ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs, ptrdiff_t room);
 
 /* What one run over all cells takes and leaves. */
 typedef struct {
@@ -31,5 +26,3 @@ typedef struct {
 
 /* Run over all cells; scratch of 4 (nj + 1) + METRICS (nj - 1). */
 void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run, double *scratch);
-
-#endif

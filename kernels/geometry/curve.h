@@ -1,7 +1,6 @@
 /* A curve of n intervals, each a cubic a + t (b + t (c + t d)) of 0 <= t <= 1, with a table of arc length of `pieces` to
    an interval. On a piece t is the cubic Hermite inverse of arc length with the slopes at its two ends. */
-#ifndef MESHONET_CURVE_H
-#define MESHONET_CURVE_H
+#pragma once
 #include <stddef.h>
 
 /* `table` (n pieces + 1) begins with 0 and does not fall; `start` and `stop` (n pieces) are the slopes of t at the ends
@@ -32,4 +31,3 @@ void curve_speeds(const double *cubic, ptrdiff_t n, const double *places, ptrdif
    scratch. */
 void tridiagonal_solve(const double *lower, const double *diagonal, const double *upper, double *right, ptrdiff_t n,
                        ptrdiff_t k, double *ratio);
-#endif

@@ -11,17 +11,14 @@ cdef extern from "geometry/cells.h":
         const double *brackets
         int64_t *counts
         double *caught
-    ptrdiff_t cells_count_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj) nogil
-    ptrdiff_t cells_list_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs,
-                                ptrdiff_t room) nogil
+    ptrdiff_t cells_folded(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, int64_t *pairs,
+                           ptrdiff_t room) nogil
     void cells_run(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const CellRun *run,
                    double *scratch) nogil
 
 cdef extern from "geometry/curve.h":
     ctypedef struct ArcLengths:
-        const double *table
-        const double *start
-        const double *stop
+        Read table, start, stop
         ptrdiff_t n, pieces
         int closed
     void c_curve_locate "curve_locate"(const ArcLengths *curve, const double *s, ptrdiff_t m, ptrdiff_t *interval,
@@ -43,25 +40,23 @@ cdef extern from "geometry/segments.h":
 
 def count_folded(x, y):
     """Return how many cells of the planes x, y (ni, nj) have a corner Jacobian that is not positive."""
-    cdef const double *px = reads(x, y.shape)
-    cdef const double *py = reads(y, x.shape)
+    cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
     cdef ptrdiff_t ni, nj, count
     ni, nj = x.shape
     with nogil:
-        count = cells_count_folded(px, py, ni, nj)
+        count = cells_folded(px, py, ni, nj, NULL, 0)
     return count
 
 
 def folded_cells(x, y):
     """Return (n, 2) indices of the folded cells of the planes x, y (ni, nj) in order of (i, j)."""
     cdef ptrdiff_t room = count_folded(x, y), ni, nj
-    cdef const double *px = reads(x, y.shape)
-    cdef const double *py = reads(y, x.shape)
+    cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
     ni, nj = x.shape
     pairs = np.empty((room, 2), dtype=np.int64)
     cdef int64_t *to = <int64_t *>numbers(pairs, b"i", 8, (room, 2), True)
     with nogil:
-        cells_list_folded(px, py, ni, nj, to, room)
+        cells_folded(px, py, ni, nj, to, room)
     return pairs
 
 
@@ -69,8 +64,7 @@ def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t
     """Run over all cells once; the arguments are those of CellRun in ``geometry/cells.h``."""
     cdef CellRun run
     cdef ptrdiff_t ni, nj
-    cdef const double *px = reads(x, y.shape)
-    cdef const double *py = reads(y, x.shape)
+    cdef Read px = reads(x, y.shape), py = reads(y, x.shape)
     ni, nj = x.shape
     if ni < 2 or nj < 2 or not 0 <= keep <= METRICS - len(kept):
         raise ValueError("no cells, or metrics beyond the last")
@@ -83,7 +77,7 @@ def measure_cells(x, y, bint periodic, ptrdiff_t wake, summary, where, ptrdiff_t
     run.counts = <int64_t *>numbers(counts, b"i", 8, (METRICS, run.n_brackets, 4), True)
     run.caught = fills(caught, (METRICS, run.n_brackets, run.room))
     scratch = np.empty(4 * (nj + 1) + METRICS * (nj - 1))
-    cdef double *room = fills(scratch, scratch.shape)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         cells_run(px, py, ni, nj, &run, room)
 
@@ -129,10 +123,9 @@ def solve_tridiagonal(lower, diagonal, upper, right):
 def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget):
     """Return pairs (k, 2) of segments of a polygon that meet, `limit` at the most, and whether all were compared."""
     cdef ptrdiff_t n = len(points), m = len(order), count
-    cdef const double *p = reads(points, (n, 2))
+    cdef Read p = reads(points, (n, 2))
     cdef const ptrdiff_t *sorted_by = reads_indices(order, (m,))
-    cdef const double *first = reads(low, (m,))
-    cdef const double *last = reads(top, (m,))
+    cdef Read first = reads(low, (m,)), last = reads(top, (m,))
     pairs = np.empty((limit, 2), np.intp)
     cdef ptrdiff_t *to = <ptrdiff_t *>numbers(pairs, b"i", sizeof(ptrdiff_t), (limit, 2), True)
     with nogil:

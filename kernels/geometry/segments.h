@@ -1,6 +1,5 @@
 /* Segments of a polygon that meet though they are not neighbours: sweep, compare boxes, then orient. */
-#ifndef MESHONET_SEGMENTS_H
-#define MESHONET_SEGMENTS_H
+#pragma once
 #include <stddef.h>
 
 /* Segment k runs from point k of n to the next, and from low[k] to top[k] along the direction of the sweep; `order` (m)
@@ -8,4 +7,3 @@
    taken off; returns how many there are. A negative budget tells that not all were compared. */
 ptrdiff_t crossing_segments(const double *points, ptrdiff_t n, const ptrdiff_t *order, ptrdiff_t m, const double *low,
                             const double *top, ptrdiff_t limit, long long *budget, ptrdiff_t *pairs);
-#endif

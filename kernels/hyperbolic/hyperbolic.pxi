@@ -4,19 +4,14 @@ cdef extern from "hyperbolic/march.h":
         ptrdiff_t sweeps, rise
     ctypedef struct MarchEnds:
         double first_x, first_y, last_x, last_y
-    size_t c_hyperbolic_scratch "hyperbolic_scratch"(ptrdiff_t n) nogil
+    size_t hyperbolic_scratch(ptrdiff_t n) nogil
     void c_hyperbolic_march "hyperbolic_march"(
         double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
         const MarchEnds *ends, const MarchSettings *settings, double *scratch) nogil
 
 
-def hyperbolic_scratch(ptrdiff_t n):
-    """Return the doubles of scratch that a march over n nodes a level needs."""
-    return c_hyperbolic_scratch(n)
-
-
 def hyperbolic_march(x, y, steps, double dissipation, double even, double tolerated, double bend, double implicit,
-                     double volume, ptrdiff_t sweeps, ptrdiff_t rise, scratch, ends=None, widening=None):
+                     double volume, ptrdiff_t sweeps, ptrdiff_t rise, ends=None, widening=None):
     """Fill levels 1 on of `x` and `y` (levels + 1, n) from level 0, n >= 3 nodes with the grid to their left.
 
     `steps` (levels) are the distances between levels; the others are those of ``march.h``. Level 0 closes, unless
@@ -29,11 +24,10 @@ def hyperbolic_march(x, y, steps, double dissipation, double even, double tolera
     cdef MarchEnds *given = NULL
     if n < 3 or levels < 1:
         raise ValueError("too few nodes or levels")
-    cdef double *px = fills(x, (levels + 1, n))
-    cdef double *py = fills(y, (levels + 1, n))
-    cdef const double *apart = reads(steps, (levels,))
-    cdef const double *wide = apart
-    cdef double *room = fills_room(scratch, c_hyperbolic_scratch(n))
+    cdef Written px = fills(x, (levels + 1, n)), py = fills(y, (levels + 1, n))
+    cdef Read apart = reads(steps, (levels,)), wide = apart
+    scratch = np.empty(hyperbolic_scratch(n))
+    cdef Written room = fills(scratch, scratch.shape)
     if ends is not None:
         wide = reads(widening, (n,))
         directions = MarchEnds(ends[0][0], ends[0][1], ends[1][0], ends[1][1])

@@ -1,5 +1,4 @@
-#ifndef MESHONET_MARCH_H
-#define MESHONET_MARCH_H
+#pragma once
 #include <stddef.h>
 
 typedef struct {
@@ -25,4 +24,3 @@ size_t hyperbolic_scratch(ptrdiff_t n);
    `widening` (n) multiplies the steps of the first levels, `ends` is NULL for closed levels. */
 void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
                       const MarchEnds *ends, const MarchSettings *settings, double *scratch);
-#endif

@@ -2,6 +2,9 @@
 
 from cpython.buffer cimport PyBUF_C_CONTIGUOUS, PyBUF_FORMAT, PyBUF_WRITABLE, PyBuffer_Release, PyObject_GetBuffer
 
+ctypedef const double *Read
+ctypedef double *Written
+
 
 cdef void *numbers(array, char kind, ptrdiff_t size, shape, bint written) except NULL:
     """Return the start of a contiguous array of this shape, whose numbers are of a kind (as the struct module says, i for
@@ -21,12 +24,12 @@ cdef void *numbers(array, char kind, ptrdiff_t size, shape, bint written) except
     return view.buf
 
 
-cdef const double *reads(array, tuple shape) except NULL:
+cdef Read reads(array, tuple shape) except NULL:
     """Return the doubles of an array that is read."""
     return <const double *>numbers(array, b"d", 8, shape, False)
 
 
-cdef double *fills(array, tuple shape) except NULL:
+cdef Written fills(array, tuple shape) except NULL:
     """Return the doubles of an array that is written."""
     return <double *>numbers(array, b"d", 8, shape, True)
 
@@ -39,7 +42,7 @@ cdef const ptrdiff_t *reads_indices(array, tuple shape) except NULL:
     return <const ptrdiff_t *>numbers(array, b"i", sizeof(ptrdiff_t), shape, False)
 
 
-cdef double *fills_room(array, ptrdiff_t least) except NULL:
+cdef Written fills_room(array, ptrdiff_t least) except NULL:
     """Return the doubles of scratch of one direction, of which there are at least so many."""
     if len(array) < least:
         raise ValueError("too little scratch")

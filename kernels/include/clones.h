@@ -1,7 +1,6 @@
 /* One build that is fast on every x86-64 machine: the loader picks the clone that the processor can run.
    Elsewhere (other processors, other compilers) it is plain C. */
-#ifndef MESHONET_CLONES_H
-#define MESHONET_CLONES_H
+#pragma once
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && __GNUC__ >= 12
 #define MESHONET_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
@@ -9,17 +8,11 @@
 #define MESHONET_CLONES
 #endif
 
-#if defined(__GNUC__)
 #define MESHONET_INLINE static inline __attribute__((always_inline))
-#else
-#define MESHONET_INLINE static inline
-#endif
 
 /* Before a loop whose rounds do not depend on each other: GCC loses `restrict` in inlined functions. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define MESHONET_INDEPENDENT _Pragma("GCC ivdep")
 #else
 #define MESHONET_INDEPENDENT
-#endif
-
 #endif

@@ -1,6 +1,6 @@
 # Complex numbers as the kernels have them.
 
-cdef extern from "complex_pair.h":
+cdef extern from "conformal/lift.h":
     ctypedef struct Cplx:
         double re
         double im

@@ -7,7 +7,88 @@
    with the first steps 0 .. a and the last b .. m-1 constant. l is found such that the steps add up to the length of
    the line. With one end only  ln d_k = ln first + l (k - a). */
 #include "layers.h"
-#include "gridline.h"
+#include "clones.h"
+#include <math.h>
+
+/* A grid line as a curve: cubic Hermite pieces between its nodes, tangents those of parabolas through three nodes. */
+typedef struct {
+    double *arc, *px, *py, *dx, *dy; /* (nj): arc length, nodes and unit tangents of a line as it was */
+} Line;
+
+MESHONET_INLINE void measure_line(const Line *line, const double *restrict x, const double *restrict y, ptrdiff_t nj)
+{
+    double *restrict arc = line->arc, *restrict dx = line->dx, *restrict dy = line->dy;
+    arc[0] = 0.0;
+    double before = 0, ux = 0, uy = 0;
+    for (ptrdiff_t j = 0; j < nj; j++) {
+        line->px[j] = x[j], line->py[j] = y[j];
+        if (j == nj - 1) {
+            dx[j] = ux, dy[j] = uy;
+            break;
+        }
+        double vx = x[j + 1] - x[j], vy = y[j + 1] - y[j];
+        const double length = sqrt(vx * vx + vy * vy), over = 1.0 / (before + length);
+        vx /= length, vy /= length;
+        arc[j + 1] = arc[j] + length;
+        if (j > 0)
+            dx[j] = (ux * length + vx * before) * over, dy[j] = (uy * length + vy * before) * over;
+        if (j == 1) /* the parabola through the first three nodes, at the first */
+            dx[0] = ux + (ux - vx) * before * over, dy[0] = uy + (uy - vy) * before * over;
+        before = length, ux = vx, uy = vy;
+    }
+}
+
+/* Let the last tangent be that of the parabola through the last three nodes too. */
+MESHONET_INLINE void measure_end(const Line *line, ptrdiff_t nj)
+{
+    const ptrdiff_t k = nj - 1;
+    const double h = line->arc[k] - line->arc[k - 1], before = line->arc[k - 1] - line->arc[k - 2];
+    const double ux = (line->px[k] - line->px[k - 1]) / h, uy = (line->py[k] - line->py[k - 1]) / h;
+    const double vx = (line->px[k - 1] - line->px[k - 2]) / before, vy = (line->py[k - 1] - line->py[k - 2]) / before;
+    line->dx[k] = ux + (ux - vx) * h / (before + h), line->dy[k] = uy + (uy - vy) * h / (before + h);
+}
+
+/* Displacement from node k of the point at arc length t behind it, within the piece that begins there. */
+MESHONET_INLINE void displacement(const Line *line, ptrdiff_t k, double t, double *x, double *y)
+{
+    const double h = line->arc[k + 1] - line->arc[k], q = (t - line->arc[k]) / h, r = 1.0 - q;
+    const double b = q * r * r * h, c = q * q * (3.0 - 2.0 * q), d = -q * q * r * h;
+    *x = b * line->dx[k] + c * (line->px[k + 1] - line->px[k]) + d * line->dx[k + 1];
+    *y = b * line->dy[k] + c * (line->py[k + 1] - line->py[k]) + d * line->dy[k + 1];
+}
+
+/* The piece in which arc length t lies, sought from piece k on. */
+MESHONET_INLINE ptrdiff_t piece(const Line *line, ptrdiff_t k, double t, ptrdiff_t nj)
+{
+    while (k < nj - 2 && line->arc[k + 1] < t)
+        k++;
+    return k;
+}
+
+/* The point at arc length t; piece *k or a later one begins before it, and takes its number. */
+MESHONET_INLINE void point_at(const Line *line, ptrdiff_t *k, double t, ptrdiff_t nj, double *x, double *y)
+{
+    double dx, dy;
+    *k = piece(line, *k, t, nj);
+    displacement(line, *k, t, &dx, &dy);
+    *x = line->px[*k] + dx, *y = line->py[*k] + dy;
+}
+
+/* The arc length at which a line is `first` away from its first node, less than half of it. */
+MESHONET_INLINE double place_of_first(const Line *line, double first, ptrdiff_t nj)
+{
+    double t = first, x, y;
+    for (int pass = 0; pass < 8; pass++) {
+        const ptrdiff_t k = piece(line, 0, t, nj);
+        displacement(line, k, t, &x, &y);
+        x += line->px[k] - line->px[0], y += line->py[k] - line->py[0];
+        const double ratio = first / sqrt(x * x + y * y);
+        t *= ratio;
+        if (fabs(ratio - 1.0) < 1e-14)
+            break;
+    }
+    return t;
+}
 
 /* One law: where its constant parts end, and the slopes of ln d in between, without and with l. */
 typedef struct {
@@ -122,20 +203,34 @@ double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj,
         largest = ratio > largest ? ratio : largest;
         const ptrdiff_t middle = NJ / 2;
         X[0] = x[0], Y[0] = y[0], X[NJ - 1] = x[nj - 1], Y[NJ - 1] = y[nj - 1];
-        double t = 0.0, dx, dy;
+        double t = 0.0;
         for (ptrdiff_t j = 1, k = 0; j < middle; j++) {
             t += steps[j - 1];
-            k = piece(&line, k, t, nj);
-            displacement(&line, k, t, &dx, &dy);
-            X[j] = line.px[k] + dx, Y[j] = line.py[k] + dy;
+            point_at(&line, &k, t, nj, X + j, Y + j);
         }
         t = 0.0;
         for (ptrdiff_t j = NJ - 2, k = 0; j >= middle && j > 0; j--) {
             t += steps[j];
-            k = piece(&back, k, t, nj);
-            displacement(&back, k, t, &dx, &dy);
-            X[j] = back.px[k] + dx, Y[j] = back.py[k] + dy;
+            point_at(&back, &k, t, nj, X + j, Y + j);
         }
     }
     return largest;
+}
+
+/* The arc lengths A_j of a line become T_j = A_j (1 + (c - 1) fade_j), where c is found such that nodes 0 and 1 end up
+   `first[i]` apart. */
+MESHONET_CLONES
+void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
+                        double *scratch)
+{
+    const Line line = {scratch, scratch + nj, scratch + 2 * nj, scratch + 3 * nj, scratch + 4 * nj};
+    for (ptrdiff_t i = 0; i < ni; i++, x += nj, y += nj) {
+        measure_line(&line, x, y, nj);
+        const double more = place_of_first(&line, first[i], nj) / line.arc[1] - 1.0;
+        ptrdiff_t k = 0;
+        for (ptrdiff_t j = 1; j < nj - 1; j++) {
+            const double t = line.arc[j] * (1.0 + more * fade[j]);
+            point_at(&line, &k, t, nj, x + j, y + j);
+        }
+    }
 }

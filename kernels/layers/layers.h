@@ -1,6 +1,5 @@
 /* Nodes moved along grid lines into layers of given heights at one end or both. */
-#ifndef MESHONET_LAYERS_H
-#define MESHONET_LAYERS_H
+#pragma once
 #include <stddef.h>
 
 /* Heights asked for: of the `constant` first and last cells, 0 where an end asks for none. */
@@ -17,4 +16,7 @@ double layer_steps(double *steps, ptrdiff_t cells, double length, const Layers *
    `scratch` has 10 nj + NJ doubles. */
 double layer_lines(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X, double *Y, ptrdiff_t NJ,
                    const Layers *layers, double *scratch);
-#endif
+
+/* Move the nodes of every line of the planes x and y (ni, nj) along it so that its first cell is `first[i]` high. */
+void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
+                        double *scratch);

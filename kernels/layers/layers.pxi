@@ -6,8 +6,6 @@ cdef extern from "layers/layers.h":
                                        double *log_ratio) nogil
     double c_layer_lines "layer_lines"(const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, double *X,
                                        double *Y, ptrdiff_t NJ, const Layers *layers, double *scratch) nogil
-
-cdef extern from "layers/redistribute.h":
     void redistribute_lines(double *x, double *y, ptrdiff_t ni, ptrdiff_t nj, const double *first, const double *fade,
                             double *scratch) nogil
 
@@ -22,52 +20,42 @@ cdef Layers layers_of(ptrdiff_t cells, double first, double last, ptrdiff_t cons
 
 
 def layer_steps(steps, double length, double first, double last, ptrdiff_t constant):
-    """Fill `steps` (cells,) so that they add up to `length`; return the largest ratio of neighbours.
-
-    The first `constant` ones are `first` long and the last `last`, where these are not 0; the others grow by one
-    ratio from each end. Infinite: nothing fits.
-    """
+    """Fill `steps` (cells,) so that they add up to `length`; return the largest ratio, infinite when nothing fits."""
     cdef ptrdiff_t cells = len(steps)
     cdef Layers layers = layers_of(cells, first, last, constant)
     cdef double log_ratio = 0.0
     return c_layer_steps(fills(steps, (cells,)), cells, length, &layers, &log_ratio)
 
 
-def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant, scratch):
-    """Sample the lines i of `x`, `y` (ni, nj >= 3) anew at the NJ nodes of `X`, `Y` (ni, NJ >= 3).
-
-    The distance between the first two nodes is `first` and between the last two `last`, where these are not 0.
-    `scratch` has 10 nj + NJ doubles. Returns the largest ratio of neighbouring cells.
-    """
+def layer_lines(x, y, X, Y, double first, double last, ptrdiff_t constant):
+    """Sample the lines of `x`, `y` (ni, nj) anew at the nodes of `X`, `Y` (ni, NJ); return the largest ratio of cells."""
     cdef double largest
     cdef ptrdiff_t ni, nj, NJ = X.shape[1]
     ni, nj = x.shape
     if nj < 3 or NJ < 3:
         raise ValueError("lines of fewer than 3 nodes")
     cdef Layers layers = layers_of(NJ - 1, first, last, constant)
-    cdef const double *px = reads(x, (ni, nj))
-    cdef const double *py = reads(y, (ni, nj))
-    cdef double *to_x = fills(X, (ni, NJ))
-    cdef double *to_y = fills(Y, (ni, NJ))
-    cdef double *room = fills_room(scratch, 10 * nj + NJ)
+    cdef Read px = reads(x, (ni, nj)), py = reads(y, (ni, nj))
+    cdef Written to_x = fills(X, (ni, NJ)), to_y = fills(Y, (ni, NJ))
+    scratch = np.empty(10 * nj + NJ)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         largest = c_layer_lines(px, py, ni, nj, to_x, to_y, NJ, &layers, room)
     return largest
 
 
-def redistribute(x, y, first, fade, scratch):
+def redistribute(x, y, first, fade):
     """Move the inner nodes of the lines i of `x` and `y` (ni, nj >= 3) so that first cells are `first` (ni) high.
 
-    `fade` (nj) says how much of the relative change of node 1 each node takes part in; `scratch` has 5 nj.
+    `fade` (nj) says how much of the relative change of node 1 each node takes part in.
     """
     cdef ptrdiff_t ni, nj
     ni, nj = x.shape
     if nj < 3:
         raise ValueError("lines of fewer than 3 nodes")
-    cdef double *px = fills(x, (ni, nj))
-    cdef double *py = fills(y, (ni, nj))
-    cdef const double *heights = reads(first, (ni,))
-    cdef const double *share = reads(fade, (nj,))
-    cdef double *room = fills_room(scratch, 5 * nj)
+    cdef Written px = fills(x, (ni, nj)), py = fills(y, (ni, nj))
+    cdef Read heights = reads(first, (ni,)), share = reads(fade, (nj,))
+    scratch = np.empty(5 * nj)
+    cdef Written room = fills(scratch, scratch.shape)
     with nogil:
         redistribute_lines(px, py, ni, nj, heights, share, room)

@@ -1,6 +1,5 @@
 /* Picard steps towards Winslow's grids; see approach.c. */
-#ifndef MESHONET_APPROACH_H
-#define MESHONET_APPROACH_H
+#pragma once
 #include <stddef.h>
 
 #define APPROACH_LINE 16 /* numbers that lines of tables are rounded up to a multiple of */
@@ -33,4 +32,3 @@ ptrdiff_t approach_scratch(const Approach *a);
 /* Move the planes p (2, m, n) in place; step (2, m, n) is the last step. `turn` (2, n) is added from one round to the
    next. */
 void approach_grid(const Approach *a, double *p, const double *turn, double *scratch, double *step);
-#endif

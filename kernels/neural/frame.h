@@ -1,6 +1,5 @@
 /* The place, turn and size of domains, taken out and put back; see frame.py. Planes are (2, m, n). */
-#ifndef MESHONET_FRAME_H
-#define MESHONET_FRAME_H
+#pragma once
 #include <stddef.h>
 
 /* out = (planes - their middle) * factor, a complex number, as planes. */
@@ -15,4 +14,3 @@ void frame_add_float(double *planes, const float *answers, ptrdiff_t numbers, co
                      ptrdiff_t n);
 void frame_add_double(double *planes, const double *answers, ptrdiff_t numbers, const double *rim, ptrdiff_t m,
                       ptrdiff_t n);
-#endif

@@ -1,8 +1,5 @@
 /* Features of a grid and its last step at every node, those of features.py in its order: differences in double, what is
-   made of them in real type T with logarithm LOG and square root ROOT. */
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-#define NAME(name) JOIN(name, SUFFIX)
+   made of them in real type T with SUFFIX after every name. */
 
 MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *restrict y, const double *restrict dx,
                                     const double *restrict dy, double size, ptrdiff_t n, ptrdiff_t i,
@@ -34,23 +31,23 @@ MESHONET_INLINE void NAME(look_row)(const double *restrict x, const double *rest
     const T one = 1, tiny = (T)LOOK_TINY, grow = (T)(1.0 / size);
     for (ptrdiff_t j = 0; j < n; j++) {
         const T ur = row[0][j], vr = row[1][j], ui = row[2][j], vi = row[3][j];
-        const T u = ROOT(ur * ur + ui * ui), v = ROOT(vr * vr + vi * vi), w = one / (u * v + tiny);
+        const T u = JOIN(sqrt_, T)(ur * ur + ui * ui), v = JOIN(sqrt_, T)(vr * vr + vi * vi), w = one / (u * v + tiny);
         const T dot = ur * vr + ui * vi, cross = ur * vi - ui * vr, area = cross < 0 ? -cross : cross;
         row[8][j] = u + (T)LOOK_FLOOR, row[9][j] = v + (T)LOOK_FLOOR;
         row[12][j] = dot * w, row[13][j] = cross * w;
-        row[14][j] = area + ROOT(cross * cross + one);
+        row[14][j] = area + JOIN(sqrt_, T)(cross * cross + one);
     }
     for (ptrdiff_t j = 0; j < n; j++) {
-        const T p = (T)dx[j], q = (T)dy[j], length = ROOT(p * p + q * q + tiny * tiny), inverse = one / length;
+        const T p = (T)dx[j], q = (T)dy[j], length = JOIN(sqrt_, T)(p * p + q * q + tiny * tiny), inverse = one / length;
         const T drawn = (T)LOOK_STRETCH * grow * length;
         row[17][j] = p * ((T)0.5 * inverse), row[18][j] = q * ((T)0.5 * inverse);
-        row[19][j] = drawn + ROOT(drawn * drawn + one);
+        row[19][j] = drawn + JOIN(sqrt_, T)(drawn * drawn + one);
     }
     T logs[4][LOOK_MOST]; /* the last two: of inverse hyperbolic sines without their signs */
     const int where[4] = {8, 9, 14, 19};
     for (int k = 0; k < 4; k++)
         for (ptrdiff_t j = 0; j < n; j++)
-            logs[k][j] = LOG(row[where[k]][j]);
+            logs[k][j] = JOIN(log_, T)(row[where[k]][j]);
     for (ptrdiff_t j = 0; j < n; j++)
         logs[2][j] = row[13][j] < 0 ? -logs[2][j] : logs[2][j];
     const T told = (T)(log10(size) + 2.0);
@@ -76,4 +73,5 @@ void NAME(network_look)(const double *planes, const double *steps, ptrdiff_t bat
             NAME(look_row)(planes, planes + plane, steps, steps + plane, size, n, i, row, out);
     }
 }
-#undef NAME
+#undef T
+#undef SUFFIX

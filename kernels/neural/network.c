@@ -19,10 +19,6 @@ extern double log(double) __attribute__((simd("notinbranch")));
 extern float logf(float) __attribute__((simd("notinbranch")));
 #endif
 
-/* Beyond these 1/(1 + exp) is told from its limits no more. */
-#define EXP_MOST_double 700.0
-#define EXP_MOST_float 80.0f
-
 /* exp(x) = 2^n exp(r): n = x / ln 2 to the nearest by adding 1.5 2^23, whose low bits then are n. The polynomial of degree 5 has the least relative error, 8e-8. */
 MESHONET_INLINE float exp_float(float x)
 {
@@ -51,98 +47,42 @@ MESHONET_INLINE float log_float(float x)
     return (float)n * 0.69314718f + s * (2.0f + z * (2.0f / 3 + z * (2.0f / 5 + z * (2.0f / 7 + z * (2.0f / 9)))));
 }
 
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+#define NAME(name) JOIN(name, SUFFIX)
+#define log_double log
+#define sqrt_double sqrt
+#define sqrt_float sqrtf
+
 #define T float
 #define SUFFIX _float
-#define LOG log_float
-#define ROOT sqrtf
 #include "look.h"
-#undef T
-#undef SUFFIX
-#undef LOG
-#undef ROOT
 #define T double
 #define SUFFIX _double
-#define LOG log
-#define ROOT sqrt
 #include "look.h"
-#undef T
-#undef SUFFIX
-#undef LOG
-#undef ROOT
 
 /* Vectors of 256 bits everywhere, and where the processor has them, of 512. */
 #define VECTOR 32
 #define KERNEL MESHONET_CLONES
 #define T float
 #define SUFFIX _float
-#define EXP exp_float
-#define MOST EXP_MOST_float
-#include "pointwise.h"
-#include "convolve.h"
-#undef T
-#undef SUFFIX
-#undef EXP
-#undef MOST
+#include "layers_of_type.h"
 #define T double
 #define SUFFIX _double
-#define EXP fast_exp
-#define MOST EXP_MOST_double
-#include "pointwise.h"
-#include "convolve.h"
-#undef T
-#undef SUFFIX
-#undef EXP
-#undef MOST
-#undef VECTOR
-#undef KERNEL
+#include "layers_of_type.h"
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__linux__) && __GNUC__ >= 12
 #define MESHONET_WIDE 1
+#undef VECTOR
+#undef KERNEL
 #define VECTOR 64
 #define KERNEL __attribute__((target("arch=x86-64-v4,prefer-vector-width=512")))
 #define T float
 #define SUFFIX _wide_float
-#define EXP exp_float
-#define MOST EXP_MOST_float
-#include "pointwise.h"
-#include "convolve.h"
-#undef T
-#undef SUFFIX
-#undef EXP
-#undef MOST
+#include "layers_of_type.h"
 #define T double
 #define SUFFIX _wide_double
-#define EXP fast_exp
-#define MOST EXP_MOST_double
-#include "pointwise.h"
-#include "convolve.h"
-#undef T
-#undef SUFFIX
-#undef EXP
-#undef MOST
-#undef VECTOR
-#undef KERNEL
-#endif
-
-#define LAYER(T, SUFFIX)                                                                                              \
-    static void layer##SUFFIX(const Layer *l)                                                                         \
-    {                                                                                                                 \
-        const Convolution *c = &l->c;                                                                                 \
-        const T *x = l->x, *w = l->w, *bias = l->bias, *add = l->add;                                                 \
-        T *out = l->out;                                                                                              \
-        if (l->kind == CONVOLVE)                                                                                      \
-            convolve##SUFFIX(x, c, w, bias, add, out);                                                                \
-        else if (l->kind == ACTIVATE)                                                                                 \
-            activate##SUFFIX(x, c->batch, c->m, c->n, c->inputs, l->around, c->size, out);                            \
-        else                                                                                                          \
-            refine##SUFFIX(x, c->batch, c->m, c->n, c->inputs, l->around, add, out);                                  \
-    }
-
-LAYER(float, _float)
-LAYER(double, _double)
-#ifdef MESHONET_WIDE
-LAYER(float, _wide_float)
-LAYER(double, _wide_double)
+#include "layers_of_type.h"
 #endif
 
 void network_layer(const Layer *l)

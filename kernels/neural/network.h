@@ -1,6 +1,5 @@
 /* Layers of a convolutional network in single and double precision; see network.c. */
-#ifndef MESHONET_NETWORK_H
-#define MESHONET_NETWORK_H
+#pragma once
 #include <stddef.h>
 
 /* A batch of m x n images with `inputs` channels, any padding included, to `outputs` by size x size taps. */
@@ -11,9 +10,9 @@ typedef struct {
 
 /* One layer of a network on arrays of T, float when `single` and else double.
 
-   CONVOLVE: x (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), bias likewise, add NULL or
-   as out (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs).
-   ACTIVATE, REFINE: pointwise.h; c.size is the padding. */
+   CONVOLVE: x (batch, m, n, inputs), w (size size inputs, outputs rounded up to 64 bytes), taps along xi slowest,
+   bias likewise, add NULL or as out (batch, (m - size)/stride + 1, (n - size)/stride + 1, outputs).
+   ACTIVATE, REFINE: see layers_of_type.h; c.size is the padding. */
 enum { CONVOLVE, ACTIVATE, REFINE };
 typedef struct {
     int kind, single, around;
@@ -34,4 +33,3 @@ void network_layer(const Layer *layer);
 /* out (batch, n, n, LOOK_FEATURES) of grids and their last steps, both (batch, 2, n, n). */
 void network_look_float(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, float *out);
 void network_look_double(const double *planes, const double *steps, ptrdiff_t batch, ptrdiff_t n, double *out);
-#endif

@@ -3,9 +3,7 @@ cdef extern from "neural/approach.h":
     ctypedef struct Waves:
         int folded
         ptrdiff_t count, line
-        const double *to
-        const double *back
-        const double *values
+        Read to, back, values
     ctypedef struct Approach:
         ptrdiff_t m, n
         int around, harmonic, steps
@@ -66,8 +64,7 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
                   bint around, last):
     """Take Picard steps towards Winslow's grid: move the `planes` (batch, 2, m, n), fill `last` with the last steps.
 
-    `xi` and `eta` are tables of `approach`; `turns` (batch, 2, n) what is added from one round to the next. The steps
-    go out from Laplace's solution when `harmonic`.
+    `turns` (batch, 2, n) are added from one round to the next; the other arguments are those of ``neural/approach.h``.
     """
     cdef ptrdiff_t batch = len(planes), b
     cdef Approach a
@@ -75,12 +72,11 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
     a.share, a.growth = share, growth
     if a.m < 6 or a.n < 6:
         raise ValueError("planes that are too small")
-    cdef double *p = fills(planes, (batch, 2, a.m, a.n))
-    cdef double *step = fills(last, (batch, 2, a.m, a.n))
-    cdef const double *turn = reads(turns, (batch, 2, a.n))
+    cdef Written p = fills(planes, (batch, 2, a.m, a.n)), step = fills(last, (batch, 2, a.m, a.n))
+    cdef Read turn = reads(turns, (batch, 2, a.n))
     a.xi, a.eta = waves(xi, a.m - (1 if around else 2), not around), waves(eta, a.n - 2, True)
     scratch = np.zeros(approach_scratch(&a) + 8)
-    cdef double *room = fills(scratch, scratch.shape)
+    cdef Written room = fills(scratch, scratch.shape)
     room += -(<uintptr_t>room // sizeof(double)) & 7  # from a line of the cache on
     with nogil:
         for b in range(batch):
@@ -90,9 +86,8 @@ def winslow_steps(planes, turns, bint harmonic, int steps, double share, double 
 def frame_take_out(planes, unit, factors):
     """Fill `unit` with grids `planes` (batch, 2, m, n) at unit size, and `factors` (batch, 2) with what that takes."""
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b
-    cdef const double *p = reads(planes, (batch, 2, m, n))
-    cdef double *to = fills(unit, (batch, 2, m, n))
-    cdef double *f = fills(factors, (batch, 2))
+    cdef Read p = reads(planes, (batch, 2, m, n))
+    cdef Written to = fills(unit, (batch, 2, m, n)), f = fills(factors, (batch, 2))
     if m < 2 or n < 2:
         raise ValueError("planes without cells")
     with nogil:
@@ -103,10 +98,9 @@ def frame_take_out(planes, unit, factors):
 def frame_put_back(planes, moved, unit, factors):
     """Add to `planes` by what grids have `moved` from where `frame_take_out` left them, at their own sizes."""
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
-    cdef double *p = fills(planes, (batch, 2, m, n))
-    cdef const double *to = reads(moved, (batch, 2, m, n))
-    cdef const double *start = reads(unit, (batch, 2, m, n))
-    cdef const double *f = reads(factors, (batch, 2))
+    cdef Written p = fills(planes, (batch, 2, m, n))
+    cdef Read to = reads(moved, (batch, 2, m, n)), start = reads(unit, (batch, 2, m, n))
+    cdef Read f = reads(factors, (batch, 2))
     with nogil:
         for b in range(batch):
             at = 2 * b * m * n
@@ -118,8 +112,8 @@ def add_answers(planes, answers, ptrdiff_t head, rim):
     cdef ptrdiff_t batch = len(planes), m = planes.shape[2], n = planes.shape[3], b, at
     cdef ptrdiff_t per_node = 2 * answers.shape[3]
     cdef bint single = is_single(answers)
-    cdef double *p = fills(planes, (batch, 2, m, n))
-    cdef const double *share = reads(rim, (m, n))
+    cdef Written p = fills(planes, (batch, 2, m, n))
+    cdef Read share = reads(rim, (m, n))
     cdef const void *a = reads_real(answers, single, (batch, m, n, answers.shape[3], 2))
     if not 0 <= 2 * head < per_node:
         raise ValueError("no such head")
@@ -215,9 +209,7 @@ cdef int begin(Layer *layer, int kind, x, out, shape) except -1:
 def convolve(x, w, bias, int size, int stride, add, out, LayerProgram later=None):
     """Fill `out` (batch, p, q, outputs) with the convolution of `x` (batch, m, n, inputs), which holds its own padding.
 
-    `w` is (size² inputs, outputs rounded up to 64 bytes), taps along xi slowest; `bias` has as many. `add`, of
-    the shape of `out`, is added when it is not None. Like every layer it is recorded in the program `later` when
-    there is one, instead.
+    Like every layer of ``neural/network.h`` it is recorded in the program `later` when there is one, instead.
     """
     cdef Layer layer
     if size < 1 or stride < 1 or x.shape[1] < size or x.shape[2] < size or out.shape[3] < 1 or x.shape[3] < 1:
@@ -263,8 +255,7 @@ def grid_features(planes, steps, out):
     """Fill `out` (batch, n, n, features) for grids `planes` and their last `steps`, both (batch, 2, n, n)."""
     cdef ptrdiff_t batch = len(planes), n = planes.shape[2]
     cdef bint single = is_single(out)
-    cdef const double *p = reads(planes, (batch, 2, n, n))
-    cdef const double *s = reads(steps, (batch, 2, n, n))
+    cdef Read p = reads(planes, (batch, 2, n, n)), s = reads(steps, (batch, 2, n, n))
     cdef void *to = fills_real(out, single, (batch, n, n, LOOK_FEATURES))
     if n < 3 or n > LOOK_MOST:
         raise ValueError("grids that are too small or too large")

@@ -1,11 +1,7 @@
 /* Waves along the rows and columns of fields: products with the tables of Waves, and folding, which halves them. */
-#define LANES 8
+#include "lanes.h"
+
 #define BLOCK 8 /* rows of a product that are made together */
-
-typedef double Lanes __attribute__((vector_size(LANES * sizeof(double)), aligned(8)));
-
-#define AT(pointer) (*(Lanes *)(pointer))
-#define OF(pointer) (*(const Lanes *)(pointer))
 
 MESHONET_INLINE double summed(Lanes x)
 {

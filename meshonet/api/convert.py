@@ -37,11 +37,8 @@ def convert(
     coarsen : keep every so many-th node along xi and eta.
     from_format, to_format : formats, when endings and content do not say.
 
-    Raises
-    ------
-    InputError
-        a format that cannot be read or written, or not in 3D; a height that is not positive; nodes that
-        `coarsen` does not divide.
+    Raises InputError: a format that cannot be read or written, or not in 3D; a height that is not positive;
+    nodes that `coarsen` does not divide.
     """
     conversion = Conversion(extrude, planes, swap, normalise, coarsen)
     boundaries = conversion.of_boundaries(str(source), str(output), from_format, to_format)

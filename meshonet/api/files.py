@@ -19,10 +19,7 @@ from meshonet.geometry.shapes.shape import Shape
 def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
     """Return the grid of a file, or the shape of one without grids or of a designation ``naca:2412``.
 
-    Raises
-    ------
-    InputError
-        a file that cannot be read, or holds several: `read_all` has them.
+    Raises InputError: a file that cannot be read, or holds several: `read_all` has them.
     """
     records = read_all(path, from_format=from_format)
     record = next(records, None)
@@ -36,10 +33,7 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
 def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Grid | Shape]:
     """Return an iterator over the grids of a file, or over the shapes of one without grids.
 
-    Raises
-    ------
-    InputError
-        a file that cannot be read.
+    Raises InputError: a file that cannot be read.
     """
     text = str(path)
     if text.lower().startswith("naca:") and not Path(text).exists():
@@ -64,10 +58,7 @@ def write(what: Grid | Boundary, path: str | Path, *, to_format: str | None = No
     path : file to write; its ending says the format.
     to_format : format, when the ending does not say.
 
-    Raises
-    ------
-    InputError
-        a format that is not known or cannot hold this; a place that cannot be written.
+    Raises InputError: a format that is not known or cannot hold this; a place that cannot be written.
     """
     fmt = format_for_output(str(path), to_format, "grids" if isinstance(what, Grid) else "boundaries")
     put: Any = fmt.write_grids if isinstance(what, Grid) else fmt.write_boundaries

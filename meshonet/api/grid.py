@@ -36,22 +36,10 @@ def grid(shape: AnyShape, *, res: Counts | None = None, method: str = "best", **
     parameters : those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
         ``y_plus``, ``reynolds``, ``growth``, ``repair``, and settings of the method, such as ``tol``.
 
-    Returns
-    -------
-    Grid
-        with `write`, `quality` and `to_pyvista`. `meshonet.make_grid` returns notes and times beside it.
+    The grid has `write`, `quality` and `to_pyvista`; `meshonet.make_grid` returns notes and times too. Raises
+    InputError: a shape or parameter that cannot be used; NoValidGridError: cells are folded, and
+    `allow_invalid` was not given; SolverError: the method diverged.
 
-    Raises
-    ------
-    InputError
-        a shape or parameter that cannot be used.
-    NoValidGridError
-        cells are folded, and `allow_invalid` was not given.
-    SolverError
-        the method diverged.
-
-    Examples
-    --------
     >>> made = grid("naca:2412", res=(81, 31))
     >>> made.ni, made.nj, made.topology, made.quality().folded
     (81, 31, 'o', 0)
@@ -90,13 +78,8 @@ def sample_boundary(
     sensors : so many boundary nodes are kept as sensors as well.
     parameters : those of `meshonet.Sampling`, such as ``topology``, ``te_spacing``, ``far_field``.
 
-    Raises
-    ------
-    InputError
-        a shape or parameter that cannot be used.
+    Raises InputError: a shape or parameter that cannot be used.
 
-    Examples
-    --------
     >>> edges = sample_boundary("naca:0012", res=(61, 21), far_field=20)
     >>> edges.south.shape, edges.topology
     ((61, 2), 'o')
@@ -128,10 +111,7 @@ def sample_family(
     seed : of the draw.
     split : ``interpolation``, ``extrapolation`` or ``random``: a sixth is marked for tests.
 
-    Raises
-    ------
-    InputError
-        no such family, a range that leaves the family's, members that cannot be split.
+    Raises InputError: no such family, a range that leaves the family's, members that cannot be split.
     """
     spread = None if range is None else "{!r}:{!r}".format(*range)
     sampling = sampling_of(res, {})
@@ -141,10 +121,7 @@ def sample_family(
 def shape_of(shape: AnyShape) -> Shape:
     """Return what can be sampled into a boundary.
 
-    Raises
-    ------
-    InputError
-        a file that cannot be read, an array of another shape than (n, 2).
+    Raises InputError: a file that cannot be read, an array of another shape than (n, 2).
     """
     if isinstance(shape, str | Path):
         shape = cast(AnyShape, read(shape))

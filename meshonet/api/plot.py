@@ -30,10 +30,8 @@ def plot(
     every : draw every so many-th grid line; None chooses by the resolution of the picture.
     to_format : ``png``, ``svg`` or ``pdf``, when the ending does not say.
 
-    Raises
-    ------
-    InputError
-        an unknown metric or ending, a box that shows none of the grid, a file that cannot be read or written.
+    Raises InputError: an unknown metric or ending, a box that shows none of the grid, a file that cannot be
+    read or written.
     """
     picture = Picture(metric, zoom, every)
     kind = picture_format(str(output), to_format).name

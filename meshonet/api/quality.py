@@ -21,13 +21,9 @@ def quality(
     profile : thresholds to judge by: ``openfoam``, ``pointwise``, ``verdict`` or ``viscous``.
     compare : reference grid of the same size, or a file that holds one.
 
-    Raises
-    ------
-    InputError
-        a file that cannot be read or holds several grids, a reference of another size, an unknown profile.
+    Raises InputError: a file that cannot be read or holds several grids, a reference of another size, an
+    unknown profile.
 
-    Examples
-    --------
     >>> import numpy as np
     >>> x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
     >>> report = quality(Grid.from_nodes(np.stack([x, y], axis=-1)))
@@ -42,10 +38,7 @@ def quality(
 def single_grid(grid: Grid | str | Path) -> Grid:
     """Return the grid, or the only one of a file.
 
-    Raises
-    ------
-    InputError
-        a file that cannot be read, or holds none or several.
+    Raises InputError: a file that cannot be read, or holds none or several.
     """
     if isinstance(grid, Grid):
         return grid

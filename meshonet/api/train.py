@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.registry import read_grids, read_shapes
-from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.split import WAYS, split
 from meshonet.geometry.spacing.sampling import Sampling
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.plan import Plan
     from meshonet.solvers.neural.samples import Samples
 
-REPORTS = 200
-"""Reports, evaluations and checkpoints of a long run."""
+REPORTS = 200  # reports, evaluations and checkpoints of a long run
 
 
 def train(
@@ -60,21 +58,16 @@ def train(
     plan : settings of `meshonet.solvers.neural.fit.plan.Plan`; None stands for the model's own. `points` is
         a number, or ``all``.
 
-    Returns
-    -------
-    dict
-        the ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in processes
-        of torchrun that do not lead.
-
-    Raises
-    ------
-    InputError
-        torch is not installed; the output is no ``.safetensors`` file in a folder that exists; bad settings
-        or datasets.
-    SolverError
-        the loss is not finite.
+    Returns the ``model``, the number of ``shapes`` and the ``figures`` of those held out; nothing in
+    processes of torchrun that do not lead. Raises InputError: torch is not installed; the output is no
+    ``.safetensors`` file in a folder that exists; bad settings or datasets. Raises SolverError: the loss is
+    not finite.
     """
-    _check_output(str(output))
+    path = Path(output)
+    if path.suffix != ".safetensors":
+        raise InputError("a model file ends in .safetensors", "rename the output", source=str(path))
+    if not path.parent.is_dir():
+        raise InputError(f"no folder {path.parent}", "make it first", source=str(path))
     try:
         import torch
     except ImportError:
@@ -87,47 +80,38 @@ def train(
     torch.set_num_threads(threads)
     sources = [str(d) for d in ([datasets] if isinstance(datasets, str | Path) else datasets)]
     name = model or _suited(sources[0], from_format)
+    own, chosen = name in ("strip", "quad"), dict(settings or {})
     members = team(plan.get("device") or "auto")
-    say = note if note and members.leads else _silent
+    say = note if note and members.leads else lambda _: None
     try:
         if initial is not None and name != "quad":
             raise InputError(f"{{initial}} is of no use to {name}", "leave it out, or use {model} quad")
-        full = _full_plan(standard(name), plan, long=name not in ("strip", "quad"))
+        another = "out, or choose another {model}"
         if name == "strip" and settings:
-            problem = "the strip operator takes no {settings}"
-            raise InputError(problem, "leave it out, or choose another {model}")
-        if name in ("strip", "quad") and (split or plan.get("points")):
-            problem = f"the {name} operator takes no {{split}} or {{points}}"
-            raise InputError(problem, "leave them out, or choose another {model}")
-        choices: dict[str, Any] = {}
-        chosen = dict(settings or {})
+            raise InputError("the strip operator takes no {settings}", f"leave it {another}")
+        if own and (split or plan.get("points")):
+            raise InputError(f"the {name} operator takes no {{split}} or {{points}}", f"leave them {another}")
+        full = _full_plan(standard(name), plan, long=not own)
+        choices: dict[str, Any] = {"settings": chosen}
+        data: Any
         if name == "strip":
-            data = _strips(sources, from_format, say)
+            data, choices = _strips(sources, from_format, say), {}
         elif name == "quad":
-            first = None if initial is None else load(initial)
-            data, choices = _quads(sources, from_format, say), {"initial": first, "weights": chosen}
+            from meshonet.solvers.neural.fit.quad_grids import quads_of
+
+            data = quads_of(read_grids(source, from_format) for source in sources)
+            say(f"{len(data)} domains solved by both methods")
+            choices = {"initial": None if initial is None else load(initial), "weights": chosen}
         else:
-            data, choices = _samples(sources, split, from_format), {"settings": chosen}
+            data = _samples(sources, split, from_format)
         recipe = {"command": "meshonet train", "datasets": [Path(source).name for source in sources]}
         figures = fit(
-            name, data, Path(output), full, members, recipe=recipe, held_out=held_out, resume=resume,
+            name, data, path, full, members, recipe=recipe, held_out=held_out, resume=resume,
             report=report if members.leads else None, **choices,
         )  # fmt: skip
     finally:
         members.close()
     return {"model": name, "shapes": len(data), "figures": figures} if members.leads else {}
-
-
-def _silent(_: str) -> None:
-    """Say nothing."""
-
-
-def _check_output(text: str) -> None:
-    path = Path(text)
-    if path.suffix != ".safetensors":
-        raise InputError("a model file ends in .safetensors", "rename the output", source=text)
-    if not path.parent.is_dir():
-        raise InputError(f"no folder {path.parent}", "make it first", source=text)
 
 
 def _suited(source: str, fmt: str | None) -> str:
@@ -148,15 +132,11 @@ def _full_plan(standard: Plan, changes: Mapping[str, Any], *, long: bool) -> Pla
     words = {key: value for key, value in changes.items() if value is not None}
     if "points" in words:
         words["points"] = _points(str(words["points"]))
-    plan = replace(standard, **words)
-    if not long:
-        return plan
-    every = max(1, plan.epochs // REPORTS)
-    extra: dict[str, Any] = {"log_every": every, "validate_every": every}
-    extra["decay_every"] = max(1, plan.epochs // 15)
-    if "checkpoint_every" not in words:
-        extra["checkpoint_every"] = every
-    return replace(plan, **extra)
+    if long:
+        epochs = words.get("epochs", standard.epochs)
+        often = dict.fromkeys(("log_every", "validate_every", "checkpoint_every"), max(1, epochs // REPORTS))
+        words = {**often, "decay_every": max(1, epochs // 15), **words}
+    return replace(standard, **words)
 
 
 def _points(text: str) -> tuple[int, int] | None:
@@ -171,35 +151,19 @@ def _points(text: str) -> tuple[int, int] | None:
 
 
 def _strips(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]) -> Any:
-    """Return the airfoils of the datasets, solved in their strips."""
     from meshonet.solvers.neural.strip.dataset import solve_strips
 
     def count(done: int, left_out: int) -> None:
         if done and done % 500 == 0:
             note(f"{done} shapes lifted and solved, {left_out} left out")
 
-    strips = solve_strips(_boundaries(sources, fmt), count)
+    shapes = (shape for source in sources for shape in read_shapes(source, fmt))
+    strips = solve_strips((shape.boundary(Sampling(topology="o")) for shape in shapes), count)
     note(f"{len(strips)} shapes lifted and solved")
     return strips
 
 
-def _boundaries(sources: Iterable[str], fmt: str | None) -> Iterator[Boundary]:
-    for source in sources:
-        for shape in read_shapes(source, fmt):
-            yield shape.boundary(Sampling(topology="o"))
-
-
-def _quads(sources: Sequence[str], fmt: str | None, note: Callable[[str], None]) -> Any:
-    """Return the domains that the datasets have by both methods."""
-    from meshonet.solvers.neural.fit.quad_grids import quads_of
-
-    domains = quads_of(read_grids(source, fmt) for source in sources)
-    note(f"{len(domains)} domains solved by both methods")
-    return domains
-
-
 def _samples(sources: Sequence[str], way: str | None, fmt: str | None) -> Samples:
-    """Return the grids of the datasets, split by `way`."""
     from meshonet.solvers.neural.samples import gathered
 
     samples = gathered(grid for source in sources for grid in read_grids(source, fmt))

@@ -27,10 +27,7 @@ class Destination:
     kind : what will be written.
     put : writes to a path in place of the format's own function.
 
-    Raises
-    ------
-    InputError
-        an unknown field or ending, or a format that cannot be written.
+    Raises InputError: an unknown field or ending, or a format that cannot be written.
     """
 
     def __init__(
@@ -47,10 +44,7 @@ class Destination:
     def path(self, item: Item[Any]) -> str:
         """Return the path of one member.
 
-        Raises
-        ------
-        InputError
-            an earlier member has the same path.
+        Raises InputError: an earlier member has the same path.
         """
         if not self.each:
             return self.text

@@ -13,9 +13,7 @@ from typing import Literal
 class Processes(ProcessPoolExecutor):
     """A pool of fresh processes that leaves interrupts to the main one and drops waiting work when it fails.
 
-    Parameters
-    ----------
-    jobs : how many.
+    `jobs`: how many.
     """
 
     def __init__(self, jobs: int) -> None:

@@ -25,8 +25,7 @@ S = TypeVar("S", bound=Grid | Boundary)
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
-Todo = Iterable[tuple[Item[T], str]]
-"""Members and the paths of their files."""
+Todo = Iterable[tuple[Item[T], str]]  # members and the paths of their files
 Done = tuple[Item[Name], str, tuple[S | None, R] | Exception]
 
 
@@ -34,6 +33,19 @@ def prepare(sources: Sequence[str], destination: Destination, session: Session) 
     """Raise InputError when `destination` cannot take what `sources` and `session` will give it."""
     destination.check_room(sources)
     session.check_output(destination.text)
+
+
+def process(
+    sources: Sequence[str], members: Iterator[Item[T]], make: Callable[[Item[T]], tuple[S, R]],
+    destination: Destination, session: Session, *, skip_existing: bool = False, jobs: int = 1,
+) -> int:  # fmt: skip
+    """Make something of each of the `members` of `sources`, deliver it, and return the exit code."""
+    prepare(sources, destination, session)
+    deliver(
+        members, one_by_one(make), destination, session, session.written,
+        skip_existing=skip_existing, jobs=jobs,
+    )  # fmt: skip
+    return session.finish()
 
 
 @dataclass(frozen=True)

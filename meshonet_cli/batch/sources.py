@@ -14,10 +14,7 @@ from meshonet_cli.session import Session
 def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: Session) -> Iterator[Item[T]]:
     """Yield every member of every source; one that cannot be read is reported and passed over.
 
-    Raises
-    ------
-    InputError
-        standard input is named twice, or is a terminal.
+    Raises InputError: standard input is named twice, or is a terminal.
     """
     if sources.count("-") > 1:
         raise InputError("standard input is named twice", "name - once", source="-")

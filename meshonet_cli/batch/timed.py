@@ -6,10 +6,15 @@ import contextlib
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.batch.item import Item
+from meshonet_cli.errors import with_options
 from meshonet_cli.text import span
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.boundary import Boundary
+    from meshonet.geometry.blocks.grid import Grid
 
 STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
 
@@ -32,6 +37,18 @@ class Timed:
         yield
         self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - begun
 
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        raise NotImplementedError
+
+    def lines(self) -> str:
+        """Return it in full, for people."""
+        raise NotImplementedError
+
+    def line(self) -> str:
+        """Return it as a line of a batch."""
+        return self.lines()
+
     def finished(self, path: str | None) -> None:
         """Note where the result is and add the stages up."""
         self.output = path
@@ -52,3 +69,30 @@ class Timed:
     def times_json(self) -> dict[str, float]:
         """Return the stages for JSON, to the microsecond."""
         return {stage: round(spent, 6) for stage, spent in self.seconds.items()}
+
+
+@dataclass
+class Delivered(Timed):
+    """The report of a grid or boundary in a file: `facts` are for JSON, `text` and `notes` for people."""
+
+    what: Grid | Boundary
+    facts: dict[str, Any]
+    text: str = ""
+    notes: tuple[str, ...] = ()
+
+    def as_json(self) -> dict[str, Any]:
+        """Return what ``--json`` prints."""
+        counts = {"ni": self.what.ni, "nj": self.what.nj, "topology": self.what.topology}
+        notes = {"notes": [with_options(note) for note in self.notes]} if self.notes else {}
+        return {**self.member_json(), **counts, **self.facts, **notes, "seconds": self.times_json()}
+
+    def lines(self) -> str:
+        """Return it for people."""
+        size = f"{self.what.ni} x {self.what.nj} nodes, {self.text or self.what.topology}"
+        head = f"{self.item.label} -> {self.output}: {size}, {self.times()}"
+        return "\n  ".join([head, *map(with_options, self.notes)])
+
+
+def part_names(what: Grid | Boundary) -> dict[str, Any]:
+    """Return the names of the parts of a boundary, a fact for JSON."""
+    return {"parts": [patch.name for patch in what.patches]}

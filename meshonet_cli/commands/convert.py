@@ -24,66 +24,46 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 def convert(
     formats: o.FileOptions,
     printing: o.PrintOptions,
-    files: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="IN... [OUT]", show_default=False,
-            help="Files to read, or - for standard input; without -o the last name is the file to write.",
-        ),
-    ] = None,
-    output: Annotated[
-        str | None,
-        _output(
-            "-o", "--output", metavar="OUT",
-            help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also "
-            "{name}, {index}) or one .h5.",
-        ),
-    ] = None,
-    extrude: Annotated[
-        float | None,
-        _option(
-            "--extrude", metavar="H",
-            help="Make the grid 3D: this high in z, one cell as 2D cases of 3D solvers need it.",
-        ),
-    ] = None,
-    planes: Annotated[
-        int | None,
-        _option(
-            "--planes", metavar="K", min=2, max=10_000,
-            help="With --extrude: planes of nodes in z, so one cell fewer. [default: 2]",
-        ),
-    ] = None,
-    plot3d: Annotated[
-        str | None,
-        _output(
-            "--plot3d", metavar="WORDS",
-            help="Variant of the Plot3D file to write, else to read: of ascii/binary/fortran, multi/single, "
-            "2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes, span-k/span-i/span-j, with "
-            "commas. Reading finds out what can be found; --from plot3d:WORDS says it in any command.",
-        ),
-    ] = None,
-    swap: Annotated[
-        bool,
-        _option("--swap", help="Have xi run where eta ran (four-sided grids), still right-handed."),
-    ] = False,
-    normalise: Annotated[
-        bool,
-        _option(
-            "--normalise",
-            help="Scale to unit chord, leading edge at (0, 0) and trailing edge at (1, 0); four-sided grids "
-            "to unit length.",
-        ),
-    ] = False,
-    coarsen: Annotated[
-        int | None,
-        _option(
-            "--coarsen", metavar="K", min=2, max=10_000,
-            help="Keep every K-th node along xi and eta; K must divide the cells.",
-        ),
-    ] = None,
-    list_formats: Annotated[
-        bool, _output("--list-formats", help="Print what can be read and written, and stop.")
-    ] = False,
+    files: Annotated[list[str] | None, typer.Argument(
+        metavar="IN... [OUT]", show_default=False,
+        help="Files to read, or - for standard input; without -o the last name is the file to write.",
+    )] = None,
+    output: Annotated[str | None, _output(
+        "-o", "--output", metavar="OUT",
+        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
+        "{index}) or one .h5.",
+    )] = None,
+    extrude: Annotated[float | None, _option(
+        "--extrude", metavar="H",
+        help="Make the grid 3D: this high in z, one cell as 2D cases of 3D solvers need it.",
+    )] = None,
+    planes: Annotated[int | None, _option(
+        "--planes", metavar="K", min=2, max=10_000,
+        help="With --extrude: planes of nodes in z, so one cell fewer. [default: 2]",
+    )] = None,
+    plot3d: Annotated[str | None, _output(
+        "--plot3d", metavar="WORDS",
+        help="Variant of the Plot3D file to write, else to read: of ascii/binary/fortran, multi/single, "
+        "2d/3d, no-iblank/iblank, little/big, float64/float32, whole/planes, span-k/span-i/span-j, "
+        "with commas. Reading finds out what can be found; --from plot3d:WORDS says it in any command.",
+    )] = None,
+    swap: Annotated[bool, _option(
+        "--swap",
+        help="Have xi run where eta ran (four-sided grids), still right-handed.",
+    )] = False,
+    normalise: Annotated[bool, _option(
+        "--normalise",
+        help="Scale to unit chord, leading edge at (0, 0) and trailing edge at (1, 0); four-sided grids to "
+        "unit length.",
+    )] = False,
+    coarsen: Annotated[int | None, _option(
+        "--coarsen", metavar="K", min=2, max=10_000,
+        help="Keep every K-th node along xi and eta; K must divide the cells.",
+    )] = None,
+    list_formats: Annotated[bool, _output(
+        "--list-formats",
+        help="Print what can be read and written, and stop.",
+    )] = False,
 ) -> int:
     """Turn files from one format into another."""
     from meshonet.formats.convert import Conversion

@@ -13,38 +13,26 @@ EXAMPLES = (
 _option = o.option_of(o.METHOD)
 
 # fmt: off
-ModelName = Annotated[
-    str | None,
-    _option(
-        "--model", metavar="NAME|PATH",
-        help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for none. C grids "
-        "are marched and take none. [default: what measures best for the topology]",
-    ),
-]
-Polish = Annotated[
-    str,
-    _option(
-        "--polish", metavar="auto|off|N", show_default=True,
-        help="Steps after the operator, elliptic or of descent. With off or N the network of the topology "
-        "is used when no model is named.",
-    ),
-]
-Answer = Annotated[
-    Literal["valid", "pasted", "raw"],
-    _option(
-        "--answer", metavar="valid|pasted|raw", show_default=True,
-        help="For models that do not meet the boundary exactly: raw is the output of the network, pasted has "
-        "the true boundary on its edges, valid is pasted and unfolded.",
-    ),
-]
-DeviceName = Annotated[
-    Literal["cpu", "cuda"] | None,
-    _option(
-        "--device", metavar="cpu|cuda",
-        help="Evaluate networks with torch there, grids of a batch together; without --polish, airfoil-o "
-        "takes 3 steps and others none. [default: without torch]",
-    ),
-]
+ModelName = Annotated[str | None, _option(
+    "--model", metavar="NAME|PATH",
+    help="Operator: a shipped one (see meshonet models), a .safetensors file, or base for none. C grids are "
+    "marched and take none. [default: what measures best for the topology]",
+)]
+Polish = Annotated[str, _option(
+    "--polish", metavar="auto|off|N", show_default=True,
+    help="Steps after the operator, elliptic or of descent. With off or N the network of the topology is "
+    "used when no model is named.",
+)]
+Answer = Annotated[Literal["valid", "pasted", "raw"], _option(
+    "--answer", metavar="valid|pasted|raw", show_default=True,
+    help="For models that do not meet the boundary exactly: raw is the output of the network, pasted has "
+    "the true boundary on its edges, valid is pasted and unfolded.",
+)]
+DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
+    "--device", metavar="cpu|cuda",
+    help="Evaluate networks with torch there, grids of a batch together; without --polish, airfoil-o takes "
+    "3 steps and others none. [default: without torch]",
+)]
 # fmt: on
 
 

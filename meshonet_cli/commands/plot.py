@@ -15,41 +15,26 @@ _option, _output = o.option_of(o.METHOD), o.option_of(o.IO)
 @o.expanded
 def plot(
     grid: o.Grids,
-    output: Annotated[
-        str,
-        _output(
-            "-o", "--output", metavar="PICTURE",
-            help="Picture to write, .png, .svg or .pdf, or - for standard output. For several inputs: "
-            "'dir/{stem}.png' (also {name}, {index}).",
-        ),
-    ],
+    output: Annotated[str, _output(
+        "-o", "--output", metavar="PICTURE",
+        help="Picture to write, .png, .svg or .pdf, or - for standard output. For several inputs: "
+        "'dir/{stem}.png' (also {name}, {index}).",
+    )],
     printing: o.PrintOptions,
-    metric: Annotated[
-        str,
-        _option(
-            "--metric", metavar="METRIC", show_default=True,
-            help="Colour the cells by this metric; none draws lines only.",
-        ),
-    ] = "max_angle",
-    zoom: Annotated[
-        str | None,
-        _option("--zoom", metavar="x0,x1,y0,y1", help="Show this part only."),
-    ] = None,
-    every: Annotated[
-        int | None,
-        _option(
-            "--every", metavar="K",
-            help="Draw every K-th grid line. [default: as many as can be distinguished]",
-        ),
-    ] = None,
+    metric: Annotated[str, _option(
+        "--metric", metavar="METRIC", show_default=True,
+        help="Colour the cells by this metric; none draws lines only.",
+    )] = "max_angle",
+    zoom: Annotated[str | None, _option("--zoom", metavar="x0,x1,y0,y1", help="Show this part only.")] = None,
+    every: Annotated[int | None, _option(
+        "--every", metavar="K",
+        help="Draw every K-th grid line. [default: as many as can be distinguished]",
+    )] = None,
     from_format: o.From = None,
-    to_format: Annotated[
-        str | None,
-        _output(
-            "--to", metavar="FORMAT",
-            help="png, svg or pdf, when the ending does not say. [default on standard output: png]",
-        ),
-    ] = None,
+    to_format: Annotated[str | None, _output(
+        "--to", metavar="FORMAT",
+        help="png, svg or pdf, when the ending does not say. [default on standard output: png]",
+    )] = None,
     skip_existing: o.SkipExisting = False,
 ) -> int:
     """Draw grids, coloured by a quality metric."""

@@ -21,39 +21,33 @@ def quality(
     grid: o.Grids,
     printing: o.PrintOptions,
     fail_on: o.FailOn = None,
-    profile: Annotated[
-        Literal["openfoam", "pointwise", "verdict", "viscous"] | None,
-        _check(
-            "--profile", metavar="openfoam|pointwise|verdict|viscous",
-            help="Judge by the thresholds of other programs: prints each with its figure and pass, warning "
-            "or FAIL, and exits with 1 when one fails. See docs/quality.md.",
-        ),
-    ] = None,
-    plot: Annotated[
-        str | None, _output("--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.")
-    ] = None,
-    per_cell: Annotated[
-        str | None, _output("--per-cell", metavar="F.vts", help="Write every metric of every cell.")
-    ] = None,
-    compare: Annotated[
-        str | None,
-        _check(
-            "--compare", metavar="OTHER",
-            help="Reference grids of the same sizes: prints the relative L2 distance, the distance near "
-            "walls, the largest one and that of the boundary, folded cells, and ratios of angles.",
-        ),
-    ] = None,
-    pair: Annotated[
-        Literal["auto", "name", "order"] | None,
-        _check(
-            "--pair", metavar="auto|name|order",
-            help="How grids are matched with those of --compare. auto: a single reference serves every "
-            "grid; several are matched by name where they have names, else by order. [default: auto]",
-        ),
-    ] = None,
-    summary: Annotated[
-        bool, _output("--summary", help="One table (or JSON object) over all grids, a row each.")
-    ] = False,
+    profile: Annotated[Literal["openfoam", "pointwise", "verdict", "viscous"] | None, _check(
+        "--profile", metavar="openfoam|pointwise|verdict|viscous",
+        help="Judge by the thresholds of other programs: prints each with its figure and pass, warning or "
+        "FAIL, and exits with 1 when one fails. See docs/quality.md.",
+    )] = None,
+    plot: Annotated[str | None, _output(
+        "--plot", metavar="F.png",
+        help="Draw the grid, coloured by max_angle.",
+    )] = None,
+    per_cell: Annotated[str | None, _output(
+        "--per-cell", metavar="F.vts",
+        help="Write every metric of every cell.",
+    )] = None,
+    compare: Annotated[str | None, _check(
+        "--compare", metavar="OTHER",
+        help="Reference grids of the same sizes: prints the relative L2 distance, the distance near walls, "
+        "the largest one and that of the boundary, folded cells, and ratios of angles.",
+    )] = None,
+    pair: Annotated[Literal["auto", "name", "order"] | None, _check(
+        "--pair", metavar="auto|name|order",
+        help="How grids are matched with those of --compare. auto: a single reference serves every grid; "
+        "several are matched by name where they have names, else by order. [default: auto]",
+    )] = None,
+    summary: Annotated[bool, _output(
+        "--summary",
+        help="One table (or JSON object) over all grids, a row each.",
+    )] = False,
     from_format: o.From = None,
 ) -> int:
     """Measure grids: folded cells, angles, skewness."""

@@ -15,52 +15,35 @@ EXAMPLES = (
 _option = o.option_of(o.SAMPLING)
 
 # fmt: off
-Source = Annotated[
-    list[str] | None,
-    typer.Argument(
-        metavar="SOURCE", show_default=False,
-        help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. "
-        "None with --family.",
-    ),
-]
-FamilyName = Annotated[
-    str | None,
-    _option(
-        "--family", metavar="NAME",
-        help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of "
-        "the paper), procedural (random airfoils), four-sided (random quads) or bodies (random bodies in "
-        "far fields). 101x101 nodes unless --res says otherwise.",
-    ),
-]
-Count = Annotated[
-    int | None,
-    _option("--count", metavar="N", min=1, help="Number of members to draw of the family. [default: 1]"),
-]
-Range = Annotated[
-    str | None,
-    _option(
-        "--range", metavar="A:B",
-        help="Range that the family's parameter is drawn from. [default: the paper's]",
-    ),
-]
-Sensors = Annotated[
-    int | None,
-    _option(
-        "--sensors", metavar="M", min=2,
-        help="Also keep M boundary nodes as sensors (dataset sensors of an .h5 file).",
-    ),
-]
-Split = Annotated[
-    str | None,
-    _option(
-        "--split", metavar="HOW",
-        help="Keep a sixth of the family for tests: interpolation (the middle of the range), extrapolation "
-        "(one end of it) or random. Kept in an .h5 file: train honours it, and FILE.h5#test reads it.",
-    ),
-]
-Seed = Annotated[
-    int | None, _option("--seed", metavar="S", min=0, help="Seed of the draw. [default: 0]")
-]
+Source = Annotated[list[str] | None, typer.Argument(
+    metavar="SOURCE", show_default=False,
+    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input. None "
+    "with --family.",
+)]
+FamilyName = Annotated[str | None, _option(
+    "--family", metavar="NAME",
+    help="Draw from a family instead: arch, hexagon, wrench, semicircle, airfoil, hole (the six of the "
+    "paper), procedural (random airfoils), four-sided (random quads) or bodies (random bodies in far "
+    "fields). 101x101 nodes unless --res says otherwise.",
+)]
+Count = Annotated[int | None, _option(
+    "--count", metavar="N", min=1,
+    help="Number of members to draw of the family. [default: 1]",
+)]
+Range = Annotated[str | None, _option(
+    "--range", metavar="A:B",
+    help="Range that the family's parameter is drawn from. [default: the paper's]",
+)]
+Sensors = Annotated[int | None, _option(
+    "--sensors", metavar="M", min=2,
+    help="Also keep M boundary nodes as sensors (dataset sensors of an .h5 file).",
+)]
+Split = Annotated[str | None, _option(
+    "--split", metavar="HOW",
+    help="Keep a sixth of the family for tests: interpolation (the middle of the range), extrapolation (one "
+    "end of it) or random. Kept in an .h5 file: train honours it, and FILE.h5#test reads it.",
+)]
+Seed = Annotated[int | None, _option("--seed", metavar="S", min=0, help="Seed of the draw. [default: 0]")]
 # fmt: on
 
 

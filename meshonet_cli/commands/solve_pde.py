@@ -31,64 +31,41 @@ else:
     MethodName = Literal[tuple(SOLVERS)]
 
 # fmt: off
-Method = Annotated[
-    MethodName,
-    _option(
-        "--method", metavar="|".join(SOLVERS), show_default=True,
-        help=with_options(" ".join(f"{name}: {text}." for name, text in SOLVERS.items())),
-    ),
-]
-Tolerance = Annotated[
-    float | None,
-    _option(
-        "--tol", metavar="T",
-        help="Stop at this residual, relative to that of the interpolated start (variational: when no node "
-        "moves further, in square roots of the area). [default: where more cycles change the grid by less "
-        "than a finer one would]",
-    ),
-]
-MaxCycles = Annotated[
-    int | None,
-    _option(
-        "--max-cycles", metavar="N", min=1,
-        help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
-    ),
-]
-Coarse = Annotated[
-    str,
-    _option(
-        "--coarse", metavar="auto|off|N", show_default=True,
-        help="Solve on N x N nodes and interpolate to --res by splines. auto does so on large quads and C "
-        "grids, where it measures as well: winslow above 512 nodes a side with 257, variational above 257 "
-        "with 129; not with --tol, --max-cycles or --initial.",
-    ),
-]
-Refine = Annotated[
-    int,
-    _option(
-        "--refine", metavar="K", min=0, max=8,
-        help="Solve at --res, halve all cells and solve again, K times: the finest grid of a family; "
-        "convert --coarsen 2 makes the others of it.",
-    ),
-]
-Initial = Annotated[
-    str | None, _option("--initial", metavar="GRID", help="Grid to start from.")
-]
-RepairMargin = Annotated[
-    int | None,
-    o.option_of(o.CHECKS)(
-        "--repair-margin", metavar="CELLS", min=2, max=24,
-        help="Width of the band of cells around folded ones that moves when they are unfolded; 12 is slower "
-        "and smoother. [default: 6, more where that is not enough]",
-    ),
-]
-History = Annotated[
-    str | None,
-    o.option_of(o.IO)(
-        "--history", metavar="F.csv",
-        help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
-    ),
-]
+Method = Annotated[MethodName, _option(
+    "--method", metavar="|".join(SOLVERS), show_default=True,
+    help=with_options(" ".join(f"{name}: {text}." for name, text in SOLVERS.items())),
+)]
+Tolerance = Annotated[float | None, _option(
+    "--tol", metavar="T",
+    help="Stop at this residual, relative to that of the interpolated start (variational: when no node "
+    "moves further, in square roots of the area). [default: where more cycles change the grid by less "
+    "than a finer one would]",
+)]
+MaxCycles = Annotated[int | None, _option(
+    "--max-cycles", metavar="N", min=1,
+    help="Multigrid cycles (variational: iterations at full resolution) at the most. [default: 30 (200)]",
+)]
+Coarse = Annotated[str, _option(
+    "--coarse", metavar="auto|off|N", show_default=True,
+    help="Solve on N x N nodes and interpolate to --res by splines. auto does so on large quads and C "
+    "grids, where it measures as well: winslow above 512 nodes a side with 257, variational above 257 "
+    "with 129; not with --tol, --max-cycles or --initial.",
+)]
+Refine = Annotated[int, _option(
+    "--refine", metavar="K", min=0, max=8,
+    help="Solve at --res, halve all cells and solve again, K times: the finest grid of a family; convert "
+    "--coarsen 2 makes the others of it.",
+)]
+Initial = Annotated[str | None, _option("--initial", metavar="GRID", help="Grid to start from.")]
+RepairMargin = Annotated[int | None, o.option_of(o.CHECKS)(
+    "--repair-margin", metavar="CELLS", min=2, max=24,
+    help="Width of the band of cells around folded ones that moves when they are unfolded; 12 is slower and "
+    "smoother. [default: 6, more where that is not enough]",
+)]
+History = Annotated[str | None, o.option_of(o.IO)(
+    "--history", metavar="F.csv",
+    help="Write residual, change, seconds, folded cells and functional of every cycle to F.csv.",
+)]
 # fmt: on
 
 

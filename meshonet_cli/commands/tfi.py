@@ -13,6 +13,7 @@ BlendingName = Literal["arclength", "linear"]
 _option = o.option_of(o.METHOD)
 
 
+# fmt: off
 @o.expanded
 def tfi(
     boundary: o.Boundaries,
@@ -23,15 +24,10 @@ def tfi(
     checks: o.CheckOptions,
     files: o.FileOptions,
     printing: o.PrintOptions,
-    blending: Annotated[
-        BlendingName,
-        _option(
-            "--blending",
-            metavar="arclength|linear",
-            show_default=True,
-            help="Blend the edges by their arc length, or linearly by index.",
-        ),
-    ] = "arclength",
+    blending: Annotated[BlendingName, _option(
+        "--blending", metavar="arclength|linear", show_default=True,
+        help="Blend the edges by their arc length, or linearly by index.",
+    )] = "arclength",
     jobs: o.Jobs = 1,
 ) -> int:
     """Make grids by transfinite interpolation."""
@@ -39,3 +35,4 @@ def tfi(
 
     request = request_of("tfi", sampling, checks, first, sides, settings={"blending": blending})
     return write_grids(boundary, output, request, checks, files, printing.session(), jobs=jobs)
+# fmt: on

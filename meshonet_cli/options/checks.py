@@ -9,23 +9,18 @@ from meshonet_cli.options.groups import CHECKS, option_of
 
 _option = option_of(CHECKS)
 
-Repair = Annotated[
-    bool | None,
-    _option(
-        "--repair/--no-repair",
-        help="Unfold folded cells, or refuse grids that have any. [default: solve-pde and infer unfold, "
-        "tfi refuses]",
-    ),
-]
+# fmt: off
+Repair = Annotated[bool | None, _option(
+    "--repair/--no-repair",
+    help="Unfold folded cells, or refuse grids that have any. [default: solve-pde and infer unfold, tfi "
+    "refuses]",
+)]
 AllowInvalid = Annotated[bool, _option("--allow-invalid", help="Write the grid even when cells are folded.")]
-FailOn = Annotated[
-    list[str] | None,
-    _option(
-        "--fail-on",
-        metavar="GATE",
-        help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable.",
-    ),
-]
+FailOn = Annotated[list[str] | None, _option(
+    "--fail-on", metavar="GATE",
+    help="Exit with 1 when this holds, e.g. 'max_angle>170', 'skewness.p99>0.8', 'folded>0'; repeatable.",
+)]
+# fmt: on
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ import typer
 
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
 METHOD, CHECKS = "Method", "Checks"
-GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, METHOD, CHECKS)
-"""In the order of the help text."""
+GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, METHOD, CHECKS)  # in the order of the help text
 
 
 def option_of(group: str) -> Callable[..., Any]:
@@ -22,11 +21,7 @@ def option_of(group: str) -> Callable[..., Any]:
 def only_with(needed: str, given: bool, **others: object) -> None:
     """Raise InputError when an option that needs another one is there (not None) without it.
 
-    Parameters
-    ----------
-    needed : the other option, by its parameter.
-    given : whether it is there.
-    others : values by parameter.
+    `needed`: the other option, by its parameter. `given`: whether it is there. `others`: values by parameter.
     """
     from meshonet.geometry.errors import InputError
 

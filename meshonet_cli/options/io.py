@@ -14,51 +14,40 @@ if TYPE_CHECKING:
 
 _option = option_of(IO)
 
-Boundaries = Annotated[
-    list[str],
-    typer.Argument(
-        metavar="BOUNDARY",
-        show_default=False,
-        help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
-    ),
-]
-Grids = Annotated[
-    list[str], typer.Argument(metavar="GRID", show_default=False, help="Grid file, or - for standard input.")
-]
-Output = Annotated[
-    str,
-    _option(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
-        "{index}) or one .h5.",
-    ),
-]
-From = Annotated[
-    str | None,
-    _option(
-        "--from", metavar="FORMAT", help="Format of the input, when neither its ending nor its content says."
-    ),
-]
-To = Annotated[
-    str | None,
-    _option(
-        "--to",
-        metavar="FORMAT",
-        help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
-    ),
-]
-SkipExisting = Annotated[
-    bool, _option("--skip-existing", help="Skip inputs whose output file exists already.")
-]
-Jobs = Annotated[
-    int,
-    _option("--jobs", metavar="N", min=1, max=1024, help="Processes for a batch.", show_default=True),
-]
+# fmt: off
+Boundaries = Annotated[list[str], typer.Argument(
+    metavar="BOUNDARY", show_default=False,
+    help="File with a boundary (airfoil, points, dataset, grid), naca:2412, or - for standard input.",
+)]
+Grids = Annotated[list[str], typer.Argument(
+    metavar="GRID", show_default=False,
+    help="Grid file, or - for standard input.",
+)]
+Output = Annotated[str, _option(
+    "-o", "--output", metavar="FILE",
+    help="File to write, or - for standard output. For several inputs: 'dir/{stem}.vts' (also {name}, "
+    "{index}) or one .h5.",
+)]
+From = Annotated[str | None, _option(
+    "--from", metavar="FORMAT",
+    help="Format of the input, when neither its ending nor its content says.",
+)]
+To = Annotated[str | None, _option(
+    "--to", metavar="FORMAT",
+    help="Format of the output, when its ending does not say. [default on standard output: hdf5]",
+)]
+SkipExisting = Annotated[bool, _option(
+    "--skip-existing",
+    help="Skip inputs whose output file exists already.",
+)]
+Jobs = Annotated[int, _option(
+    "--jobs", metavar="N", min=1, max=1024, show_default=True,
+    help="Processes for a batch.",
+)]
 AsJson = Annotated[bool, _option("--json", help="Print one JSON object on standard output for each result.")]
 Quiet = Annotated[bool, _option("-q", "--quiet", help="Print warnings and errors only.")]
 Debug = Annotated[bool, _option("--debug", help="Show the traceback of errors.")]
+# fmt: on
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,8 @@ from typing import Literal
 def polish_steps(text: str) -> Literal["auto", "off"] | int:
     """Return the steps of ``auto``, ``off`` or a number.
 
-    Raises
-    ------
-    InputError
-        `text` is none of them.
+    Raises InputError: `text` is none of them.
 
-    Examples
-    --------
     >>> polish_steps("off"), polish_steps("3")
     ('off', 3)
     """
@@ -33,13 +28,8 @@ def polish_steps(text: str) -> Literal["auto", "off"] | int:
 def coarse_nodes(text: str) -> Literal["auto"] | int | None:
     """Return the nodes of ``auto``, ``off`` (None; 0 is the same) or a number from 9 on.
 
-    Raises
-    ------
-    InputError
-        `text` is none of them.
+    Raises InputError: `text` is none of them.
 
-    Examples
-    --------
     >>> coarse_nodes("auto"), coarse_nodes("off"), coarse_nodes("65")
     ('auto', None, 65)
     """
@@ -53,18 +43,3 @@ def coarse_nodes(text: str) -> Literal["auto"] | int | None:
         problem = f"{text!r} is not a number of nodes from 9 on"
         raise InputError(problem, "use auto, off or e.g. 65", parameter="coarse")
     return int(text)
-
-
-def tolerance(value: float | None) -> float | None:
-    """Return `value`, which must be between 0 and 1 when it is given.
-
-    Raises
-    ------
-    InputError
-        it is not.
-    """
-    if value is not None and not 0 < value < 1:
-        from meshonet.geometry.errors import InputError
-
-        raise InputError(f"{value:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
-    return value

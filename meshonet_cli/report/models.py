@@ -9,8 +9,6 @@ from typing import Any
 def model_text(facts: Mapping[str, Any]) -> str:
     """Return what a model says of itself, for people: its name, then one fact a line.
 
-    Examples
-    --------
     >>> print(model_text({"name": "demo", "topology": "o", "recipe": {"shapes": 30, "seed": 1}}))
     demo
       topology  o

@@ -106,8 +106,6 @@ def _check_row(result: CheckResult) -> list[str]:
 def limit_text(limit: Limit) -> str:
     """Return a limit for people.
 
-    Examples
-    --------
     >>> limit_text(Limit("fail", ">=", 90))
     'fail >= 90'
     """

@@ -27,9 +27,7 @@ LABELS = {
 class Summary:
     """Figures of many grids.
 
-    Parameters
-    ----------
-    rows : label and figures by column of each grid; a column is missing where it was not measured.
+    `rows`: label and figures by column of each grid; a column is missing where it was not measured.
     """
 
     rows: Sequence[tuple[str, Mapping[str, float]]]

@@ -12,8 +12,7 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from meshonet.solvers.neural.fit.loop import Progress
 
-LINES = 25
-"""Lines about a run where there is no terminal."""
+LINES = 25  # lines about a run where there is no terminal
 
 
 def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
@@ -37,10 +36,8 @@ def result_lines(result: Mapping[str, Any]) -> Iterator[str]:
 class Log:
     """Shows progress, and adds a row for each report to a CSV file.
 
-    Parameters
-    ----------
-    path : CSV file, or None. A run that begins anew begins it anew; one that goes on cuts the rows after its
-        checkpoint.
+    `path`: CSV file, or None. A run that begins anew begins it anew; one that goes on cuts the rows after its
+    checkpoint.
     """
 
     def __init__(self, session: Session, path: str | None, *, resume: bool) -> None:
@@ -96,8 +93,6 @@ def _kept(path: Path, epoch: int) -> list[str]:
 def _time(seconds: float) -> str:
     """Return a span of time for people.
 
-    Examples
-    --------
     >>> _time(42.0), _time(600.0), _time(9000.0)
     ('42 s', '10 min', '2.5 h')
     """

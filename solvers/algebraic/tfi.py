@@ -34,22 +34,9 @@ Four = tuple[Floats, Floats, Floats, Floats]
 def tfi(boundary: Boundary, blending: Blending = "arclength") -> Grid:
     """Return the transfinite interpolation of `boundary`.
 
-    Parameters
-    ----------
-    boundary : quad, o or c.
-    blending : what the parameters along an edge are: ``linear`` i/(ni-1), or ``arclength`` the fraction of
-        the edge's length, which carries the spacing of the edges into the grid.
-
-    Returns
-    -------
-    Grid
-        (ni, nj, 2) nodes in the boundary's unit of length; its edges equal those of `boundary` bitwise.
-        It may be folded.
-
-    Raises
-    ------
-    InputError
-        an unknown blending.
+    `blending` is what the parameters along an edge are: ``linear`` i/(ni-1), or ``arclength`` the fraction of
+    its length, which carries the spacing of the edges inside. The edges of the grid equal those of `boundary`
+    bitwise; it may be folded. Raises InputError for an unknown blending.
     """
     nodes = planar_nodes(boundary.ni, boundary.nj)
     edges = (boundary.south, boundary.north, boundary.west, boundary.east)
@@ -87,8 +74,6 @@ def interpolate(x: Floats, y: Floats, edges: Four, along: Four) -> None:
 def arc_length_fraction(points: Floats) -> Floats:
     """Return the length along the polyline `points` (n, 2) up to each point, over the whole: (n,), 0 to 1.
 
-    Examples
-    --------
     >>> arc_length_fraction(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 9.0]]))
     array([0. , 0.5, 1. ])
     """

@@ -8,7 +8,6 @@ node gets there at once, and dies out within a few cells.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.conformal.lift import Lift
@@ -28,11 +27,7 @@ def halve_corners(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[i
     if not corners or len(grid.eta) < 4:
         return
     reach, shift = shifts(grid, lift, wall, corners)
-
-    def across(eta: Floats) -> Floats:
-        return fading(eta, float(grid.eta[1]))
-
-    grid.nudge(reach @ shift, across)
+    grid.nudge(reach @ shift, lambda eta: fading(eta, float(grid.eta[1])))
 
 
 def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...]) -> tuple[Floats, Floats]:
@@ -45,17 +40,15 @@ def shifts(grid: StripGrid, lift: Lift, wall: Complexes, corners: tuple[int, ...
     beside = grid.at([(c + d) % n for c in corners for d in (-1, 1)], 1).reshape(-1, 2)
     cells = np.abs(np.remainder((beside - first[:, None]).imag + np.pi, 2.0 * np.pi) - np.pi).min(axis=1)
     limit = LARGEST * np.maximum(cells, step)  # evenly spaced walls have wide cells at an edge
-    reach = _along(np.subtract.outer(np.arange(n), corners), n, width)
+    offset = np.subtract.outer(np.arange(n), corners)
+    reach = np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2))
     pull = reach[list(corners)]
     shift = np.zeros(len(corners))
     for _ in range(SWEEPS):
         moved = first + 1j * (pull @ shift - shift)  # by the other corner alone
-        shift = np.array(
-            [
-                lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], w, s, most)
-                for c, w, s, most in zip(corners, moved, shift, limit, strict=True)
-            ]
-        )
+        ends = zip(corners, moved, shift, limit, strict=True)
+        halved = (lift_bisect(lift, wall[c], wall[(c + 1) % n], wall[c - 1], *rest) for c, *rest in ends)
+        shift = np.array(list(halved))
     return reach, shift
 
 
@@ -63,7 +56,3 @@ def fading(eta: Floats, first: float) -> Floats:
     """Return the share of a shift at `eta`: 1 at the first level, 0 at the walls."""
     cells = eta / first
     return np.asarray(cells * np.exp((1.0 - cells) / CELLS) * (1.0 - eta) / (1.0 - first))
-
-
-def _along(offset: NDArray[np.intp], n: int, width: Floats) -> Floats:
-    return np.asarray(np.exp(-((np.sin(np.pi * offset / n) / (np.pi * width / n)) ** 2)))

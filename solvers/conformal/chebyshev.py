@@ -1,13 +1,24 @@
-"""Chebyshev points of the unit interval, and interpolation from points as a matrix.
+"""Chebyshev points, interpolation from points as a matrix, and panels of such points along eta.
 
-Berrut & Trefethen, Barycentric Lagrange Interpolation, SIAM Review 46 (2004) 501.
+The maps from the strip to the plane are singular only at the wall, so on a panel that starts as far from the
+wall (in psi) as it is long, `NODES` Chebyshev points carry a grid line to round-off: Bernstein's ellipse has
+rho = 3 + sqrt(8), and rho^-NODES is 6e-13. The maps are evaluated there alone.
+
+Trefethen, Approximation Theory and Approximation Practice (2013), chapter 8; Berrut & Trefethen, Barycentric
+Lagrange Interpolation, SIAM Review 46 (2004) 501.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+
+NODES = 16
+NEAREST = 0.25  # psi from the wall's outermost point to the first panel
+WORTH = 3  # times as many grid nodes as Chebyshev points: fewer are evaluated themselves
 
 
 def points(n: int) -> Floats:
@@ -27,8 +38,6 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
 
     Exact at the nodes themselves: a column there has one 1.
 
-    Examples
-    --------
     >>> points(5) ** 4 @ barycentric(points(5), weights(5), np.array([0.0, 0.3]))
     array([0.    , 0.0081])
     """
@@ -40,3 +49,43 @@ def barycentric(nodes: Floats, weights: Floats, x: Floats) -> Floats:
     matrix[hit] = 1.0
     matrix /= matrix.sum(axis=0)
     return np.asarray(matrix)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Grid levels ``start`` to ``stop`` from values at `eta` (NODES,) by `matrix` (NODES, stop - start)."""
+
+    start: int
+    stop: int
+    eta: Floats
+    matrix: Floats
+
+
+def panels(eta: Floats, height: float, spread: float, first: int, last: int) -> list[Panel]:
+    """Return the panels that cover levels `first` to `last` of `eta`, where they save evaluations.
+
+    `eta`: (nj,) rising from 0 at the wall to 1; `height`: psi from wall to far field; `spread`: how much psi
+    varies along the wall; `first`, `last`: levels outside ``[first, last)`` are left out. Panels are without
+    gaps, outwards, and end at `last`; there are none when none is worth it.
+    """
+    chosen: list[Panel] = []
+    distance = NEAREST
+    while spread + distance < height:
+        far = spread + 2.0 * distance
+        ends = np.searchsorted(eta, [(spread + distance) / height, far / height])
+        start = max(int(ends[0]), first)
+        stop = last if far >= height else min(int(ends[1]), last)
+        if stop - start >= WORTH * NODES:
+            chosen.append(_panel(eta, start, stop))
+        elif stop > start:
+            chosen.clear()  # too few levels here: they and all before them are evaluated themselves
+        distance *= 2.0
+    return chosen
+
+
+def _panel(eta: Floats, start: int, stop: int) -> Panel:
+    a, b = eta[start], eta[stop - 1]
+    angle = np.pi * (np.arange(NODES) + 0.5) / NODES
+    points = 0.5 * (a + b) - 0.5 * (b - a) * np.cos(angle)
+    weights = np.sin(angle) * (-1.0) ** np.arange(NODES)
+    return Panel(start, stop, points, barycentric(points, weights, eta[start:stop]))

@@ -1,9 +1,9 @@
 """A grid at any resolution from a strip solution, at the speed of memory.
 
 The strip solution is separable: Fourier modes along theta, Chebyshev points across. What the first `MODES`
-modes leave out of the walls dies within a few levels of them and is added there exactly. Levels near the
-walls go through the compiled maps one by one; all others are interpolated along eta in the plane, from the
-few Chebyshev points of each panel. The points of a row::
+modes leave out of the walls dies within a few levels and is added there exactly. Levels near the walls go
+through the compiled maps one by one; all others are interpolated along eta in the plane, from the few
+Chebyshev points of each panel. The points of a row::
 
     levels 1 .. begin - 1 | panels' points | levels end .. nj - 2
 """
@@ -20,8 +20,8 @@ from meshonet.geometry.arrays import Complexes, Floats, read_only
 from meshonet.geometry.conformal.lift import Lift
 from meshonet.geometry.polygon.mirror import Axis
 from meshonet.kernels._native import strip_rows
+from meshonet.solvers.conformal.chebyshev import NODES, panels
 from meshonet.solvers.conformal.nufft import SHARPNESS, columns
-from meshonet.solvers.conformal.panels import NODES, panels
 from meshonet.solvers.conformal.strip import MODES, interpolation, wavenumbers
 
 FAINT = 1e-12  # a wall's high modes are followed until their sum is below this (radians in the strip)
@@ -30,11 +30,8 @@ FAINT = 1e-12  # a wall's high modes are followed until their sum is below this 
 class StripGrid:
     """A strip solution sampled at the nodes of one grid.
 
-    Parameters
-    ----------
-    c : (2 MODES + 1, LEVELS) modes of F = w - i theta at the Chebyshev points.
-    wall, far : (n,) F at the nodes of the two walls.
-    eta : (nj,) rising from 0 to 1.
+    `c`: (2 MODES + 1, LEVELS) modes of F = w - i theta at the Chebyshev points; `wall`, `far`: (n,) F at the
+    nodes of the two walls; `eta`: (nj,) rising from 0 to 1.
     """
 
     def __init__(self, c: Complexes, wall: Complexes, far: Complexes, eta: Floats) -> None:
@@ -89,10 +86,7 @@ class StripGrid:
         return finite
 
     def _columns(self, eta: Floats, last: int) -> Iterator[tuple[int, int, Floats]]:
-        """Yield the points at `eta` in slices: their first, their number and the columns of their modes.
-
-        Those before `last` may feel the high modes of the wall, the others those of the far field.
-        """
+        """Yield the points at `eta` in slices: their first, their number and the columns of their modes."""
         base = np.ascontiguousarray(self._c.T)
         low = (_interpolation(eta.tobytes()).T @ base.view(np.float64)).view(np.complex128)
         first = 0
@@ -109,7 +103,6 @@ class StripGrid:
 
 @lru_cache(maxsize=8)
 def _interpolation(eta: bytes) -> Floats:
-    """Return `interpolation`, cached for other bodies with the same levels."""
     return read_only(interpolation(np.frombuffer(eta)))
 
 

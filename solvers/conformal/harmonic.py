@@ -7,8 +7,7 @@
 
 with eta measured from the side that has the coefficients. a is the height of the rectangle over its length,
 as the sides' lengths say; T = log(outer length / inner length), so that a ring between two circles comes out
-as Winslow's equations have it. Kinks of the boundary do not reach inside, as they do by transfinite
-interpolation, so what a network has to add is smooth.
+as Winslow's equations have it. Kinks of the boundary do not reach inside.
 """
 
 from __future__ import annotations
@@ -18,19 +17,14 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.boundary import Boundary
 
-FAR = 37.0
-"""exp(-37) is the precision of a double: modes that have decayed so far are left out."""
+FAR = 37.0  # exp(-37) is the precision of a double: modes that have decayed so far are left out
 
 
 def extend(boundary: Boundary) -> Floats:
     """Return the nodes (ni, nj, 2) of the extension; those on the boundary are the boundary's own.
 
-    Examples
-    --------
-    >>> side = np.linspace(0.0, 1.0, 5)
-    >>> zero, one = np.zeros(5), np.ones(5)
-    >>> edges = [(side, zero), (side, one), (zero, side), (one, side)]
-    >>> square = Boundary(*(np.stack(edge, axis=1) for edge in edges))
+    >>> s, zero, one = np.linspace(0.0, 1.0, 5), np.zeros(5), np.ones(5)
+    >>> square = Boundary(*(np.stack(edge, axis=1) for edge in [(s, zero), (s, one), (zero, s), (one, s)]))
     >>> extend(square)[1, 2].tolist()
     [0.25, 0.5]
     """
@@ -56,13 +50,8 @@ def _rectangle(b: Boundary) -> Floats:
         n, rows = len(side), into.shape[1]
         k = np.arange(1, n - 1)
         sines = np.sin(np.pi * np.outer(np.arange(n), k) / (n - 1))
-        _add(
-            into,
-            sines,
-            2.0 / (n - 1) * (sines.T @ (side - start)),
-            np.asarray(np.pi * ratio * k, float),
-            rows,
-        )
+        b_k = 2.0 / (n - 1) * (sines.T @ (side - start))
+        _add(into, sines, b_k, np.asarray(np.pi * ratio * k, float), rows)
     return nodes
 
 
@@ -84,10 +73,7 @@ def _ring(b: Boundary) -> Floats:
 
 
 def _add(into: Floats, waves: Floats, b: Floats, rate: Floats, rows: int) -> None:
-    """Add the modes `waves` (n, k) with coefficients b (k, 2) at the first row to rows 1 .. of `into`.
-
-    Rows are taken in blocks that double, each with the modes that reach its first row.
-    """
+    """Add the modes `waves` (n, k) with coefficients b (k, 2) at the first row to rows 1 .. of `into`."""
     first = 1
     while first < rows:
         last = min(2 * first, rows)

@@ -1,6 +1,6 @@
 """Fourier sums at any number of equal steps of theta, from a power of two of them.
 
-An FFT of the n = ni - 1 nodes around a body is slow where n has large factors, as 799 = 17 x 47 has. Here a
+An FFT of the nodes around a body is slow where their number has large factors, as 799 = 17 x 47 has. Here a
 sum of modes |k| < Q/4 costs one FFT of Q columns, Q a power of two, and a node weighs the `TAPS` columns
 around it with a window w, whose transform the modes were divided by::
 
@@ -8,10 +8,8 @@ around it with a window w, whose transform the modes were divided by::
     w(x) = exp(b (sqrt(1 - x^2) - 1)),  |x| < 1,  x in half windows
     v_k = sum_q w(theta_q) exp(-i k theta_q)
 
-The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode.
-
-Barnett, Magland & af Klinteberg, A parallel non-uniform fast Fourier transform library based on an
-"exponential of semicircle" kernel, SIAM J. Sci. Comput. 41 (2019) C479.
+The error is about exp(-pi TAPS sqrt(1/2)) = 3e-14 of the largest mode. Barnett, Magland & af Klinteberg, SIAM
+J. Sci. Comput. 41 (2019) C479.
 """
 
 from __future__ import annotations
@@ -52,10 +50,7 @@ def columns(modes: Complexes) -> Floats:
 
 @lru_cache(maxsize=16)
 def _transform(count: int) -> tuple[Floats, Complexes]:
-    """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b).
-
-    And exp(2 pi i j / count) for j below count / 2.
-    """
+    """Return 1 / v_k for k = 0 .. count / 4, by the trapezoidal rule, which is exact to exp(-b)."""
     steps = 8 * TAPS
     x = np.arange(-steps, steps + 1) / steps
     window = np.exp(SHARPNESS * (np.sqrt(np.maximum(1.0 - x * x, 0.0)) - 1.0))

@@ -28,20 +28,14 @@ from meshonet.solvers.conformal.strip import across, harmonic, modes, picard
 from meshonet.solvers.conformal.walls import Walls, is_rough, sharp_turns, walls
 from meshonet.solvers.solution import Solution
 
-Polish = Literal["auto", "off"] | int
-"""Steps of improvement: a number, ``off`` for none, ``auto`` until they change nothing worth having."""
+Polish = Literal["auto", "off"] | int  # steps: a number, ``off`` for none, ``auto`` until they change little
 
 Correction: TypeAlias = Callable[[Complexes, Complexes, NDArray[np.intp]], Complexes]
 """Modes of wall and far field (batch, modes) and handedness (batch,) to modes (batch, modes, LEVELS)."""
 
-AUTO_STEPS = 8
-"""The most steps that "auto" takes."""
-
-SETTLED = 2e-4
-"""Change (radians) below which "auto" stops: what is left is a tenth of that, or less."""
-
-DIVERGED = 0.5
-"""Change of phi (radians) in a step above which Picard's iteration diverges."""
+AUTO_STEPS = 8  # the most steps that "auto" takes
+SETTLED = 2e-4  # change (radians) below which "auto" stops: what is left is a tenth of that, or less
+DIVERGED = 0.5  # change of phi (radians) in a step above which Picard's iteration diverges
 
 
 def solve(
@@ -53,12 +47,9 @@ def solve(
 ) -> list[Solution]:
     """Return a grid inside each O boundary, whose nodes it has bitwise.
 
-    Parameters
-    ----------
-    polish : Picard steps.
-    correction : what is added to the harmonic base before them, for all boundaries at once.
-    model : name that solutions give the correction.
-    substitute : is offered a boundary that cannot be lifted, and why, before the elliptic solver.
+    `polish`: Picard steps; `correction`: what is added to the harmonic base before them, for all boundaries
+    at once; `model`: name that solutions give the correction; `substitute`: is offered a boundary that cannot
+    be lifted, and why, before the elliptic solver.
     """
     across()  # made once a process: no part of a grid's time
     begun = time.perf_counter()
@@ -159,10 +150,7 @@ class Conformal:
     ) -> list[Solution]:
         """Return a solution for each of the boundaries.
 
-        Raises
-        ------
-        InputError
-            a boundary that is not around a body.
+        Raises InputError: a boundary that is not around a body.
         """
         for problem in problems:
             if problem.topology != "o":

@@ -72,11 +72,8 @@ def interpolation(eta: Floats) -> Floats:
 def modes(F: Any, xp: Any = np) -> Any:
     """Return Fourier coefficients (..., 2 MODES + 1) of F (..., n) for k = 0, 1 .. MODES, -MODES .. -1.
 
-    Modes that n samples do not resolve are zero.
-
-    Parameters
-    ----------
-    xp : the module, numpy or torch, that F is an array of; the same in the functions below.
+    Modes that n samples do not resolve are zero. `xp`: the module, numpy or torch, that F is an array of; the
+    same in the functions below.
     """
     n = F.shape[-1]
     c, kept = xp.fft.fft(F) / n, min(MODES, (n - 1) // 2)
@@ -139,11 +136,8 @@ def _zeros(like: Any, count: int, xp: Any) -> Any:
 def picard(c: Complexes, steps: int) -> tuple[Complexes, list[float]]:
     """Return the modes after `steps` Picard steps, and the largest change of F in each.
 
-    A step that is not finite counts as an infinite change, and is the last.
-
-    Parameters
-    ----------
-    c : (2 MODES + 1, LEVELS) modes at the Chebyshev points; the two walls stay as they are.
+    A step that is not finite counts as an infinite change, and is the last. `c`: (2 MODES + 1, LEVELS) modes
+    at the Chebyshev points; the two walls stay as they are.
     """
     T = float((c[0, -1] - c[0, 0]).real)
     parts = np.stack([c.real, c.imag])

@@ -15,17 +15,10 @@ from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.polygon.mirror import Axis, handedness
 from meshonet.solvers.conformal.strip import MODES
 
-SHARPEST = {"wall": 0.017, "far field": 1e-3}
-"""Amplitude (radians) of the modes beyond half of `MODES` up to which a wall counts as resolved."""
-
-ROUGHEST = 0.1
-"""The same up to which an airfoil's wall may be tried: it is its spacing that is uneven, not its shape."""
-
-SHARP_TURN = np.radians(25.0)
-"""Turn at a node of a wall with uneven spacing from which the grid line there halves the angle."""
-
-CORNER = np.radians(85.0)
-"""Turn at a node, trailing edge aside, that makes a body no airfoil."""
+SHARPEST = {"wall": 0.017, "far field": 1e-3}  # sum (radians) of modes beyond MODES / 2 of a resolved wall
+ROUGHEST = 0.1  # the same of an airfoil that may be tried: its spacing is uneven, not its shape
+SHARP_TURN = np.radians(25.0)  # of an unevenly spaced wall, from which the line there halves the angle
+CORNER = np.radians(85.0)  # turn at a node, trailing edge aside, that makes a body no airfoil
 
 
 class Walls(NamedTuple):

@@ -22,8 +22,6 @@ from meshonet.geometry.arrays import Floats
 class Direction:
     """Positions (n,) of the nodes of one direction, in finest steps; `periodic`: the last node is the first.
 
-    Examples
-    --------
     >>> Direction(np.arange(8.0), periodic=False).coarse.positions
     array([0., 2., 4., 6., 7.])
     """

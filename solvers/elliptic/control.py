@@ -6,7 +6,7 @@
 
 On a straight line φ = -(ln |x_ξ|)_ξ. A control function is kept as the logarithm l of the ratio of
 neighbouring steps, and as a sum of products of a function of ξ and one of η: it takes no memory on the grid,
-coarser levels get it by leaving nodes out, and the scheme (φ = -(2/h) tanh(h l/2), see ``control.h``) is
+coarser levels get it by leaving nodes out, and the scheme (φ = -(2/h) tanh(h l/2), see ``stencil.h``) is
 exact for geometric growth on every level.
 """
 
@@ -19,18 +19,14 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 
-STEEPEST = 2.0
-"""Largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4."""
+STEEPEST = 2.0  # largest logarithm of a ratio of neighbouring steps that is taken from a boundary: 7.4
 
 
 @dataclass(frozen=True, eq=False)
 class Factors:
     """Σ_t along[t, i] across[t, j].
 
-    Parameters
-    ----------
-    along : (terms, ni).
-    across : (terms, nj).
+    `along`: (terms, ni). `across`: (terms, nj).
     """
 
     along: Floats
@@ -64,9 +60,7 @@ class Factors:
 class Controls:
     """The control functions of a grid.
 
-    Parameters
-    ----------
-    phi, psi : logarithm of the ratio of neighbouring steps along ξ and along η.
+    `phi`, `psi`: logarithm of the ratio of neighbouring steps along ξ and along η.
     """
 
     phi: Factors
@@ -105,8 +99,6 @@ def step_ratios(edge: Floats, *, periodic: bool) -> Floats:
 
     At the ends of an open edge that of the neighbours; at most `STEEPEST`: a corner may have any.
 
-    Examples
-    --------
     >>> edge = np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 0.0], [7.0, 0.0]])
     >>> np.exp(step_ratios(edge, periodic=False)).tolist()
     [2.0, 2.0, 2.0, 2.0]

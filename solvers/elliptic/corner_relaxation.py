@@ -19,11 +19,8 @@ from meshonet.solvers.elliptic.coarsening import Direction
 REENTRANT = np.radians(30.0)
 """A corner whose angle inside the domain is larger than 180 degrees by this is relaxed more."""
 
-REACH = 32
-"""Cells to each side of the corner, and inwards."""
-
-SWEEPS = 8
-"""Sweeps there after each of the level."""
+REACH = 32  # cells to each side of the corner, and inwards
+SWEEPS = 8  # sweeps there after each of the level
 
 LEAST = 120
 """Cells along both directions of a level that has patches; on smaller ones they would cost too much."""

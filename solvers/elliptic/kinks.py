@@ -21,8 +21,7 @@ sweeps change is nearer to the kink, and the largest angles are the same to a te
 
 NEAR = 40
 
-SWEEPS = 4
-"""Sweeps there."""
+SWEEPS = 4  # sweeps there
 
 
 def sweep_kinks(

@@ -26,11 +26,8 @@ from meshonet.solvers.elliptic.corner_relaxation import Patch, patches, reentran
 class Settings:
     """How the cycles run.
 
-    Parameters
-    ----------
-    coarsest : a direction with this many cells or fewer is not coarsened further. 8 is too few for
-        airfoils, 50 slow.
-    sweeps : relaxation sweeps before and after the coarse correction.
+    `coarsest`: a direction with this many cells or fewer is not coarsened further. 8 is too few for airfoils,
+    50 slow. `sweeps`: relaxation sweeps before and after the coarse correction.
     """
 
     coarsest: int = 16
@@ -126,13 +123,9 @@ class Multigrid:
         return start
 
     def cycle(self, k: int = 0, forced: bool = False) -> float:
-        """Run one V-cycle from level `k` down and back.
+        """Run one V-cycle from level `k` down and back; return the size of the coarser level's correction.
 
-        Returns
-        -------
-        float
-            root mean square of the correction that came from the coarser level, in units of length: close
-            to the error of level `k` before the cycle. 0 on the coarsest level.
+        That is its root mean square in units of length, about the error before the cycle; 0 on the coarsest.
         """
         if k == len(self.levels) - 1:
             self._relax_coarsest(forced, 1e-2, 10)

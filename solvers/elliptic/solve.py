@@ -32,8 +32,7 @@ Around slits and spikes, one sweep leaves coarse levels with corrections that th
 CONTINUATION = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Parts of the control functions, each solved from the solution before, when all at once diverge."""
 
-SOLVED = 1e-4
-"""Relative residual that counts as discretisation level when there is no better estimate."""
+SOLVED = 1e-4  # relative residual that counts as discretisation level when there is no better estimate
 
 
 class _DivergedError(Exception):
@@ -62,18 +61,10 @@ def solve(
     controls : control functions (`meshonet.solvers.elliptic.control`), none when not given.
     method : what the solution is called.
 
-    Returns
-    -------
-    Solution
-        the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be folded
-        at re-entrant corners: see `meshonet.solvers.pipeline.fallback`.
-
-    Raises
-    ------
-    InputError
-        `initial` of other node counts; `tol` or `max_cycles` not positive.
-    SolverError
-        the iteration diverged from every start tried.
+    Returns the grid, the residual relative to the transfinite interpolation, cycles, seconds. It may be
+    folded at re-entrant corners: see `meshonet.solvers.pipeline.fallback`. Raises InputError: `initial` of
+    other node counts; `tol` or `max_cycles` not positive; SolverError: the iteration diverged from every
+    start tried.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()

@@ -33,26 +33,13 @@ from meshonet.solvers.elliptic.wall_lines import first_heights, lines_off
 from meshonet.solvers.iteration import check_settings
 from meshonet.solvers.solution import Solution
 
-FEW = 129
-"""Nodes along a direction up to which sources are sought first."""
-
-ROUNDS = 80, 12
-"""Rounds of correction at the most, on few nodes and on all."""
-
-FIRST = 2
-"""Cycles before the first correction."""
-
-PATIENCE = 12
-"""Rounds without improvement after which the best so far is taken."""
-
-CLOSE = 0.002
-"""Error (sine of an angle, logarithm of a height; root mean square) at which correction stops."""
-
-THINNEST = 0.5
-"""Thinnest first cells that sources are to hold, in those of Winslow's solution."""
-
-RELAXATION = 0.5
-"""Part of the linearised correction that is made."""
+FEW = 129  # nodes along a direction up to which sources are sought first
+ROUNDS = 80, 12  # rounds of correction at the most, on few nodes and on all
+FIRST = 2  # cycles before the first correction
+PATIENCE = 12  # rounds without improvement after which the best so far is taken
+CLOSE = 0.002  # error (sine of an angle, logarithm of a height; root mean square) at which correction stops
+THINNEST = 0.5  # thinnest first cells that sources are to hold, in those of Winslow's solution
+RELAXATION = 0.5  # part of the linearised correction that is made
 
 
 def solve_steger_sorenson(
@@ -75,18 +62,9 @@ def solve_steger_sorenson(
     tol, max_cycles : of the last cycles, as in `meshonet.solvers.elliptic.solve.solve`.
     initial : start from this grid instead of Winslow's solution.
 
-    Returns
-    -------
-    Solution
-        notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid
-        they are weakened, and a note says so.
-
-    Raises
-    ------
-    InputError
-        a side that cannot be controlled, an angle out of range, or as `solve`.
-    SolverError
-        as `solve`.
+    Notes say how near the angles came. Where the sources fold cells that Winslow's solution has valid they
+    are weakened, and a note says so. Raises InputError: a side that cannot be controlled, an angle out of
+    range, or as `solve`; SolverError: as `solve`.
     """
     check_settings(boundary, tol, max_cycles, initial)
     heights = _checked(boundary, heights, angle)
@@ -123,6 +101,9 @@ def _checked(boundary: Boundary, heights: Mapping[str, float] | None, angle: flo
     if boundary.topology == "c":
         problem, remedy = "steger-sorenson has no C grids", "use topology o or method hyperbolic"
         raise InputError(problem, remedy, parameter="method")
+    if min(boundary.ni, boundary.nj) < 3:
+        problem = f"{boundary.ni}x{boundary.nj} nodes are too few to control lines at walls"
+        raise InputError(problem, "use at least 3x3", parameter="res")
     if not 30.0 <= angle <= 150.0:
         raise InputError(f"an angle of {angle:g} degrees at walls", "use 30 to 150", parameter="wall_angle")
     walls = ("south", "north") if not boundary.around_body else ("south",)

@@ -18,14 +18,9 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.wall_lines import first_heights, leaning, lines_off
 
-DECAY = 6.0
-"""Exponent of the decay from an edge to the opposite one."""
-
-RAMP = 0.03
-"""Part of the nodes of an edge over which control sets in beside a corner."""
-
-LIMIT = 1.0
-"""Largest logarithm of a ratio of neighbouring steps that a source may stand for."""
+DECAY = 6.0  # exponent of the decay from an edge to the opposite one
+RAMP = 0.03  # part of the nodes of an edge over which control sets in beside a corner
+LIMIT = 1.0  # largest logarithm of a ratio of neighbouring steps that a source may stand for
 
 
 class ControlledEdge:

@@ -17,8 +17,6 @@ NEIGHBOURS = [(da, db) for da in (-1, 0, 1) for db in (-1, 0, 1) if (da, db) != 
 class Window:
     """Nodes i0 .. i1 and j0 .. j1, both included; i may run past the seam of an O grid.
 
-    Examples
-    --------
     >>> Window(-2, 4, 0, 3).cells
     18
     """
@@ -58,8 +56,6 @@ def windows(
     split, down to single tiles. Windows stay inside the (ni, nj) nodes of
     `shape`; where `periodic`, one may run past the seam, but not onto itself.
 
-    Examples
-    --------
     >>> list(windows(np.array([[20, 0], [22, 1]]), 6, (100, 50), False, 2500))
     [Window(i0=12, i1=30, j0=0, j1=12)]
     """

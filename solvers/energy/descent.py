@@ -21,11 +21,8 @@ from meshonet.solvers.energy.repair import repair
 from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.progress import cycle_ended, listened_to
 
-HARD = 1.1
-"""Value of the functional around a body above which descents go on."""
-
-WON = 3e-2
-"""Relative decrease of the functional below which Newton's method ends."""
+HARD = 1.1  # value of the functional around a body above which descents go on
+WON = 3e-2  # relative decrease of the functional below which Newton's method ends
 
 UNFOLDED = 129
 """Nodes along a direction up to which a grid that local repair leaves folded is unfolded as a whole."""
@@ -79,9 +76,7 @@ def newton(nodes: Floats, weights: Weights, most: int) -> int:
     A step goes much farther than one of `descend`; on 33 x 33 nodes it costs some six of these. From nodes
     that local repair leaves folded none is taken.
 
-    Parameters
-    ----------
-    most : steps at the most. They end after one that lowers the functional by less than `WON` of it.
+    `most`: steps at the most. They end after one that lowers the functional by less than `WON` of it.
     """
     if min(nodes.shape[:2]) < 3 or (count_folded(nodes) and repair(nodes, periodic=False)):
         return 0

@@ -24,17 +24,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.kernels._native import variational_energy, variational_workspace
+from meshonet.kernels._native import variational_energy
 
 
 @dataclass(frozen=True)
 class Weights:
     """Weights of the terms.
 
-    Parameters
-    ----------
-    shape : w, from 0 (harmonic) to 1 (angles only).
-    smoothness : β. A fourth of the default is sharper, but buckles on strongly skewed domains.
+    `shape`: w, from 0 (harmonic) to 1 (angles only). `smoothness`: β. A fourth of the default is sharper, but
+    buckles on strongly skewed domains.
     """
 
     shape: float = 0.97
@@ -50,9 +48,9 @@ WAKE = Weights(smoothness=3e-5)
 
 def value(nodes: Floats, weights: Weights) -> float:
     """Return E of planar `nodes` (ni, nj, 2) of a quad, a number without unit; infinite when folded."""
-    z, room = np.moveaxis(nodes, -1, 0), np.empty(variational_workspace(*nodes.shape[:2]))
+    z = np.moveaxis(nodes, -1, 0)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
-    return variational_energy(z, *terms, np.empty_like(z), room)[0]
+    return variational_energy(z, *terms, np.empty_like(z))[0]
 
 
 def relief_of(wall: Floats) -> Floats:

@@ -15,25 +15,16 @@ from meshonet.solvers.energy.functional import Weights
 from meshonet.solvers.energy.preconditioner import Descent
 from meshonet.solvers.energy.untangle import STILL, unfold
 
-SKEWED = 1.5
-"""1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it."""
-
-MARGIN_CELLS = 6
-"""Cells around a group of skewed ones that move with them."""
-
-LARGEST_CELLS = 1500
-"""Cells of a window at the most."""
-
-ITERATIONS = 30
-"""In a window at the most."""
+SKEWED = 1.5  # 1/sin⁴ of an angle, here 65 or 115 degrees, from which on a cell has a window around it
+MARGIN_CELLS = 6  # cells around a group of skewed ones that move with them
+LARGEST_CELLS = 1500  # cells of a window at the most
+ITERATIONS = 30  # in a window at the most
 
 
 def descend_windows(nodes: Floats, aspect: float, weights: Weights, relief: Floats) -> None:
     """Unfold planar `nodes` (ni, nj, 2) of an O grid in windows, and minimise in these, in place.
 
-    Parameters
-    ----------
-    aspect, weights, relief : of the functional (`meshonet.solvers.energy.functional`).
+    `aspect`, `weights`, `relief`: of the functional (`meshonet.solvers.energy.functional`).
     """
     skewed = skewness(nodes)
     poor = np.argwhere(skewed > SKEWED)

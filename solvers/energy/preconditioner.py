@@ -17,11 +17,8 @@ from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import Modes, VariationalDescent
 from meshonet.solvers.energy.functional import Weights, aspect_of
 
-REACH_CELLS = 0.25
-"""How far a node moves at the most in the first iteration of a descent."""
-
-MODES = 512
-"""Modes along a direction that are kept; finer ones are all divided by the same."""
+REACH_CELLS = 0.25  # how far a node moves at the most in the first iteration of a descent
+MODES = 512  # modes along a direction that are kept; finer ones are all divided by the same
 
 
 class Descent:
@@ -74,10 +71,7 @@ def minimiser(ni: int, nj: int, periodic: bool, aspect: float, weights: Weights)
 
     with ∇ in units of the whole square in the last term. The coupling p_η q_ξ is left to the descent.
 
-    Parameters
-    ----------
-    periodic : around a body: the last row of nodes is the first.
-    aspect, weights : of the functional.
+    `periodic`: around a body: the last row of nodes is the first. `aspect`, `weights`: of the functional.
     """
     rows, along = _fourier(ni - 1) if periodic else _sines(ni - 1)
     columns, across = _sines(nj - 1)

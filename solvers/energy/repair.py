@@ -29,36 +29,20 @@ UNFOLDING = (Weights(0.3, 0.0), 60), (Weights(0.0, 0.0), 60), (Weights(0.0, 0.0)
 The harmonic term alone unfolds more, with wider angles; around spikes it takes many iterations.
 """
 
-SMOOTHING = Weights()
-"""Weights with which the corners of an unfolded patch are opened."""
+SMOOTHING = Weights()  # weights with which the corners of an unfolded patch are opened
 
 SMOOTHING_ITERATIONS = 1500
 SMOOTHING_STILL = 3e-5
 """Iterations of that at the most, and the move of nodes, in cells, below which it stops."""
 
-MARGIN = 6
-"""Cells around a group of folded ones that move with them, at first."""
-
-MARGINS = (12, 16)
-"""Those of later rounds, where cells stay folded."""
-
-NESTED_MARGINS = (32, 64)
-"""The same for windows that are unfolded through coarser copies."""
-
-LARGEST_CELLS = 2500
-"""Cells of a grid or window up to which it is unfolded at once."""
-
-FEW = 0.001
-"""Fraction of folded cells up to which windows come before coarser copies."""
-
-POOR = 0.1
-"""Scaled Jacobian below which a cell that coarser copies left is smoothed."""
-
-SHARP = 0.5
-"""Radians by which an edge turns at a node that coarser copies must keep."""
-
-FUTILE = 2.4e7
-"""Nodes times iterations that may be spent on patches which stay folded: a second or two."""
+MARGIN = 6  # cells around a group of folded ones that move with them, at first
+MARGINS = (12, 16)  # those of later rounds, where cells stay folded
+NESTED_MARGINS = (32, 64)  # the same for windows that are unfolded through coarser copies
+LARGEST_CELLS = 2500  # cells of a grid or window up to which it is unfolded at once
+FEW = 0.001  # fraction of folded cells up to which windows come before coarser copies
+POOR = 0.1  # scaled Jacobian below which a cell that coarser copies left is smoothed
+SHARP = 0.5  # radians by which an edge turns at a node that coarser copies must keep
+FUTILE = 2.4e7  # nodes times iterations that may be spent on patches which stay folded: a second or two
 
 
 @dataclass
@@ -71,11 +55,8 @@ class Patience:
 def repair(nodes: Floats, periodic: bool, margin: int = MARGIN) -> int:
     """Unfold planar `nodes` (ni, nj, 2) in place; return how many cells stay folded.
 
-    Parameters
-    ----------
-    nodes : the grid; its rim stays as it is.
-    periodic : an O grid: column ni-1 repeats column 0, and both move together.
-    margin : cells around a group of folded ones that move with them, at first.
+    `nodes`: the grid; its rim stays as it is. `periodic`: an O grid: column ni-1 repeats column 0, and both
+    move together. `margin`: cells around a group of folded ones that move with them, at first.
     """
     bad = folded_cells(nodes)
     if min(nodes.shape[:2]) < 3 or len(bad) == 0:

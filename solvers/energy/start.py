@@ -10,11 +10,8 @@ from meshonet.geometry.errors import SolverError
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.elliptic.multigrid import relax
 
-RELAXED = 400
-"""Cells up to which line relaxation alone is the quickest way to Winslow's solution."""
-
-SWEEPS = 30
-"""Sweeps there: they leave some thousandths of the change from the transfinite interpolation."""
+RELAXED = 400  # cells up to which line relaxation alone is the quickest way to Winslow's solution
+SWEEPS = 30  # sweeps there: they leave some thousandths of the change from the transfinite interpolation
 
 
 def winslow_start(boundary: Boundary) -> Floats:

@@ -9,15 +9,11 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.energy.functional import Weights
 from meshonet.solvers.energy.preconditioner import Descent
 
-STILL = 1e-3
-"""Move of a node, in its own cells, below which minimising with one regularisation stops."""
-
-ITERATIONS = 60
-"""With one regularisation, at the most."""
+STILL = 1e-3  # move of a node, in its own cells, below which minimising with one regularisation stops
+ITERATIONS = 60  # with one regularisation, at the most
 
 REGULARISATIONS = 30
-WITHOUT_GAIN = 3
-"""Regularisations at the most, and those without gain after which unfolding is given up."""
+WITHOUT_GAIN = 3  # regularisations at the most, and those without gain after which unfolding is given up
 
 
 def unfold(
@@ -33,11 +29,8 @@ def unfold(
     ε is a cell's area at first and shrinks with the worst Jacobian, at least by half: large enough to let a
     cell unfold, small enough to tell folded from valid.
 
-    Parameters
-    ----------
-    periodic : the last row of nodes is the first, and its nodes move like any others.
-    aspect : a of the functional; None is that of `nodes`.
-    iterations : with one regularisation, at the most.
+    `periodic`: the last row of nodes is the first, and its nodes move like any others. `aspect`: a of the
+    functional; None is that of `nodes`. `iterations`: with one regularisation, at the most.
     """
     descent = Descent(nodes, weights, periodic, aspect)
     rim = [nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]]

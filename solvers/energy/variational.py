@@ -26,11 +26,8 @@ from meshonet.solvers.energy.untangle import unfold
 from meshonet.solvers.iteration import check_settings, initial_nodes
 from meshonet.solvers.solution import Solution
 
-COARSEST = 17
-"""A copy with this many nodes or fewer along a direction is the first one solved."""
-
-COARSEST_AROUND = 65
-"""The same around a body."""
+COARSEST = 17  # a copy with this many nodes or fewer along a direction is the first one solved
+COARSEST_AROUND = 65  # the same around a body
 
 NEXT = 129
 """Nodes along a direction of the finest copy at the most.
@@ -51,23 +48,15 @@ iterations around notches, but the angles hardly change.
 FEW_AROUND = 20, 10
 """The same around a body, with up to `NEXT` nodes and with more, up to the value `descent.HARD`."""
 
-FIRST_AROUND = 100
-"""The same on a coarser level."""
+FIRST_AROUND = 100  # the same on a coarser level
 
 ROUGH = 3.0
 """How much further nodes of levels between may move when descent stops there: the next is farther away."""
 
-MOST = 1000
-"""Iterations on a coarser level at the most."""
-
-WEAKER = 3
-"""How often the edge length term may be made weaker, to a fourth each time."""
-
-EASY = 1.7
-"""Value of the functional, 1 on squares, up to which a minimum is the only one."""
-
-WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}
-"""Of the functional, by topology."""
+MOST = 1000  # iterations on a coarser level at the most
+WEAKER = 3  # how often the edge length term may be made weaker, to a fourth each time
+EASY = 1.7  # value of the functional, 1 on squares, up to which a minimum is the only one
+WEIGHTS = {"quad": Weights(), "o": AROUND, "c": WAKE}  # of the functional, by topology
 
 
 def solve(
@@ -90,16 +79,9 @@ def solve(
         nodes are replaced.
     weights : of the functional.
 
-    Returns
-    -------
-    Solution
-        the grid and the iterations on the finest level. It is valid wherever a start could be unfolded;
-        a note says when none could, and the grid is then folded.
-
-    Raises
-    ------
-    InputError
-        `initial` of other node counts; `tol` or `max_cycles` not positive.
+    Returns the grid and the iterations on the finest level. It is valid wherever a start could be unfolded; a
+    note says when none could, and the grid is then folded. Raises InputError: `initial` of other node counts;
+    `tol` or `max_cycles` not positive.
     """
     check_settings(boundary, tol, max_cycles, initial)
     begun = time.perf_counter()

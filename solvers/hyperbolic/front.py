@@ -26,9 +26,7 @@ _NEAR = 0.3
 class Front:
     """Level 0 of a march and the measure of its last level.
 
-    Parameters
-    ----------
-    boundary : ``o`` or ``c``.
+    `boundary`: ``o`` or ``c``.
     """
 
     inner: float

@@ -17,14 +17,11 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.spacing.growth import growing_steps
 
-_LESS = 0.24
-"""Part of the growth that is left out where lines off an edge without a wedge begin to spread."""
+_LESS = 0.24  # part of the growth that is left out where lines off an edge without a wedge begin to spread
 _BEGIN, _FULL = 1.2, 3.0
 """Heights over the cell at the edge at which half of that is left out, and from which it fades."""
-_FADE = 0.45
-"""Power of the height with which it fades."""
-_BEFORE = 0.04
-"""Part of the growth left out nearer to the wall, where lines off a leading edge grow the most."""
+_FADE = 0.45  # power of the height with which it fades
+_BEFORE = 0.04  # part of the growth left out nearer to the wall, where lines off a leading edge grow the most
 _LEAST_TURN = math.radians(60.0)
 
 
@@ -55,8 +52,6 @@ def level_steps(first: float, distance: float, cells: int, constant: int, edge: 
     `_LESS` times the sharpness of `edge`, where that is given. The constants were found
     by trial on airfoils, so that cells grow alike along all lines.
 
-    Examples
-    --------
     >>> level_steps(1.0, 9.0, 5, 3, None).tolist()
     [1.0, 1.0, 1.0, 2.0, 4.0]
     """

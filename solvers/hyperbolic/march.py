@@ -24,7 +24,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
-from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch, redistribute
+from meshonet.kernels._native import hyperbolic_march, redistribute
 from meshonet.solvers.hyperbolic.front import Front
 from meshonet.solvers.hyperbolic.level_spacing import level_steps
 from meshonet.solvers.hyperbolic.march_distance import distance_to_march
@@ -37,17 +37,13 @@ from meshonet.solvers.hyperbolic.settings import (
 )
 from meshonet.solvers.solution import Solution
 
-FADE_ROWS = 12.0
-"""Rows over which the correction of the first cell fades out."""
-
-REACHED = 0.025
-"""Relative error of the far field's distance up to which no other distance is tried."""
+FADE_ROWS = 12.0  # rows over which the correction of the first cell fades out
+REACHED = 0.025  # relative error of the far field's distance up to which no other distance is tried
 
 MOST_GROWTH = 1.5
 """Ratio of neighbouring cells beyond which no march is begun: it would not get away from the wall."""
 
-AREA_SMOOTHING = 0.16
-"""Coefficient of a smoothing step of the areas along a level."""
+AREA_SMOOTHING = 0.16  # coefficient of a smoothing step of the areas along a level
 
 
 def hyperbolic(
@@ -69,18 +65,9 @@ def hyperbolic(
     constant : so many first rows are equally high.
     free_rows : take as many rows as `growth` needs, instead of those of `boundary`.
 
-    Returns
-    -------
-    Solution
-        `boundary` of the solution is the one that the march ended at. The grid may be folded when
-        every attempt was.
-
-    Raises
-    ------
-    InputError
-        a four-sided boundary; a spacing or growth out of range; rows that do not suffice.
-    SolverError
-        no attempt gave finite nodes.
+    `boundary` of the solution is the one that the march ended at. The grid may be folded when every
+    attempt was. Raises InputError: a four-sided boundary; a spacing or growth out of range; rows that do not
+    suffice; SolverError: no attempt gave finite nodes.
     """
     begun = time.perf_counter()
     check_layers(wall_spacing, growth)
@@ -153,7 +140,6 @@ def _marched(
     n = len(start)
     levels = np.empty((2, cells + 1, n))
     levels[:, 0] = start.T
-    scratch = np.empty(hyperbolic_scratch(n))
     knobs = (
         settings.dissipation,
         settings.even,
@@ -168,7 +154,7 @@ def _marched(
     distance = distance_to_march(front, first, cells, settings, constant, edge)
     for _ in range(4):
         steps = level_steps(first, distance, cells, constant, edge)
-        hyperbolic_march(levels[0], levels[1], steps, *knobs, scratch, front.ends, front.widening)
+        hyperbolic_march(levels[0], levels[1], steps, *knobs, front.ends, front.widening)
         reached = front.reach(levels)
         if not math.isfinite(reached):
             return None
@@ -191,7 +177,7 @@ def _snap(nodes: Floats, heights: Floats, steps: Floats) -> None:
     rate = math.log(steps[-1] / steps[-2]) if rows > 2 else 1.0
     fade = np.exp(-np.maximum(np.arange(rows) - 1.0, 0.0) / max(FADE_ROWS, 1.5 / max(rate, 1e-3)))
     if rows > 2:
-        redistribute(nodes[..., 0], nodes[..., 1], heights, fade, np.empty(5 * rows))
+        redistribute(nodes[..., 0], nodes[..., 1], heights, fade)
 
 
 def _equalise(nodes: Floats, constant: int, widening: Floats) -> None:

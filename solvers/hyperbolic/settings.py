@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-RISING = 0.75
-"""Part of the levels over which the dissipation rises."""
+RISING = 0.75  # part of the levels over which the dissipation rises
 
 
 @dataclass(frozen=True)

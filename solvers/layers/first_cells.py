@@ -26,10 +26,7 @@ class Heights:
     growth : largest ratio of neighbouring cells allowed, None for any up to 10.
     free_rows : take as many rows off south and north as `growth` needs, instead of those of the boundary.
 
-    Raises
-    ------
-    InputError
-        a height, a number of layers or a growth out of range.
+    Raises InputError: a height, a number of layers or a growth out of range.
     """
 
     south: float = 0.0

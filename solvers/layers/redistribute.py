@@ -35,37 +35,18 @@ from meshonet.solvers.layers.first_cells import (
 )
 from meshonet.solvers.solution import Solution
 
-FADE_NODES = 12.0
-"""Nodes over which the last correction of a first cell fades out."""
-
-EXACT = 1e-10
-"""Relative error of a first cell that is left."""
-
-SLIGHT = 1e-3
-"""Relative error up to which the first node alone is moved."""
-
-PASSES = 100
-"""Alternating corrections of first cells off edges that meet, at the most."""
+FADE_NODES = 12.0  # nodes over which the last correction of a first cell fades out
+EXACT = 1e-10  # relative error of a first cell that is left
+SLIGHT = 1e-3  # relative error up to which the first node alone is moved
+PASSES = 100  # alternating corrections of first cells off edges that meet, at the most
 
 
 def spread(solution: Solution, boundary: Boundary, heights: Heights) -> Solution:
     """Return `solution` with its nodes moved along its grid lines into layers.
 
-    Parameters
-    ----------
-    solution : a quad or O grid, valid and best with even rows.
-    boundary : what it was made for.
-    heights : of the first cells.
-
-    Returns
-    -------
-    Solution
-        with the boundary that its edges have now, and a note of heights and growth.
-
-    Raises
-    ------
-    InputError
-        heights that the boundary cannot have, or more growth than allowed.
+    `solution` is a quad or O grid made for `boundary`, valid and best with even rows. What is returned has
+    the boundary that its edges have now. Raises InputError: heights that the boundary cannot have, or more
+    growth than allowed.
     """
     check_fit(heights, boundary)
     grid = solution.grid
@@ -114,10 +95,9 @@ def _along_eta(nodes: Floats, boundary: Boundary, heights: Heights) -> tuple[Flo
         count = cells_needed(1.001 * longest, heights.south, heights.north, heights) + 1
     out = planar_nodes(ni, count)
     planar = as_planar(nodes)
-    scratch = np.empty(10 * nj + count)
     ends = heights.south, heights.north
     planes = planar[..., 0], planar[..., 1], out[..., 0], out[..., 1]
-    ratio = layer_lines(*planes, *ends, heights.constant, scratch)
+    ratio = layer_lines(*planes, *ends, heights.constant)
     _check_ratio(ratio, count, longest, ends, heights)
     if boundary.periodic:
         out[-1] = out[0]
@@ -204,7 +184,7 @@ def _correct(nodes: Floats, side: str, height: float) -> None:
         fade = (away == 0.0).astype(np.float64)
     else:  # nothing from the middle on: the other wall's cells are thin against the arc length there
         fade = np.exp(-np.maximum(away, 0.0) / FADE_NODES) * np.clip(1.0 - 2.0 * away / count, 0.0, 1.0)
-    redistribute(*planes, np.full(len(view), height), fade, np.empty(5 * count))
+    redistribute(*planes, np.full(len(view), height), fade)
     view[..., 0], view[..., 1] = planes
 
 

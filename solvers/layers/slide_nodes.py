@@ -23,23 +23,15 @@ from meshonet.solvers.elliptic.control import Controls, Factors
 from meshonet.solvers.elliptic.multigrid import Multigrid
 from meshonet.solvers.elliptic.wall_lines import leaning, lines_off
 
-COUNTS = 129, 49
-"""Nodes along and between the walls, at the most, on which places are sought."""
-
-ROUNDS = 60
-"""Rounds at the most."""
+COUNTS = 129, 49  # nodes along and between the walls, at the most, on which places are sought
+ROUNDS = 60  # rounds at the most
 
 UPRIGHT = np.sin(np.radians(0.05))
 """Lean of a line at the wall that is left, as the sine of the angle to the normal."""
 
-RELAXATION = 0.7
-"""Part of the linearised displacement that a round moves by."""
-
-RAMP = 0.03
-"""Part of a wall, next to its ends and kinks, over which sliding sets in."""
-
-ROOM = 0.4
-"""Relative change of a step between wall nodes, at the most, in a round."""
+RELAXATION = 0.7  # part of the linearised displacement that a round moves by
+RAMP = 0.03  # part of a wall, next to its ends and kinks, over which sliding sets in
+ROOM = 0.4  # relative change of a step between wall nodes, at the most, in a round
 
 
 def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
@@ -49,14 +41,8 @@ def slide_walls(boundary: Boundary) -> tuple[Boundary, Controls | None]:
     where these do not, and at kinks of the walls, which stay nodes. The control function φ(ξ) keeps uneven
     spacing of the walls, as far as it is common to both; None where it is even.
 
-    Parameters
-    ----------
-    boundary : quad; its walls are the curves through its nodes.
-
-    Raises
-    ------
-    InputError
-        a topology other than ``quad``.
+    `boundary`: quad; its walls are the curves through its nodes. Raises InputError: a topology other than
+    ``quad``.
     """
     if boundary.around_body:
         problem = f"walls of topology {boundary.topology} cannot slide"

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 Device = Literal["cpu", "cuda"]
 
-STEPS = 3
-"""Picard steps of "auto" after the strip network."""
+STEPS = 3  # Picard steps of "auto" after the strip network
 
 
 def solve_on(
@@ -35,19 +34,19 @@ def solve_on(
 ) -> list[Solution]:
     """Return a grid inside each boundary, those of equal size computed together.
 
-    Parameters
-    ----------
-    polish : Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take none.
-    instead : solves a boundary that cannot be solved on the device.
-
-    Raises
-    ------
-    InputError
-        torch or the device is not there; boundaries or polish that do not suit the operator.
+    `polish`: Picard steps of the strip operator; ``auto`` or ``off`` for quad operators, which take none;
+    `instead`: solves a boundary that cannot be solved on the device. Raises InputError: torch or the device
+    is not there; boundaries or polish that do not suit the operator.
     """
     if not operator.batched:
         raise InputError(f"model {operator.name} has no grids on a device", "leave {device} out")
-    _check(device)
+    try:
+        import torch
+    except ImportError:
+        raise InputError("{device} needs torch", "install it: pip install 'meshonet[train]'") from None
+    if device == "cuda" and not torch.cuda.is_available():
+        remedy = "use {device} cpu, or leave it out"
+        raise InputError("torch sees no CUDA device", remedy, parameter="device")
     operator.check(boundaries)
     grids = _grids(device, operator, polish)
     solutions: dict[int, Solution] = {}
@@ -59,23 +58,11 @@ def solve_on(
         for k, boundary, own in zip(rows, some, nodes, strict=True):
             if own is None or not np.isfinite(own).all():
                 solution = instead(boundary)
-                notes = ("not made on the device", *solution.notes)
-                solutions[k] = replace(solution, notes=notes)
+                solutions[k] = replace(solution, notes=("not made on the device", *solution.notes))
                 continue
-            facts = {"method": "operator", "model": operator.name, "device": device}
-            grid = boundary.grid(own, facts)
+            grid = boundary.grid(own, {"method": "operator", "model": operator.name, "device": device})
             solutions[k] = Solution(grid, "operator", model=operator.name, seconds={"grid": spent})
     return [solutions[k] for k in range(len(boundaries))]
-
-
-def _check(device: Device) -> None:
-    try:
-        import torch
-    except ImportError:
-        raise InputError("{device} needs torch", "install it: pip install 'meshonet[train]'") from None
-    if device == "cuda" and not torch.cuda.is_available():
-        remedy = "use {device} cpu, or leave it out"
-        raise InputError("torch sees no CUDA device", remedy, parameter="device")
 
 
 def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequence[Boundary]], Tensor]:
@@ -85,19 +72,19 @@ def _grids(device: Device, operator: Operator, polish: Polish) -> Callable[[Sequ
     from meshonet.solvers.neural.differentiable import AirfoilGrids, BodyGrids, QuadGrids
 
     grids: Any
+    quad = operator.topology == "quad"
     if isinstance(operator, StripOperator):
         steps = STEPS if polish == "auto" else 0 if polish == "off" else polish
         grids = AirfoilGrids(operator, steps, device)
     elif polish not in ("auto", "off", 0):
-        remedy = "leave {polish} or {device} out"
-        raise InputError("steps of descent are not taken on a device", remedy)
+        raise InputError("steps of descent are not taken on a device", "leave {polish} or {device} out")
     else:
-        grids = (QuadGrids if operator.topology == "quad" else BodyGrids)(operator, device)
+        grids = (QuadGrids if quad else BodyGrids)(operator, device)
 
     def stacked(boundaries: Sequence[Boundary]) -> Tensor:
-        names = ("south", "north", "west", "east")[: 4 if operator.topology == "quad" else 2]
+        names = ("south", "north", "west", "east")[: 4 if quad else 2]
         arrays = [np.stack([getattr(b, side) for b in boundaries]) for side in names]
-        more = () if operator.topology == "quad" else (boundaries[0].nj,)
+        more = () if quad else (boundaries[0].nj,)
         with torch.no_grad():
             nodes: Tensor = grids(*(torch.tensor(array, device=device) for array in arrays), *more)
         return nodes

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.conformal import solve as conformal
@@ -41,28 +43,16 @@ def infer_many(
 ) -> list[Solution]:
     """Return a grid inside each boundary by a shipped model, or by one that `meshonet train` made.
 
-    Parameters
-    ----------
-    model : name of a shipped model, path to a ``.safetensors`` file, ``base``, or None for what measures
-        best. That is no network unless steps or a device are given: the conformal solver for O grids, the
-        variational method for four-sided domains; C grids are marched where that is possible, and else
-        variational too.
-    polish : steps after the network (`meshonet.solvers.neural.operator.Operator.solve`).
-    answer : what becomes of the answer of a model that does not meet the boundary exactly.
-    device : where torch computes the grids, with 3 Picard steps or no descent when polish is ``auto``; None
-        computes them here, without torch.
+    `model` is the name of a shipped model, the path of a ``.safetensors`` file, ``base``, or None for what
+    measures best. That is no network unless steps or a device are given: the conformal solver for O grids,
+    the variational method for four-sided domains; C grids are marched where that is possible, else
+    variational too. `polish` are steps after the network (`operator.Operator.solve`). On a `device` torch
+    computes the grids, with 3 Picard steps or no descent when polish is ``auto``; by default numpy does.
 
-    Returns
-    -------
-    list
-        of a solution for each boundary. Polished until nothing changes, O grids are the same without the
-        network, in less time. What the conformal solver cannot take goes to the operator for bodies if no
-        model is named, else to the elliptic solver, and the solution says so.
-
-    Raises
-    ------
-    InputError
-        a model that does not exist, cannot be read or does not suit a boundary; no such device.
+    Polished until nothing changes, O grids are the same without the network, in less time. What the conformal
+    solver cannot take goes to the operator for bodies if no model is named, else to the elliptic solver, and
+    the solution says so. Raises InputError: a model that does not exist, cannot be read or does not suit a
+    boundary; no such device.
     """
     operator = None if model is None else load(model)
     plain = polish == "auto" and device is None
@@ -127,7 +117,29 @@ def _refuse(**parameters: object) -> None:
     """Raise InputError for parameters that C grids, which no network makes, have no use for."""
     for name, value in parameters.items():
         if value is not None:
-            raise InputError(
-                f"{{{name}}} {value} is of no use to a c grid: it is marched, no model makes it",
-                f"drop {{{name}}}",
-            )
+            problem = f"{{{name}}} {value} is of no use to a c grid: it is marched, no model makes it"
+            raise InputError(problem, f"drop {{{name}}}")
+
+
+@dataclass(frozen=True)
+class Operator:
+    """A neural operator; its settings are those of `infer_many`."""
+
+    model: str | None = None
+    polish: Polish = "auto"
+    answer: Answer = "valid"
+    device: Device | None = None
+    name = "operator"
+
+    @cached_property
+    def together(self) -> Topology | None:
+        """The topology of boundaries that go through the network in one pass; None if none do."""
+        return many_of(self.model, self.device, self.polish)
+
+    def solve(
+        self,
+        problems: Sequence[Boundary],
+        start: Sequence[Grid] | None = None,  # noqa: ARG002 - networks start from nothing
+    ) -> list[Solution]:
+        """Return a solution for each of the boundaries, by one pass of the network where it can."""
+        return infer_many(problems, self.model, self.polish, self.answer, self.device)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,17 +13,13 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Topology
 from meshonet.geometry.errors import InputError
 
-HEADER = "meshonet"
-"""The metadata entry that holds the header as JSON."""
-
-LARGEST_BYTES = 64 * 1024 * 1024
-"""A larger file is not one of ours."""
+HEADER = "meshonet"  # the metadata entry that holds the header as JSON
+LARGEST_BYTES = 64 * 1024 * 1024  # a larger file is not one of ours
 
 OURS = "use a file made by meshonet train"
 
 
-@dataclass(frozen=True)
-class Kind:
+class Kind(NamedTuple):
     """A kind of model: what its header says under ``kind``, and under `key` for its version."""
 
     text: str
@@ -41,10 +36,7 @@ KINDS = {kind.text: kind for kind in (STRIP, QUAD, PAPER)}
 def read_model(path: Path) -> tuple[Kind, dict[str, Any], dict[str, NDArray[Any]]]:
     """Return the kind, the header and the arrays of a model file.
 
-    Raises
-    ------
-    InputError
-        not safetensors, not one of ours, of another version; an array that is not finite.
+    Raises InputError: not safetensors, not one of ours, of another version; an array that is not finite.
     """
     header, arrays = read_tensors(path)
     kind = KINDS.get(str(header.get("kind")))
@@ -89,10 +81,8 @@ def write_model(
 ) -> None:
     """Write a model file that `read_model` reads, whole or not at all; each array in its own precision.
 
-    Parameters
-    ----------
-    recipe, figures : how it was trained, and what it does on held-out shapes.
-    facts : what else its kind has in the header.
+    `recipe`, `figures`: how it was trained, and what it does on held-out shapes; `facts`: what else its kind
+    has in the header.
     """
     from safetensors.numpy import save
 

@@ -13,40 +13,26 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.solve import Polish
 from meshonet.solvers.solution import Solution
 
-BATCH = 64
-"""Most boundaries that are solved together, for the memory that they take."""
+BATCH = 64  # most boundaries that are solved together, for the memory that they take
 
 
 @dataclass(frozen=True)
 class Operator(ABC):
-    """A trained operator; `meshonet.solvers.neural.registry.load` returns one by name or path.
+    """A trained operator; `meshonet.solvers.neural.registry.load` returns one by name or path."""
 
-    Parameters
-    ----------
-    name : of a shipped model, or what its file says.
-    topology : of the grids that it makes.
-    header : what its file says of itself: recipe and held-out figures.
+    batched: ClassVar[bool] = True  # many boundaries take less time together than one by one
 
-    Attributes
-    ----------
-    batched : many boundaries take less time together than one by one.
-    """
-
-    batched: ClassVar[bool] = True
-
-    name: str
-    topology: Topology
-    header: Mapping[str, Any]
+    name: str  # of a shipped model, or what its file says
+    topology: Topology  # of the grids that it makes
+    header: Mapping[str, Any]  # what its file says of itself: recipe and held-out figures
 
     @classmethod
     @abstractmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
         """Return the operator of a file's header and arrays.
 
-        Raises
-        ------
-        InputError, KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError
-            header or arrays are not those of such an operator.
+        Raises InputError, KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError: header
+        or arrays are not those of such an operator.
         """
 
     @abstractmethod
@@ -61,17 +47,11 @@ class Operator(ABC):
     ) -> list[Solution]:
         """Return a grid inside each boundary; it may be folded (see `meshonet.solvers.pipeline.fallback`).
 
-        Parameters
-        ----------
-        polish : steps after the network, where the operator has such steps.
-        paste : put the boundary's own nodes on the edges, where a network does not meet them itself.
-        dtype : ``float64`` or ``float32``, arithmetic of the quad network, with which grids differ by 1e-6.
-        threads : batches of the quad network at work at a time. Grids do not depend on it.
-
-        Raises
-        ------
-        InputError
-            a boundary of another topology.
+        `polish`: steps after the network, where the operator has such steps; `paste`: put the boundary's own
+        nodes on the edges, where a network does not meet them itself; `dtype`: ``float64`` or ``float32``,
+        arithmetic of the quad network, with which grids differ by 1e-6; `threads`: batches of the quad
+        network at work at a time. Grids do not depend on it. Raises InputError: a boundary of another
+        topology.
         """
 
     def check(self, boundaries: Sequence[Boundary]) -> None:

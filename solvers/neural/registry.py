@@ -19,11 +19,8 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).parent / "pretrained"
 
-BASE = "base"
-"""The harmonic base with no network, where a strip operator can be named."""
-
-DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}
-"""The network for a topology when a network is wanted and none is named."""
+BASE = "base"  # the harmonic base with no network, where a strip operator can be named
+DEFAULTS: dict[Topology, str] = {"o": "airfoil-o", "quad": "quad-general"}  # where none is named
 
 HEADS = {"quad-winslow": ("quad-general", 0), "hole-winslow": ("hole-o", 0)}
 """Models that are another answer of a network: the name of its file, and the number of the answer."""
@@ -78,13 +75,9 @@ def model_path(name: str) -> Path:
 def load(name: str | Path) -> Operator:
     """Return a shipped operator by name, one of a file by path, or ``base``.
 
-    Raises
-    ------
-    InputError
-        no such model; a file that is not one of ours, or whose arrays are not those of the model it names.
+    Raises InputError: no such model; a file that is not one of ours, or whose arrays are not those of the
+    model it names.
 
-    Examples
-    --------
     >>> operator = load("quad-general")
     >>> operator.name, operator.topology
     ('quad-general', 'quad')
@@ -130,13 +123,8 @@ def described(name: str) -> dict[str, Any]:
 def architecture(name: str, topology: Topology, settings: Mapping[str, Any] | None = None) -> Architecture:
     """Return the model `name` of the paper's with `settings` in place of its defaults.
 
-    Raises
-    ------
-    InputError
-        no such model or setting, or a value of another type than the setting's.
+    Raises InputError: no such model or setting, or a value of another type than the setting's.
 
-    Examples
-    --------
     >>> architecture("meshonet", "quad", {"sensors": 80}).sensors
     80
     """

@@ -17,22 +17,13 @@ from meshonet.geometry.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """n solved grids.
+    """n solved grids."""
 
-    Parameters
-    ----------
-    nodes : (n, ni, nj, 2), any unit of length.
-    topology : ``quad`` or ``o``.
-    names : (n,) of the shapes.
-    splits : (n,) ``train``, ``test`` or nothing.
-    parameters : (n,) of their family, NaN where there is none.
-    """
-
-    nodes: Floats
-    topology: Topology
-    names: tuple[str, ...]
-    splits: tuple[str, ...]
-    parameters: Floats
+    nodes: Floats  # (n, ni, nj, 2), any unit of length
+    topology: Topology  # ``quad`` or ``o``
+    names: tuple[str, ...]  # (n,) of the shapes
+    splits: tuple[str, ...]  # (n,) ``train``, ``test`` or nothing
+    parameters: Floats  # (n,) of their family, NaN where there is none
 
     def __len__(self) -> int:
         return len(self.nodes)
@@ -76,10 +67,7 @@ def edges(nodes: Floats, topology: Topology, name: str = "") -> Boundary:
 def gathered(grids: Iterable[Grid]) -> Samples:
     """Return grids as samples.
 
-    Raises
-    ------
-    InputError
-        no grid, one of another size or topology than the first, a C grid.
+    Raises InputError: no grid, one of another size or topology than the first, a C grid.
     """
     rows: list[Floats] = []
     facts: list[tuple[str, str, float]] = []
@@ -87,11 +75,9 @@ def gathered(grids: Iterable[Grid]) -> Samples:
     for grid in grids:
         first = first or grid
         if (grid.nodes.shape, grid.topology) != (first.nodes.shape, first.topology):
-            raise InputError(
-                f"{grid.name or 'a grid'} is {grid.ni}x{grid.nj} {grid.topology} and the first is "
-                f"{first.ni}x{first.nj} {first.topology}",
-                "train on grids of one size and topology",
-            )
+            sizes = [f"{g.ni}x{g.nj} {g.topology}" for g in (grid, first)]
+            problem = f"{grid.name or 'a grid'} is {sizes[0]} and the first is {sizes[1]}"
+            raise InputError(problem, "train on grids of one size and topology")
         if grid.topology == "c":
             raise InputError("a C grid among the training grids", "give quad or O grids")
         values = [value for _, value in grid.origin.parameters]

@@ -18,8 +18,7 @@ from meshonet.solvers.algebraic.resample.grids import evaluate, thinned
 from meshonet.solvers.method import METHODS, Wrapper
 from meshonet.solvers.solution import Solution
 
-LEAST_NODES = 9
-"""Fewest coarse nodes along a direction that describe anything."""
+LEAST_NODES = 9  # fewest coarse nodes along a direction that describe anything
 
 
 @dataclass(frozen=True)
@@ -50,16 +49,8 @@ def solve_coarse(
     smooth : whether to end with sweeps of Winslow's equations at full resolution around kinks of the
         boundary: always where these were solved or the grid came out folded, else where angles gain by them.
 
-    Returns
-    -------
-    Solution
-        that of `solve`, with the fine grid; residual and cycles are those of the coarse solve. The edges
-        equal those of `boundary` bitwise.
-
-    Raises
-    ------
-    InputError
-        fewer than 9 coarse nodes.
+    The edges of the grid equal those of `boundary` bitwise; residual and cycles are those of the coarse
+    solve. Raises InputError: fewer than 9 coarse nodes.
     """
     if n < LEAST_NODES:
         raise InputError(f"{n} coarse nodes along a direction are too few", f"use at least {LEAST_NODES}")

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from meshonet.geometry.arrays import Floats, Topology
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, NoValidGridError, SolverError
@@ -14,76 +13,25 @@ from meshonet.geometry.quality.measure import count_folded, worst_cells
 from meshonet.solvers.method import Method, method_named
 from meshonet.solvers.solution import Outcome, Solution
 
-ORDER = ("winslow", "tfi")
-"""Methods that follow where a grid cannot be repaired."""
+ORDER = ("winslow", "tfi")  # methods that follow where a grid cannot be repaired
 
 REMEDY = "use more nodes, another topology or corners, or allow an invalid grid"
-
-
-@dataclass(frozen=True)
-class Fallback:
-    """`first`, and where its grids have folded cells repair, then the `others` (`guard`)."""
-
-    first: Method
-    others: tuple[Method, ...] | None = None
-    allow_invalid: bool = False
-    margin: int | None = None
-
-    @property
-    def name(self) -> str:
-        """That of the first method."""
-        return self.first.name
-
-    @property
-    def together(self) -> Topology | None:
-        """That of the first method."""
-        return self.first.together
-
-    def solve(self, problems: Sequence[Boundary], start: Sequence[Grid] | None = None) -> list[Solution]:
-        """Return a valid solution for each of the boundaries, or raise as `guard` does."""
-        solutions = self.first.solve(problems, start)
-        return [self.checked(*each) for each in zip(solutions, problems, strict=True)]
-
-    def checked(self, solution: Solution, boundary: Boundary) -> Solution:
-        """Return what `guard` makes of `solution`, with the seconds of stage ``guard``."""
-        begun = time.perf_counter()
-        checked = guard(
-            solution, boundary, others=self.others, allow_invalid=self.allow_invalid, margin=self.margin
-        )
-        return replace(checked, seconds={**checked.seconds, "guard": time.perf_counter() - begun})
 
 
 def guard(
     solution: Solution,
     boundary: Boundary,
     *,
-    others: Sequence[Method] | None = None,
     allow_invalid: bool = False,
     margin: int | None = None,
 ) -> Solution:
     """Return a valid grid: that of `solution` when it is one, else that of the first way that works.
 
-    Tried in turn: local repair; each of the other methods, from the repaired grid where it takes a start; its
-    grid repaired.
-
-    Parameters
-    ----------
-    solution : what a method made.
-    boundary : what it was made for; that of the solution takes its place.
-    others : methods to turn to; None for those of `ORDER`.
-    allow_invalid : return the grid as it is when nothing works.
-    margin : of `meshonet.solvers.energy.repair.repair`, or None for its own.
-
-    Returns
-    -------
-    Solution
-        its path ends with the stages that made the grid from what came in: ``("repair",)``,
-        ``("winslow", "repair")``, ``("tfi",)`` ..., none for a valid one.
-
-    Raises
-    ------
-    NoValidGridError
-        every way ends in folded cells; carries the count and the ten worst of the best try.
+    Tried in turn: local repair (with `margin`); each method of `ORDER`, from the repaired grid where it takes
+    a start; its grid repaired. `boundary` is what `solution` was made for, unless that has its own. The path
+    ends with the stages that made the grid: ``("repair",)``, ``("winslow", "repair")``, ``("tfi",)`` ...,
+    none for a valid one. Raises NoValidGridError where every way ends in folded cells, with the count and the
+    ten worst of the best try, unless `allow_invalid`.
     """
     grid, boundary = solution.grid, solution.boundary or boundary
     if count_folded(grid.nodes) == 0:
@@ -91,8 +39,8 @@ def guard(
     failure = _open_corner(grid)
     if failure is None:
         least = grid.nodes
-        if others is None:  # Winslow's equations are not solved again for their own grid
-            others = [method_named(name) for name in ORDER if name != solution.method or name == "tfi"]
+        # Winslow's equations are not solved again for their own grid
+        others = [method_named(name) for name in ORDER if name != solution.method or name == "tfi"]
         for path, nodes in _ways(grid, boundary, others, margin):
             if count_folded(nodes) == 0:
                 facts = {**grid.provenance, "path": path}

@@ -15,19 +15,17 @@ from dataclasses import dataclass, field, replace
 from time import perf_counter
 from typing import Any
 
-from meshonet.geometry.arrays import SIDES, Topology
+from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.layers.first_cells import Heights
-from meshonet.solvers.method import Each, Method, Wrapper, method_named
+from meshonet.solvers.method import Each, Method, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.solution import Solution
 
-UPRIGHT_DEGREES = 0.3
-"""By which lines may lean at walls whose nodes have slid."""
-LEANING_DEGREES = 1.0
-"""By which they may lean when sources have turned them."""
+UPRIGHT_DEGREES = 0.3  # by which lines may lean at walls whose nodes have slid
+LEANING_DEGREES = 1.0  # by which they may lean when sources have turned them
 
 MARCHED = "a grid marched from the wall"
 
@@ -65,10 +63,8 @@ class FirstCells:
             walls = dict.fromkeys(("south", "north") if quad else ("south",), height)
         return Heights(
             **walls | dict(self.sides),
-            constant=self.constant,
-            growth=self.growth,
-            free_rows=self.free_rows,
-        )
+            constant=self.constant, growth=self.growth, free_rows=self.free_rows,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -98,10 +94,7 @@ class Layered(Wrapper):
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary, its first cells of the heights.
 
-        Raises
-        ------
-        InputError
-            heights or settings that do not suit the boundary or the method.
+        Raises InputError: heights or settings that do not suit the boundary or the method.
         """
         if boundary.around_body and self.cells.sides:
             raise InputError(
@@ -164,7 +157,7 @@ class Layered(Wrapper):
         method = self.method
         if controls is not None and isinstance(self.full, Each) and self.full.takes("controls"):
             method = self.full.having(controls=controls)
-        solution = method.solve([slid], None if start is None else [start])[0]
+        solution = solved(method, slid, start)
         note = "wall nodes slid along south and north"
         return replace(solution, boundary=slid, notes=(*solution.notes, note))
 
@@ -189,9 +182,9 @@ class Layered(Wrapper):
         return kept if largest_lean(kept.grid.nodes, boundary) < lean else turned
 
     def _turned(self, boundary: Boundary, heights: Heights, start: Grid | None) -> Solution:
-        sides = {side: height for side in SIDES if (height := getattr(heights, side))}
-        turning = method_named("steger-sorenson", **self.turning, heights=sides)
-        return turning.solve([boundary], None if start is None else [start])[0]
+        return solved(
+            method_named("steger-sorenson", **self.turning, heights=heights.by_side), boundary, start
+        )
 
     def _refuse(self, settings: Iterable[str], what: str, chosen: Sequence[str] | None = None) -> None:
         """Raise InputError when one of `settings` was given, which are of no use to `what`."""

@@ -20,11 +20,8 @@ from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import History, Row, listening
 from meshonet.solvers.solution import Outcome, Solution
 
-MOST_TOGETHER = 64
-"""Shapes that are solved together at the most."""
-
-MOST_NODES = 1 << 22
-"""Nodes of grids from which no more are solved together: some hundred MB."""
+MOST_TOGETHER = 64  # shapes that are solved together at the most
+MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +59,8 @@ class Result:
 def make_grid(shape: Shape, request: GridRequest) -> Result:
     """Return the grid of `shape` that `request` describes.
 
-    Raises
-    ------
-    InputError
-        the shape, or the request for it, cannot be met.
-    NoValidGridError
-        cells are folded, and that was not allowed.
-    SolverError
-        the method diverged.
+    Raises InputError: the shape, or the request for it, cannot be met; NoValidGridError: cells are folded,
+    and that was not allowed; SolverError: the method diverged.
     """
     result = next(make_grids([shape], request))
     if isinstance(result, Exception):
@@ -83,10 +74,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
     Shapes are read as results are taken, and a few ahead (`MOST_TOGETHER`, `MOST_NODES`) when the method
     solves many faster in one call. They do not change one another's grids but in the last digits.
 
-    Raises
-    ------
-    InputError
-        the method does not have such settings.
+    Raises InputError: the method does not have such settings.
     """
     method = request.solver()
     shapes = iter(shapes)

@@ -20,8 +20,7 @@ from meshonet.solvers.pipeline.sequence import Sequenced
 if TYPE_CHECKING:
     from meshonet.solvers.pipeline.layered import FirstCells
 
-OPERATOR_SETTINGS = ("model", "polish", "device")
-"""Settings any of which asks for a network."""
+OPERATOR_SETTINGS = ("model", "polish", "device")  # settings any of which asks for a network
 
 DEFAULTS = {"coarse": "auto", "refine": 0, "polish": "auto", "answer": "valid", "blending": "arclength"}
 """Values that say nothing; of other parameters None is one."""
@@ -60,10 +59,7 @@ class GridRequest:
     percentiles : whether the quality has them.
     history : whether the cycles of the solve are kept.
 
-    Raises
-    ------
-    InputError
-        a value out of its range; parameters that need or exclude each other.
+    Raises InputError: a value out of its range; parameters that need or exclude each other.
     """
 
     sampling: Sampling = field(default_factory=Sampling)
@@ -185,10 +181,7 @@ class GridRequest:
     def solver(self) -> Method:
         """Return the method that makes the grids, without the guard.
 
-        Raises
-        ------
-        InputError
-            settings that the method does not have.
+        Raises InputError: settings that the method does not have.
         """
         base = self._base()
         method = self._at_any_resolution(base)
@@ -255,19 +248,10 @@ def grid_request(
 ) -> GridRequest:
     """Return the request with the parameters, each by its name: of the sampling, the request or the method.
 
-    Parameters
-    ----------
-    res : nodes along xi and eta; one number for both.
-    parameters : fields of `Sampling` and `GridRequest`, settings of the method; None leaves a setting out.
-        ``wall_spacing`` is another name of ``first_cell``.
+    `res`: nodes along xi and eta; one number for both. `parameters`: fields of `Sampling` and `GridRequest`,
+    settings of the method; None leaves a setting out. ``wall_spacing`` is another name of ``first_cell``.
+    Raises InputError: as `GridRequest`, or a parameter that the method does not have.
 
-    Raises
-    ------
-    InputError
-        as `GridRequest`, or a parameter that the method does not have.
-
-    Examples
-    --------
     >>> request = grid_request("winslow", res=(80, 40), topology="o", tol=1e-8)
     >>> request.sampling.ni, request.sampling.topology, request.settings
     (80, 'o', {'tol': 1e-08})

@@ -8,7 +8,7 @@ from meshonet.geometry.arrays import Topology
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.method import Method, OneByOne, Wrapper, method_named
+from meshonet.solvers.method import Method, OneByOne, Wrapper, method_named, solved
 from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.solution import Solution
 
@@ -23,9 +23,7 @@ Over random domains at 513 x 513 the mean angle is then within 0.01 degrees of t
 class Auto(OneByOne):
     """A method for each topology.
 
-    Parameters
-    ----------
-    quad, o, c : that solve boundaries of these topologies.
+    `quad`, `o`, `c`: that solve boundaries of these topologies.
     """
 
     quad: Method
@@ -35,8 +33,7 @@ class Auto(OneByOne):
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary by the method of its topology."""
-        method: Method = getattr(self, boundary.topology)
-        return method.solve([boundary], None if start is None else [start])[0]
+        return solved(getattr(self, boundary.topology), boundary, start)
 
 
 @dataclass(frozen=True)
@@ -61,9 +58,7 @@ class AroundWake(OneByOne):
 
     Winslow's lines lean by 70 degrees along the wake, where small cells face large ones of the far field.
 
-    Parameters
-    ----------
-    note : begins the notes, before the method's name.
+    `note`: begins the notes, before the method's name.
     """
 
     note: str = ""

@@ -15,8 +15,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.coarsen import coarser_boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.transform import coarser_boundary
 from meshonet.solvers.algebraic.resample.grids import evaluate
 from meshonet.solvers.method import Wrapper
 from meshonet.solvers.solution import Solution
@@ -30,10 +30,7 @@ class Sequenced(Wrapper):
 
     def solve_one(self, boundary: Boundary, start: Grid | None = None) -> Solution:
         """Return the solution of a boundary; a grid to start from has the coarsest counts."""
-        return solve_refined(boundary, self._from, self.levels, start)
-
-    def _from(self, boundary: Boundary, initial: Grid | None = None) -> Solution:
-        return self.inner(boundary, initial)
+        return solve_refined(boundary, self.inner, self.levels, start)
 
 
 def solve_refined(
@@ -48,15 +45,8 @@ def solve_refined(
     levels : how often cells are halved.
     initial : what the coarsest solve starts from.
 
-    Returns
-    -------
-    Solution
-        that of the last solve, with the seconds of all and the counts of each in the notes.
-
-    Raises
-    ------
-    InputError
-        counts that cannot be halved.
+    Its seconds are those of all solves, and a note has the counts of each. Raises InputError: counts that
+    cannot be halved.
     """
     solution = solve(coarser_boundary(boundary, 2**levels), initial=initial)
     seconds, counts = dict(solution.seconds), [_counts(solution)]

@@ -18,8 +18,7 @@ from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.metadata import Origin
+from meshonet.geometry.blocks.grid import Grid, Origin
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.coarsen import coarser_boundary, coarser_grid
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.transform import coarser_boundary, coarser_grid
 from meshonet.geometry.errors import InputError
 
 

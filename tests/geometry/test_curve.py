@@ -70,14 +70,20 @@ def test_length_and_place_converge_at_fourth_order(closed):
     assert order > 3.7
 
 
+def curvature(curve, s):
+    """By the turn of the tangent over a short way."""
+    (ax, ay), (bx, by) = curve.tangent(s - 1e-5).T, curve.tangent(s + 1e-5).T
+    return (ax * by - ay * bx) / 2e-5
+
+
 def test_tangent_and_curvature_of_a_circle():
     curve = Curve(2 * circle(64), closed=True)
     s = np.linspace(0, curve.length, 301)
     p, t = curve.at(s), curve.tangent(s)
     np.testing.assert_allclose(np.hypot(*t.T), 1, rtol=1e-14)
     np.testing.assert_allclose((p * t).sum(axis=1), 0, atol=1e-4)
-    np.testing.assert_allclose(curve.curvature(s), 0.5, rtol=2e-3)
-    assert (Curve(2 * circle(64)[::-1], closed=True).curvature(s) < 0).all()
+    np.testing.assert_allclose(curvature(curve, s), 0.5, rtol=2e-3)
+    assert (curvature(Curve(2 * circle(64)[::-1], closed=True), s) < 0).all()
 
 
 def test_corners_stay_sharp_and_sides_straight():

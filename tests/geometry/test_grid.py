@@ -57,3 +57,16 @@ def test_area_ratio_looks_across_the_wake() -> None:
     np.testing.assert_allclose(ratio[0, 0], 1.5, rtol=0.02)  # half as thick again above as below
     np.testing.assert_allclose(ratio[:3, 0], ratio[-1:-4:-1, 0], rtol=1e-12)
     assert per_cell(Grid.from_nodes(grid.nodes, "quad"), "area_ratio")[0, 0] < 1.1
+
+
+def test_a_grid_says_what_it_is_in_one_line() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
+    grid = Grid.from_nodes(np.stack([x, y], axis=-1), name="duct")
+    assert repr(grid) == "Grid('duct', quad, 5 x 3 nodes, patches ['south', 'east', 'north', 'west'])"
+
+
+def test_quality_prints_as_a_table_of_metrics() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 5), np.linspace(0, 1, 3), indexing="ij")
+    rows = str(Grid.from_nodes(np.stack([x, y], axis=-1)).quality()).splitlines()
+    assert rows[0] == "8 cells, 0 folded"
+    assert rows[2].split() == ["max_angle", "90", "90", "90"]

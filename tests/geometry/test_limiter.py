@@ -1,6 +1,6 @@
 import numpy as np
 
-from meshonet.geometry.curves.limiter import LEAST_SLACK, LONGEST, SLACK, limited
+from meshonet.geometry.curves.spline import LEAST_SLACK, LONGEST, SLACK, limited
 from meshonet.geometry.polygon.corners import turning
 
 NONE = np.zeros(0, dtype=np.intp)

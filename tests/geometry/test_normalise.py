@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.normalise import normalised
+from meshonet.geometry.blocks.transform import normalised
 from meshonet.geometry.errors import InputError
 
 

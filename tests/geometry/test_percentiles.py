@@ -63,7 +63,7 @@ def test_a_sample_says_where_to_look(name: str) -> None:
     """Or they would be right, but slow."""
     grid = GRIDS[name]()
     run, cells = prepared(grid.x, grid.y, (1.0, 99.0)), (grid.ni - 1) * (grid.nj - 1)
-    quality._run(grid, 0, np.empty((0, grid.ni - 1, grid.nj - 1)), run)
+    run.over(grid.x, grid.y, np.empty((0, grid.ni - 1, grid.nj - 1)), grid.periodic)
     hits = [
         run.percentile(k, m, cells, p) is not None for k in range(len(NAMES)) for m, p in enumerate((1, 99))
     ]

@@ -6,7 +6,7 @@ import pytest
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
-from meshonet.geometry.blocks.rotate import turned
+from meshonet.geometry.blocks.transform import turned
 from meshonet.geometry.errors import InputError
 
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from meshonet.geometry.curves.limiter import LONGEST
-from meshonet.geometry.curves.spline import spline_slopes
+from meshonet.geometry.curves.spline import LONGEST, spline_slopes
 from meshonet.geometry.polygon.corners import turning
 
 NONE = np.zeros(0, dtype=np.intp)

@@ -6,7 +6,7 @@ import pytest
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.validate import check_edges
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.families import arch, hole
+from meshonet.geometry.families.family import family as family_of
 from meshonet.geometry.shapes.airfoil.naca import naca
 from meshonet.geometry.shapes.shape import edges_of
 from meshonet.geometry.spacing.sampling import Sampling
@@ -117,7 +117,7 @@ def test_c_boundaries_meet_themselves_along_the_wake_and_nowhere_else():
         check_edges(Boundary(found.south, north, found.west, found.east, "c", found.patches))
 
 
-@pytest.mark.parametrize("family", [arch.FAMILY, hole.FAMILY])
+@pytest.mark.parametrize("family", [family_of("arch"), family_of("hole")])
 def test_the_families_pass(family):
     check_edges(family.boundary((family.low + family.high) / 2, 41, 31))
 

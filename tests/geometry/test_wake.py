@@ -12,7 +12,7 @@ from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.airfoil.naca import naca
-from meshonet.geometry.shapes.airfoil.te_wedge import REACH
+from meshonet.geometry.shapes.airfoil.trailing_edge import REACH
 from meshonet.geometry.shapes.wake import Wake
 from meshonet.geometry.spacing.sampling import Sampling
 

@@ -8,7 +8,7 @@ from meshonet.kernels._native import resample, tfi_coarse
 from meshonet.solvers.algebraic.resample import corner_damping as acute
 from meshonet.solvers.algebraic.resample.edge_blending import REACH, inwards
 from meshonet.solvers.algebraic.resample.spline import bending, places
-from meshonet.solvers.neural.quad.edges import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
 
 RNG = np.random.default_rng(5)
 

@@ -7,7 +7,7 @@ from random_quads import random_quad
 from solver_shapes import bump, hole, naca, wrench
 
 from meshonet.geometry.arrays import Floats
-from meshonet.kernels._native import Modes, Stiffness, VariationalDescent, variational_workspace
+from meshonet.kernels._native import Modes, Stiffness, VariationalDescent
 from meshonet.kernels._native import variational_energy as compiled
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.energy.functional import Weights, aspect_of, relief_of
@@ -23,9 +23,8 @@ def call(
 ) -> tuple[float, float, Floats]:
     z = planes(nodes)
     gradient = np.empty_like(z)
-    work = np.empty(variational_workspace(*nodes.shape[:2]))
     terms = aspect_of(nodes, periodic), weights.shape, weights.smoothness
-    value, low = compiled(z, *terms, epsilon, periodic, None, gradient, work)
+    value, low = compiled(z, *terms, epsilon, periodic, None, gradient)
     return value, low, gradient
 
 
@@ -74,17 +73,14 @@ def test_around_a_body_the_cut_is_like_any_other_line(epsilon: float) -> None:
 def test_corners_at_a_sharp_edge_keep_a_share_of_their_angle_term() -> None:
     nodes = tfi(naca(33, 9)).nodes
     weights, aspect, z = Weights(), aspect_of(nodes, periodic=True), planes(nodes)
-    terms, work = (
-        (aspect, weights.shape, weights.smoothness, 0.0, True),
-        np.empty(variational_workspace(33, 9)),
-    )
+    terms = aspect, weights.shape, weights.smoothness, 0.0, True
     share = relief_of(nodes[:, 0])
     assert share[0] == share[-1] < 1e-3
     assert (share[1:-1] == 1).all()
     values, gradients = [], []
     for relief in (None, share):
         gradients.append(np.empty_like(z))
-        values.append(compiled(z, *terms, relief, gradients[-1], work)[0])
+        values.append(compiled(z, *terms, relief, gradients[-1])[0])
     u, v = nodes[1, 0] - nodes[0, 0], nodes[0, 1] - nodes[0, 0]
     back = nodes[0, 0] - nodes[-2, 0]
     angles = [(e @ e) * (v @ v) / (e[0] * v[1] - e[1] * v[0]) ** 2 for e in (u, back)]

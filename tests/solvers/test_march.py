@@ -18,7 +18,7 @@ from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.spacing.growth import growing_steps
 from meshonet.geometry.spacing.sampling import Sampling
-from meshonet.kernels._native import hyperbolic_march, hyperbolic_scratch
+from meshonet.kernels._native import hyperbolic_march
 from meshonet.solvers.hyperbolic import march as module
 from meshonet.solvers.hyperbolic.march import hyperbolic
 from meshonet.solvers.pipeline.fallback import guard
@@ -50,7 +50,7 @@ def test_around_a_circle_levels_are_the_circles_of_the_recursion(n: int, even: f
     levels = np.empty((2, 41, n))
     levels[:, 0] = circle(n)[:-1].T
     knobs = DISSIPATION, even, np.inf, BEND, 1 + THETA, 0.16, 10, 30
-    hyperbolic_march(levels[0], levels[1], steps, *knobs, np.empty(hyperbolic_scratch(n)))
+    hyperbolic_march(levels[0], levels[1], steps, *knobs)
     expected = np.multiply.outer(radii_of_levels(n, 0.5, steps), circle(n, 1.0)[:-1])
     np.testing.assert_allclose(np.moveaxis(levels, 0, -1), expected, rtol=0, atol=1e-11)
 

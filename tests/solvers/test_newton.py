@@ -9,7 +9,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.kernels._native import newton as compiled
-from meshonet.kernels._native import variational_energy, variational_workspace
+from meshonet.kernels._native import variational_energy
 from meshonet.solvers.algebraic.tfi import tfi
 from meshonet.solvers.energy.descent import newton, stiffness_of
 from meshonet.solvers.energy.functional import Weights, aspect_of
@@ -22,7 +22,7 @@ def value_and_slope(nodes: Floats) -> tuple[float, float]:
     z, weights = np.moveaxis(nodes, -1, 0), Weights()
     gradient = np.empty_like(z)
     terms = aspect_of(nodes), weights.shape, weights.smoothness, 0.0, False, None
-    value, _ = variational_energy(z, *terms, gradient, np.empty(variational_workspace(*nodes.shape[:2])))
+    value, _ = variational_energy(z, *terms, gradient)
     return value, float(np.abs(gradient).max())
 
 

@@ -2,29 +2,25 @@
 
 import numpy as np
 import pytest
-from solver_shapes import arch, folded, hole, wrench
+from solver_shapes import arch, hole
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.solvers.algebraic.tfi import solve as interpolate
 from meshonet.solvers.method import METHODS, Each, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
-from meshonet.solvers.pipeline.fallback import Fallback
+from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.make_grid import make_grid, make_grids
 from meshonet.solvers.pipeline.request import GridRequest, grid_request
 from meshonet.solvers.pipeline.sequence import Sequenced
 from meshonet.solvers.solution import Outcome, Solution
 
 
-def test_a_fallback_is_a_method_that_repairs() -> None:
-    (solution,) = Fallback(method_named("tfi")).solve([wrench(60, 60)])
-    assert folded(solution.grid.nodes) == 0
-    assert solution.path
-    assert solution.seconds["guard"] > 0
-    with pytest.raises(NoValidGridError, match="stay folded after repair; use more nodes"):
-        Fallback(method_named("tfi"), others=(), margin=2).solve([impossible()])
-    (kept,) = Fallback(method_named("tfi"), others=(), allow_invalid=True).solve([impossible()])
-    assert kept.outcome is Outcome.FOLDED
+def test_what_cannot_be_repaired_is_refused_or_marked() -> None:
+    made = interpolate(impossible())
+    with pytest.raises(NoValidGridError, match="stay folded after repair, then winslow, then tfi; use more"):
+        guard(made, impossible(), margin=2)
+    assert guard(made, impossible(), allow_invalid=True).outcome is Outcome.FOLDED
 
 
 def impossible() -> Boundary:
@@ -37,7 +33,7 @@ def impossible() -> Boundary:
 
 def test_wrappers_have_the_name_of_their_method_and_combine() -> None:
     method = method_named("winslow", tol=1e-9)
-    for wrapped in (Coarse(method, 17), Sequenced(method, 1), Fallback(Sequenced(method, 1))):
+    for wrapped in (Coarse(method, 17), Sequenced(method, 1)):
         assert wrapped.name == "winslow"
     with pytest.raises(InputError, match="a coarse solve has no use for a grid to start from; drop initial"):
         Coarse(method, 17).solve([arch(33, 17)], [interpolate(arch(33, 17)).grid])

@@ -18,7 +18,7 @@ from meshonet.solvers.elliptic.solve import solve as winslow
 from meshonet.solvers.neural.inference import infer
 from meshonet.solvers.neural.operator import in_batches
 from meshonet.solvers.neural.quad import coarse_grids
-from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER
 from meshonet.solvers.neural.registry import load

@@ -55,7 +55,7 @@ def test_what_does_not_fit_has_no_ratio() -> None:
 def test_straight_lines_get_exactly_the_law() -> None:
     x, y = np.meshgrid(np.arange(5.0), np.linspace(0, 1, 9), indexing="ij")
     out = np.empty((2, 5, 33))
-    layer_lines(x, y, out[0], out[1], 1e-6, 1e-3, 2, np.empty(10 * 9 + 33))
+    layer_lines(x, y, out[0], out[1], 1e-6, 1e-3, 2)
     steps = np.empty(32)
     layer_steps(steps, 1.0, 1e-6, 1e-3, 2)
     np.testing.assert_allclose(out[0], np.broadcast_to(np.arange(5.0)[:, None], (5, 33)), atol=1e-14)

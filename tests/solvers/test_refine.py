@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.coarsen import coarser_grid
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.transform import coarser_grid
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.elliptic.solve import solve
 from meshonet.solvers.energy.variational import solve as minimise

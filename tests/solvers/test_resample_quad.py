@@ -9,7 +9,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.algebraic.resample.quad import evaluate, mended
 from meshonet.solvers.energy.variational import solve
-from meshonet.solvers.neural.quad.edges import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
 
 
 def planes(nodes: Floats) -> Floats:

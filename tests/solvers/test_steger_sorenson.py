@@ -176,3 +176,11 @@ def test_a_notch_ends_in_a_grid_for_the_guard() -> None:
     solution = solve_steger_sorenson(boundary)
     assert np.isfinite(solution.grid.nodes).all()
     assert folded(solution.grid.nodes) <= folded(solve(boundary).grid.nodes)
+
+
+def test_sides_of_two_nodes_are_refused() -> None:
+    t = np.linspace(0.0, 1.0, 2)
+    south, west = np.stack([t, 0 * t], axis=1), np.stack([0 * t, t], axis=1)
+    quad = Boundary(south, south + np.array([0, 1]), west, west + np.array([1, 0]))
+    with pytest.raises(InputError, match="2x2 nodes are too few to control lines at walls; use at least 3x3"):
+        solve_steger_sorenson(quad)

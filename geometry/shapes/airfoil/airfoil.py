@@ -16,8 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.self_intersection import find_crossing
 from meshonet.geometry.shapes.airfoil.clean import SHARP_GAP, clean_section
 from meshonet.geometry.shapes.airfoil.section_curve import farthest_arc, moved_note, section_curve
-from meshonet.geometry.shapes.airfoil.te_fillet import rounded_base
-from meshonet.geometry.shapes.airfoil.te_wedge import wedged_base
+from meshonet.geometry.shapes.airfoil.trailing_edge import rounded_base, wedged_base
 from meshonet.geometry.shapes.airfoil.wall_nodes import Stations, wall_arcs
 from meshonet.geometry.shapes.far_field import o_boundary
 from meshonet.geometry.shapes.wake import C_EDGE, Wake, c_boundary, cells_of_wake, wake_axis
@@ -43,17 +42,10 @@ class Airfoil:
                '-------------------'''      upper side. The leading edge is the point of the curve that
                   lower  ---->              is farthest from the trailing edge.
 
-    Parameters
-    ----------
-    points : (n, 2) around the section, any unit, in either direction, from any start (`clean_section`).
-    name : what the input called it.
-    notes : what was changed of it before.
-    places : (n,) where each point stands in its source, such as ``line 12``, for messages.
+    The `points` (n, 2) are in any unit, in either direction, from any start (`clean_section`); `places` (n,)
+    say where each stands in its source, such as ``line 12``, for messages, `notes` what was changed before.
 
-    Raises
-    ------
-    InputError
-        the points are no airfoil, or its surfaces cross; says where.
+    Raises InputError: the points are no airfoil, or its surfaces cross; says where.
     """
 
     curve: Curve
@@ -126,7 +118,7 @@ class Airfoil:
         return Airfoil(points, self.name, notes=self.notes)
 
     def rounded(self) -> Airfoil:
-        """Return the same airfoil with the corners of its blunt base rounded off (`te_fillet`)."""
+        """Return the same airfoil with the corners of its blunt base rounded off."""
         if not self.blunt:
             return self
         body = copy(self)
@@ -142,13 +134,7 @@ class Airfoil:
         return Airfoil(section.points, self.name, notes=(*self.notes, moved_note(self._section, section)))
 
     def wall(self, ni: int, sampling: Sampling) -> Floats:
-        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise.
-
-        Raises
-        ------
-        InputError
-            fewer nodes than the edges need, cells that do not fit, a polygon that crosses itself.
-        """
+        """Return nodes (ni, 2) on the curve, clockwise from the trailing edge, the first repeated bitwise."""
         return self._wall(ni, sampling)[0]
 
     def _wall(self, ni: int, sampling: Sampling) -> tuple[Floats, tuple[str, ...]]:
@@ -181,10 +167,7 @@ class Airfoil:
         ``auto`` is ``o``, unless wall cells are to be thin and the edge is sharp, with surfaces at most
         50 degrees apart (once it is as `Sampling.te` wants it).
 
-        Raises
-        ------
-        InputError
-            four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
+        Raises InputError: four-sided topology; a C boundary with a blunt edge; nodes that do not suffice.
         """
         if sampling.topology == "quad":
             raise InputError("topology quad is not made from an airfoil", "use o or c")
@@ -197,7 +180,7 @@ class Airfoil:
             return body.moved_apart()._around(sampling)
 
     def wedged(self) -> Airfoil:
-        """Return the same airfoil with its blunt base closed by a wedge (`te_wedge`)."""
+        """Return the same airfoil with its blunt base closed by a wedge."""
         if not self.blunt:
             return self
         first, _, last = self._arcs
@@ -215,9 +198,8 @@ class Airfoil:
             sharp = not (body.blunt or body._round) and body.wedge <= _WIDEST_WEDGE
             topology = "c" if sampling.viscous and sharp else "o"
         if topology == "o" and (sampling.wake or sampling.wake_nodes):
-            raise InputError(
-                "an O grid has no wake", "leave {wake} out, or use {topology} c", source=self.name
-            )
+            remedy = "leave {wake} out, or use {topology} c"
+            raise InputError("an O grid has no wake", remedy, source=self.name)
         notes = body.notes
         if te == "wedge" and self.blunt:
             length = float(np.hypot(*(body.trailing_edge - self.trailing_edge))) / self.chord
@@ -230,24 +212,14 @@ class Airfoil:
         centre = 0.5 * (body.leading_edge + body.trailing_edge)
         wall, replaced = body._wall(sampling.ni or DEFAULT_NI, sampling)
         radius, nj = sampling.radius * body.chord, sampling.nj or DEFAULT_NJ
-        return o_boundary(
-            wall,
-            nj,
-            centre,
-            radius,
-            body.curve,
-            self.name,
-            self.unit,
-            turned=not sampling.viscous,
-            notes=(*notes, *replaced),
-        )
+        notes, turned = notes + replaced, not sampling.viscous
+        return o_boundary(wall, nj, centre, radius, body.curve, self.name, self.unit, turned, notes)
 
     def _c_boundary(self, sampling: Sampling, original: Airfoil, notes: tuple[str, ...]) -> Boundary:
         """Return the C boundary around this body, which was `given` once, with its units."""
         if self.blunt or self._round:
-            raise InputError(
-                "a C grid needs a sharp trailing edge", "close it with {te} wedge, or use {topology} o"
-            )
+            remedy = "close it with {te} wedge, or use {topology} o"
+            raise InputError("a C grid needs a sharp trailing edge", remedy)
         chord, ni = original.chord, sampling.ni or DEFAULT_NI
         length = (sampling.wake or sampling.radius) * chord
         step = (sampling.te_spacing or C_EDGE / ni) * chord

@@ -30,25 +30,22 @@ _REACH = 8
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A clean ring of points, clockwise, closed by its trailing edge.
+    """A clean ring of points (n, 2), clockwise, closed by its trailing edge.
 
-    Parameters
-    ----------
-    points : (n, 2). A sharp section begins with its trailing edge; a blunt one begins with the lower
-        corner of its base and ends with the upper one, the base being the segment from last to first.
-    index : (n,) which given point each is.
-    blunt : the trailing edge has a base.
-    gap : distance between the two ends of the surfaces, before a sharp edge was closed.
-    corners : indices of points where the tangent jumps, those of the trailing edge included.
-    swapped : given points that stood in the wrong order among their neighbours.
+    A sharp section begins with its trailing edge; a blunt one begins with the lower corner of its base and
+    ends with the upper one, the base being the segment from last to first.
     """
 
     points: Floats
     index: Indices
+    """(n,) which given point each is."""
     blunt: bool
     gap: float
+    """Distance between the two ends of the surfaces, before a sharp edge was closed."""
     corners: Indices
+    """Indices of points where the tangent jumps, those of the trailing edge included."""
     swapped: tuple[int, ...] = ()
+    """Given points that stood in the wrong order among their neighbours."""
 
     def moved_apart(self) -> Section:
         """Return the section with surfaces that nearly touch moved apart (`separate_surfaces`)."""
@@ -62,10 +59,7 @@ def clean_section(points: Floats) -> Section:
     They are taken to start at the trailing edge unless the other end is clearly the sharper one. Repeated
     points and points on a straight base are dropped, and neighbours in the wrong order are swapped.
 
-    Raises
-    ------
-    InputError
-        fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
+    Raises InputError: fewer than 4 distinct points, no area, ends too far apart to be a trailing edge.
     """
     raw = np.asarray(points, dtype=np.float64)
     extent = float(np.hypot(*np.ptp(raw, axis=0))) if len(raw) else 0.0
@@ -78,9 +72,8 @@ def clean_section(points: Floats) -> Section:
     if not open_gap:
         ring, index = ring[:-1], index[:-1]
     if len(ring) < 4:
-        raise InputError(
-            f"{len(ring)} distinct points", "an airfoil needs at least 4, and many more to be smooth"
-        )
+        remedy = "an airfoil needs at least 4, and many more to be smooth"
+        raise InputError(f"{len(ring)} distinct points", remedy)
     area = polygon_area(ring)
     if abs(area) < 1e-5 * extent**2:
         raise InputError("the points enclose no area", "give both surfaces of an airfoil")
@@ -142,10 +135,8 @@ def _opened_at_edge(ring: Floats, index: Indices, open_gap: bool) -> Section:
     chord = float(_distance(ring[nose], seam))
     gap = float(_distance(ring[0], ring[-1])) if open_gap else 0.0
     if gap > 0.5 * chord and gap > 3 * np.median(_distance(ring[1:], ring[:-1])):
-        raise InputError(
-            f"the first and the last point lie {gap / chord:.2g} chords apart",
-            "give both surfaces of an airfoil",
-        )
+        apart = f"the first and the last point lie {gap / chord:.2g} chords apart"
+        raise InputError(apart, "give both surfaces of an airfoil")
     tail = int(np.argmax(_distance(ring, ring[nose])))
     start = tail if open_gap else 0
     turn = -turning(ring, closed=True)
@@ -178,14 +169,8 @@ def _has_base(ring: Floats, k: int) -> bool:
     n = len(ring)
     turn = -turning(ring, closed=True)
     near = np.arange(k - 3, k + 4) % n
-    turn_here, turn_next = turn[near], turn[(near + 1) % n]
-    return bool(
-        (
-            (turn_here > np.radians(50.0))
-            & (turn_next > np.radians(50.0))
-            & (turn_here + turn_next > np.radians(130.0))
-        ).any()
-    )
+    here, after = turn[near], turn[(near + 1) % n]
+    return bool(((np.minimum(here, after) > np.radians(50.0)) & (here + after > np.radians(130.0))).any())
 
 
 def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
@@ -196,17 +181,12 @@ def _sharpness(ring: Floats, end: int, far_end: int) -> tuple[float, float]:
     n = len(ring)
     axis = ring[far_end] - ring[end]
     chord = np.hypot(*axis)
-    along, across = (
-        (ring - ring[end]) @ axis / chord,
-        (ring - ring[end]) @ np.array([-axis[1], axis[0]]) / chord,
-    )
+    off = ring - ring[end]
+    along, across = off @ axis / chord, off @ np.array([-axis[1], axis[0]]) / chord
     thick = []
     for part in (0.05, 0.2):
         sides = []
-        for arc in (
-            np.arange(end, end + (far_end - end) % n + 1) % n,
-            np.arange(far_end, far_end + (end - far_end) % n + 1) % n,
-        ):
+        for arc in (_stretch(end, far_end, n), _stretch(far_end, end, n)):
             order = np.argsort(along[arc], kind="stable")
             sides.append(float(np.interp(part * chord, along[arc][order], across[arc][order])))
         thick.append(max(abs(sides[1] - sides[0]), 1e-9 * chord))
@@ -224,19 +204,15 @@ def _based(ring: Floats, index: Indices, open_gap: bool, chord: float) -> Sectio
     last = len(ring) - 1
     ahead = [k for k in range(min(_REACH, len(ring) // 3) + 1) if turn[k] > _CORNER]
     behind = [k for k in range(last, last - min(_REACH, len(ring) // 3), -1) if turn[k] > _CORNER]
+    pairs, edges = [(behind[0], ahead[0])] if behind and ahead else [], [0]
     if open_gap:
-        pairs = [(behind[0], ahead[0])] if behind and ahead else []
         edges = [k for k in (*ahead[:1], *behind[:1]) if turn[k] > _EDGE and k in (0, last)]
     elif turn[0] > _CORNER:
         pairs = [] if turn[0] > _EDGE else [(0, k) for k in ahead[1:2]] + [(k, 0) for k in behind[:1]]
-        edges = [0]
-    else:
-        pairs = [(behind[0], ahead[0])] if behind and ahead else []
-        edges = [0]
     for upper, lower in pairs:
-        base = _between(ring, upper, lower)
+        base = ring[_stretch(upper, lower, len(ring))]
         if turn[upper] + turn[lower] > np.radians(100.0) and _off_line(base) <= ON_BASE * chord:
-            keep = np.arange(lower, lower + (upper - lower) % len(ring) + 1) % len(ring)
+            keep = _stretch(lower, upper, len(ring))
             gap = float(_distance(ring[upper], ring[lower]))
             ring, index = ring[keep], index[keep]
             if gap >= SHARP_GAP * chord:
@@ -275,9 +251,9 @@ def _section(ring: Floats, index: Indices, blunt: bool, gap: float) -> Section:
     return Section(ring, index, blunt, gap, np.array(sorted(corners), dtype=np.intp))
 
 
-def _between(ring: Floats, start: int, stop: int) -> Floats:
-    """Return the points of the ring from `start` on to `stop`, both included."""
-    return ring[np.arange(start, start + (stop - start) % len(ring) + 1) % len(ring)]
+def _stretch(start: int, stop: int, n: int) -> Indices:
+    """Return the points of a ring of n from `start` on to `stop`, both included."""
+    return np.arange(start, start + (stop - start) % n + 1) % n
 
 
 def _off_line(points: Floats) -> float:

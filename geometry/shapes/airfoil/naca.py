@@ -28,31 +28,20 @@ POINTS = 161
 """Points a surface: the spline through them is then within 2e-6 chord of the formula."""
 
 _SIMPLE = {
-    1: (0.0580, 361.400),
-    2: (0.1260, 51.640),
-    3: (0.2025, 15.957),
-    4: (0.2900, 6.643),
-    5: (0.3910, 3.230),
-}
+    1: (0.0580, 361.400), 2: (0.1260, 51.640), 3: (0.2025, 15.957), 4: (0.2900, 6.643), 5: (0.3910, 3.230),
+}  # fmt: skip
 _REFLEX = {
-    2: (0.1300, 51.990, 0.000764),
-    3: (0.2170, 15.793, 0.00677),
-    4: (0.3180, 6.520, 0.0303),
-    5: (0.4410, 3.191, 0.1355),
-}
+    2: (0.1300, 51.990, 0.000764), 3: (0.2170, 15.793, 0.00677),
+    4: (0.3180, 6.520, 0.0303), 5: (0.4410, 3.191, 0.1355),
+}  # fmt: skip
 _KNOWN = "use four digits such as 2412 or five such as 23012, with -sharp for a closed trailing edge"
 
 
 def naca(designation: str) -> Airfoil:
     """Return the airfoil of a designation such as ``2412``, ``23012`` or ``0012-sharp``, chord 1.
 
-    Raises
-    ------
-    InputError
-        a designation that stands for no airfoil.
+    Raises InputError: a designation that stands for no airfoil.
 
-    Examples
-    --------
     >>> naca("2412").name, naca("0012").blunt, naca("0012-sharp").blunt
     ('NACA 2412', True, False)
     """
@@ -62,10 +51,7 @@ def naca(designation: str) -> Airfoil:
 def naca_points(designation: str, n: int = POINTS) -> Floats:
     """Return points (2 n - 1, 2) from the trailing edge over the upper side to the leading edge and back.
 
-    Parameters
-    ----------
-    designation : see `naca`.
-    n : points a surface, by the cosine law in x.
+    There are `n` a surface, by the cosine law in x.
     """
     digits, sharp = _split(designation)
     x = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, n))
@@ -81,11 +67,6 @@ def thickness(x: Floats, ratio: float, *, sharp: bool = False) -> Floats:
     """Return half the thickness in chords at places x (any shape, 0 to 1) of a section `ratio` thick.
 
     y = 5 t (0.2969 √x - 0.1260 x - 0.3516 x² + 0.2843 x³ - 0.1015 x⁴), or 0.1036 at the end when sharp.
-
-    Examples
-    --------
-    >>> thickness(np.array([0.0, 0.3, 1.0]), 0.12).round(5).tolist()
-    [0.0, 0.06002, 0.00126]
     """
     last = -0.1036 if sharp else -0.1015
     inner = 0.2969 * np.sqrt(x) + x * (-0.1260 + x * (-0.3516 + x * (0.2843 + x * last)))
@@ -101,16 +82,13 @@ def _split(designation: str) -> tuple[str, bool]:
     if int(digits[-2:]) == 0:
         raise InputError(f"NACA {digits} has no thickness", _KNOWN)
     if len(digits) == 4 and digits[0] != "0" and digits[1] == "0":
-        raise InputError(
-            f"NACA {digits} has its camber at the leading edge", "use 1 to 9 as the second digit"
-        )
+        remedy = "use 1 to 9 as the second digit"
+        raise InputError(f"NACA {digits} has its camber at the leading edge", remedy)
     if len(digits) == 5:
         known = {"0": set(_SIMPLE), "1": set(_REFLEX)}.get(digits[2], set())
         if int(digits[1]) not in known:
-            raise InputError(
-                f"NACA {digits} has no tabulated mean line",
-                "use 10 to 50 or 21 to 51 as its second and third digit",
-            )
+            remedy = "use 10 to 50 or 21 to 51 as its second and third digit"
+            raise InputError(f"NACA {digits} has no tabulated mean line", remedy)
     return digits, match[2] is not None
 
 

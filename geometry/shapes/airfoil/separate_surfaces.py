@@ -19,10 +19,7 @@ _WEDGE = 0.02  # near an edge the least thickness grows from nothing by this muc
 def moved_apart(ring: Floats, nose: int) -> Floats:
     """Return a ring (n, 2) whose surfaces are at least twice `MOST` chords apart, as far as `MOST` suffices.
 
-    Parameters
-    ----------
-    ring : clockwise from the trailing edge, which stays, as does the nose.
-    nose : index of the leading edge.
+    It runs clockwise from the trailing edge, which stays, as does the leading edge, the point `nose`.
     """
     edge = ring[0]
     axis = ring[nose] - edge

@@ -21,7 +21,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.conformal.spacing import conformal_knots
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.shapes.airfoil.te_fillet import half_rounds
+from meshonet.geometry.shapes.airfoil.trailing_edge import half_rounds
 from meshonet.geometry.spacing.along_curve import on_corners
 from meshonet.geometry.spacing.laws import LAWS, TanhLaw
 from meshonet.geometry.spacing.sampling import Sampling
@@ -44,18 +44,14 @@ class Stations:
     """What the distribution of nodes depends on: arc lengths on the curve of an airfoil, and two lengths."""
 
     curve: Curve
-    lower: float
+    half_base: float
+    """Where the lower side begins; 0 when the trailing edge is sharp."""
     nose: float
     upper: float
     chord: float
     nose_radius: float
     rounded: bool = False
-    """The base between `upper` and `lower` has no corners."""
-
-    @property
-    def half_base(self) -> float:
-        """Half the width of the blunt base, 0 when sharp."""
-        return self.lower
+    """The base has no corners."""
 
 
 @dataclass(frozen=True)
@@ -80,35 +76,26 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
     the edge is blunt; ``uniform`` has equal steps on a side; ``curvature`` follows
     `meshonet.geometry.spacing.size_field`.
 
-    Parameters
-    ----------
-    stations : of the airfoil.
-    ni : nodes, the last one being the first again.
-    sampling : spacing, `le_spacing` and `te_spacing` (met to 1 %, in chords).
+    `le_spacing` and `te_spacing` are met to 1 %.
 
-    Raises
-    ------
-    InputError
-        too few nodes, or steps that cannot be met with them.
+    Raises InputError: too few nodes, or steps that cannot be met with them.
     """
     least = 7 if stations.half_base else 5
     if ni < least:
         raise InputError(f"{ni} nodes around an airfoil", f"use at least {least}")
     steps_given = sampling.le_spacing is not None or sampling.te_spacing is not None
     if steps_given and not LAWS[sampling.spacing].sets_ends:
-        raise InputError(
-            f"{sampling.spacing} spacing leaves no cell size to choose",
-            "use tanh, cosine or curvature with it",
-        )
+        remedy = "use tanh, cosine or curvature with it"
+        raise InputError(f"{sampling.spacing} spacing leaves no cell size to choose", remedy)
     if sampling.spacing == "conformal":
         blunt = stations.half_base and not stations.rounded
-        corners = np.array([stations.lower, stations.upper]) if blunt else np.zeros(0)
+        corners = np.array([stations.half_base, stations.upper]) if blunt else np.zeros(0)
         return _on_inner_corners(conformal_knots(stations.curve, corners, ni), stations)
     plan = _plan(stations, ni - 1, sampling)
     if sampling.spacing == "curvature":
         sides = arcs_by_curvature(
             stations.curve,
-            (stations.lower, stations.nose, stations.upper),
+            (stations.half_base, stations.nose, stations.upper),
             round(2 * plan.cells),
             chord=stations.chord,
             steps=(plan.te, plan.le),
@@ -117,10 +104,10 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
         )
     else:
         q = np.arange(1, math.ceil(plan.cells)) / plan.cells
-        lower = stations.lower + _side(stations.nose - stations.lower, plan, sampling, q)
+        lower = stations.half_base + _side(stations.nose - stations.half_base, plan, sampling, q)
         upper = stations.upper - _side(stations.upper - stations.nose, plan, sampling, q)
         nose = [stations.nose] if float(plan.cells).is_integer() else []
-        sides = np.concatenate([[stations.lower], lower, nose, upper[::-1], [stations.upper]])
+        sides = np.concatenate([[stations.half_base], lower, nose, upper[::-1], [stations.upper]])
     if plan.half == 0:
         arcs = sides
     else:
@@ -132,8 +119,8 @@ def wall_arcs(stations: Stations, ni: int, sampling: Sampling) -> Floats:
 def _on_inner_corners(arcs: Floats, stations: Stations) -> Floats:
     """Return the arcs with the corners of the two sides on nodes; the trailing edge's are there already."""
     corners = stations.curve.corners
-    inside = corners[(corners > stations.lower) & (corners < stations.upper)]
-    ends = np.searchsorted(arcs, [stations.lower, stations.upper])
+    inside = corners[(corners > stations.half_base) & (corners < stations.upper)]
+    ends = np.searchsorted(arcs, [stations.half_base, stations.upper])
     return on_corners(arcs, inside, fixed=(int(ends[0]), int(ends[1])))
 
 
@@ -156,7 +143,7 @@ def _plan(stations: Stations, cells: int, sampling: Sampling) -> Plan:
             left = cells - sum(len(part) - 1 for part in base)
             plan = replace(plan, cells=0.5 * left, te=te, base=base)
     plan = replace(plan, te=wanted_te or plan.te, le=wanted_le or plan.le)
-    side = min(stations.nose - stations.lower, stations.upper - stations.nose)
+    side = min(stations.nose - stations.half_base, stations.upper - stations.nose)
     if plan.te + plan.le >= side:
         raise InputError(
             f"cells of {plan.te / stations.chord:.3g} and {plan.le / stations.chord:.3g} chords fill a side",
@@ -172,7 +159,7 @@ def _natural(stations: Stations, plan: Plan, sampling: Sampling) -> Plan:
     sqrt(r c / 2) π / n with the nose radius r; at a sharp edge see `_EDGE_STEP`.
     """
     n = plan.cells
-    side = 0.5 * (stations.upper - stations.lower)
+    side = 0.5 * (stations.upper - stations.half_base)
     mean = side / n
     if sampling.spacing == "uniform":
         return replace(plan, te=mean, le=mean)

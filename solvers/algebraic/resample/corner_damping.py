@@ -29,9 +29,7 @@ NEAR, FAR = 4.0, 10.0
 def openings(z: Any, xp: Any) -> Any:
     """Return how much is taken out at the four corners (.., 2, 2), 0 to 1, of grids `z` (.., m, n), complex.
 
-    Parameters
-    ----------
-    xp : numpy or torch.
+    `xp`: numpy or torch.
     """
     west_east = xp.stack([z[..., 0, :], z[..., -1, :]], -2)
     beside = xp.stack([z[..., 1, :], z[..., -2, :]], -2)

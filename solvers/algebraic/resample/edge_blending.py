@@ -14,16 +14,13 @@ from __future__ import annotations
 
 from typing import Any
 
-REACH = 2.0
-"""Steps of the edge over which its mismatch is blended."""
+REACH = 2.0  # steps of the edge over which its mismatch is blended
 
 
 def inwards(planes: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
     """Return shares (.., m, n) of south, north, west and east at the nodes of `planes` (.., 2, m, n).
 
-    Parameters
-    ----------
-    xp : numpy or torch.
+    `xp`: numpy or torch.
     """
     south, north = _both(planes, xp)
     west, east = (xp.swapaxes(share, -1, -2) for share in _both(xp.swapaxes(planes, -1, -2), xp))

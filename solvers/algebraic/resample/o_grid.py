@@ -24,8 +24,7 @@ from meshonet.solvers.algebraic.resample.spline import bending, places, spline_m
 STEEP, FLAT = 1.15, 0.5
 """Slopes of the rising cubic in harmonic means of both steps, between which they are those of a spline."""
 
-SQUARINGS = 3
-"""Squarings that make the eighth power."""
+SQUARINGS = 3  # squarings that make the eighth power
 
 
 def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
@@ -55,9 +54,7 @@ def evaluate_around(coarse: Floats, boundary: Boundary) -> Floats:
 def along_lines(z: Any, nj: int, xp: Any = np) -> tuple[Any, Any]:
     """Return nj nodes on each of the lines `z` (..., n), complex, and their shares of its length.
 
-    Parameters
-    ----------
-    xp : the module, numpy or torch, that `z` is an array of.
+    `xp`: the module, numpy or torch, that `z` is an array of.
     """
     n = z.shape[-1]
     moves = z[..., 1:] - z[..., :-1]

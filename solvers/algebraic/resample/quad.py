@@ -30,8 +30,7 @@ Sides = tuple[Floats, Floats, Floats, Floats]
 
 Straight = NDArray[np.uint8]
 
-CORNERS = [0, 1, -2, -1]
-"""Rows and columns of a grid that tell how wide its corners open."""
+CORNERS = [0, 1, -2, -1]  # rows and columns of a grid that tell how wide its corners open
 
 WIDER = (0, 1, 3)
 """Coarse cells beyond those with folds whose lines become straight, one try after another; at last all do."""
@@ -49,10 +48,7 @@ def evaluate(coarse: Floats, sides: Sides) -> Floats:
 def mended(coarse: Floats, sides: tuple[Floats, ...], nodes: Floats) -> Straight | None:
     """Evaluate a valid grid `coarse` (2, m, n) again, in place, whose planes `nodes` (2, ni, nj) are folded.
 
-    Returns
-    -------
-    numpy.ndarray
-        (m, n), 1 at coarse nodes around which lines became straight; None where that is of no use.
+    Returns an array (m, n), 1 at coarse nodes around which lines became straight; None where that is no use.
     """
     if count_folded(coarse.transpose(1, 2, 0)):
         return None

@@ -24,10 +24,8 @@ from meshonet.geometry.arrays import Floats
 def bending(m: int, periodic: bool) -> Floats:
     """Return the matrix (m, m) that takes values at m uniform knots to the second derivatives there.
 
-    Parameters
-    ----------
-    m : knots, at least 2; the last repeats the first when `periodic`. 2 give a straight line, 3 a parabola.
-    periodic : the spline is.
+    `m`: knots, at least 2; the last repeats the first when `periodic`. 2 give a straight line, 3 a parabola.
+    `periodic`: the spline is.
     """
     if m == 2 or (periodic and m == 3):
         return np.zeros((m, m))
@@ -90,8 +88,6 @@ def places(m: int, n: int) -> tuple[NDArray[np.intp], Floats]:
 def spline_matrix(m: int, n: int, periodic: bool = False) -> Floats:
     """Return the matrix (n, m) that takes values at m uniform knots to the spline at n uniform places.
 
-    Examples
-    --------
     >>> cubes = np.arange(5.0) ** 3
     >>> np.abs(spline_matrix(5, 9) @ cubes - np.linspace(0, 4, 9) ** 3).max() < 1e-12
     np.True_

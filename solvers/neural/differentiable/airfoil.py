@@ -10,44 +10,27 @@ import torch
 from torch import Tensor
 
 from meshonet.geometry.errors import InputError
+from meshonet.solvers.conformal import strip
 from meshonet.solvers.conformal.bisector import LARGEST, fading, shifts
 from meshonet.solvers.conformal.evaluate import StripGrid
-from meshonet.solvers.conformal.strip import (
-    MODES,
-    across,
-    from_columns,
-    harmonic,
-    interpolation,
-    modes,
-    smoothing,
-    to_columns,
-    wavenumbers,
-)
+from meshonet.solvers.conformal.strip import MODES, across, smoothing, wavenumbers
 from meshonet.solvers.neural.differentiable.lift import TorchWalls, torch_walls
-from meshonet.solvers.neural.differentiable.sides import as_numpy, check_levels, check_sides
+from meshonet.solvers.neural.differentiable.sides import as_numpy, check_sides
 from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
 from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import load
 from meshonet.solvers.neural.strip.encoding import decode, encode
 from meshonet.solvers.neural.strip.operator import StripOperator
 
-CLOSED = 1e-2
-"""What is left of an angle's difference (radians) where a corner counts as halved."""
+CLOSED = 1e-2  # what is left of an angle's difference (radians) where a corner counts as halved
 
 
 class AirfoilGrids:
     """The airfoil operator as a differentiable function.
 
-    Parameters
-    ----------
-    model : a strip operator, its name or path, or ``base`` for the harmonic base with no network.
-    polish : Picard steps after it.
-    device : torch's name of where to compute; the lifts of the bodies are computed there too.
-
-    Raises
-    ------
-    InputError
-        no such model, or one that cannot be read or is of another kind.
+    `model`: a strip operator, its name or path, or ``base`` for the harmonic base with no network; `polish`:
+    Picard steps after it; `device`: torch's name of where to compute; the lifts of the bodies are computed
+    there too. Raises InputError: no such model, or one that cannot be read or is of another kind.
     """
 
     def __init__(self, model: str | Operator = "airfoil-o", polish: int = 2, device: str = "cpu") -> None:
@@ -61,24 +44,16 @@ class AirfoilGrids:
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
 
-        Parameters
-        ----------
-        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from the
-            trailing edge, the last one the first.
-        nj : nodes from wall to far field.
-
-        Raises
-        ------
-        InputError
-            a body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
+        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, float64, clockwise from
+        the trailing edge, the last one the first; `nj`: nodes from wall to far field. Raises InputError: a
+        body that cannot be lifted; tensors of other shapes or not float64; fewer than 2 nodes away.
         """
-        check_sides(torch.float64, 4, south=south, north=north)
-        check_levels(nj)
+        check_sides(torch.float64, 4, nj, south=south, north=north)
         edges = [torch.complex(edge[:, :-1, 0], -edge[:, :-1, 1]).to(self._device) for edge in (south, north)]
         bodies = [torch_walls(z, far) for z, far in zip(*edges, strict=True)]
         wall, far = (torch.stack([getattr(body, name) for body in bodies]) for name in ("wall", "far"))
-        a, b = modes(wall, torch), modes(far, torch)
-        c = harmonic(a, b, across().eta, torch)
+        a, b = strip.modes(wall, torch), strip.modes(far, torch)
+        c = strip.harmonic(a, b, across().eta, torch)
         if self._correction is not None:
             c = c + self._correction(a, b, torch.tensor([body.hand for body in bodies], device=self._device))
         for _ in range(self._polish):
@@ -110,10 +85,7 @@ class _Correction:
         self._scale = operator.scale
 
     def __call__(self, wall: Tensor, far: Tensor, hand: Tensor) -> Tensor:
-        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative.
-
-        A body that is its own mirror image (0) has the mean of both, whose slopes are symmetric too.
-        """
+        """Return the answer to bodies: to the mirror image, and mirrored, where `hand` is negative."""
         flip, even = (hand < 0)[:, None], hand == 0
         answer = self._answer(*(torch.where(flip, side.conj(), side) for side in (wall, far)))
         answer = torch.where(flip[..., None], answer.conj(), answer)
@@ -141,12 +113,12 @@ def _picard(c: Tensor) -> Tensor:
     smooth = torch.tensor(smoothing(), device=c.device) / stiffness
     ce = d1 @ levels
     parts = (1j * k * levels, -(k**2) * levels, ce, 1j * k * ce, d2 @ levels)
-    Wt, Wtt, We, Wte, Wee = (to_columns(part, torch)[:, 1:-1] for part in parts)
+    Wt, Wtt, We, Wte, Wee = (strip.to_columns(part, torch)[:, 1:-1] for part in parts)
     Wt = Wt + 1j
     alpha, gamma = torch.abs(We) ** 2, torch.abs(Wt) ** 2
     beta = (torch.conj(Wt) * We).real
     residual = (alpha * Wtt - 2.0 * beta * Wte + gamma * Wee) * (2.0 / (alpha / (T * T) + gamma))
-    update = vectors @ ((inverse @ from_columns(residual, torch)) * smooth)
+    update = vectors @ ((inverse @ strip.from_columns(residual, torch)) * smooth)
     return (levels - torch.nn.functional.pad(update, (0, 0, 1, 1))).mT
 
 
@@ -154,7 +126,7 @@ def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
     """Return F (batch, n, nj) at the nodes by all modes of the walls; those above `MODES` stay at theirs."""
     n, eta = wall.shape[1], np.linspace(0.0, 1.0, nj)
     theta = _theta(n, wall)[:, None]
-    low = c @ torch.as_tensor(interpolation(eta), device=c.device).to(c.dtype)
+    low = c @ torch.as_tensor(strip.interpolation(eta), device=c.device).to(c.dtype)
     F = torch.exp(1j * theta * wavenumbers(wall, torch)) @ low
     beyond = np.arange(MODES + 1, n // 2 + 1)
     if not len(beyond):
@@ -169,10 +141,7 @@ def _evaluated(c: Tensor, wall: Tensor, far: Tensor, nj: int) -> Tensor:
 
 
 def _nudge(body: TorchWalls, c: Tensor, first: Tensor, nj: int) -> Tensor:
-    """Return what is added to phi (n, nj), so that the first lines off the corners halve their angles.
-
-    The shifts are those that `bisector` finds; their slopes are those of the equations they solve.
-    """
+    """Return what is added to phi (n, nj), so that the first lines off the corners halve their angles."""
     n, corners = len(first), list(body.corners)
     eta = np.linspace(0.0, 1.0, nj)
     if not corners or nj < 4:

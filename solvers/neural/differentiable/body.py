@@ -14,13 +14,7 @@ from meshonet.solvers.algebraic.resample import corner_damping
 from meshonet.solvers.algebraic.resample.o_grid import SQUARINGS, along_lines
 from meshonet.solvers.algebraic.resample.spline import spline_matrix
 from meshonet.solvers.neural.differentiable.resample import between
-from meshonet.solvers.neural.differentiable.sides import (
-    NetworkGrids,
-    as_complex,
-    as_numpy,
-    check_levels,
-    check_sides,
-)
+from meshonet.solvers.neural.differentiable.sides import NetworkGrids, as_complex, as_numpy, check_sides
 from meshonet.solvers.neural.quad.encoding import LATENT
 from meshonet.solvers.neural.quad.inside import inside, slope
 from meshonet.solvers.neural.quad.o_grids import NOT_ROUND, answered
@@ -37,20 +31,12 @@ class BodyGrids(NetworkGrids):
     def __call__(self, south: Tensor, north: Tensor, nj: int) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of O grids around bodies.
 
-        Parameters
-        ----------
-        south, north : (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one the
-            first.
-        nj : nodes from wall to far field.
-
-        Raises
-        ------
-        InputError
-            tensors of other shapes, or of another dtype than the network's; fewer than 2 nodes away; walls
-            that do not go once round a middle of the body.
+        `south`, `north`: (batch, ni, 2) nodes of the bodies and of the far fields, clockwise, the last one
+        the first; `nj`: nodes from wall to far field. Raises InputError: tensors of other shapes, or of
+        another dtype than the network's; fewer than 2 nodes away; walls that do not go once round a middle of
+        the body.
         """
-        check_sides(self._dtype, 4, south=south, north=north)
-        check_levels(nj)
+        check_sides(self._dtype, 4, nj, south=south, north=north)
         sides = [edge.movedim(-1, 1) for edge in (south, north)]
         body, far = (as_complex(side) for side in sides)
         walls = torch.stack([as_complex(between(side, AROUND)) for side in sides], 2)

@@ -12,15 +12,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from meshonet.geometry.conformal.lift import (
-    SECOND_PRONG,
-    Corner,
-    Lift,
-    beside,
-    follow,
-    lift_body,
-    removable,
-)
+from meshonet.geometry.conformal.lift import SECOND_PRONG, Corner, Lift, beside, follow, lift_body, removable
 from meshonet.geometry.polygon.mirror import farthest, handedness
 from meshonet.solvers.neural.differentiable.sides import as_numpy
 from meshonet.solvers.neural.quad.unrolled import middles
@@ -47,10 +39,7 @@ class TorchWalls:
 def torch_walls(z: Tensor, far: Tensor) -> TorchWalls:
     """Return the walls (n,) of a body in the strip, both walked counter-clockwise.
 
-    Raises
-    ------
-    InputError
-        the body cannot be lifted.
+    Raises InputError: the body cannot be lifted.
     """
     nodes, origin = z, z[0]
     hand, _ = handedness(as_numpy(z), as_numpy(far))
@@ -88,8 +77,7 @@ def _straightened(
     ends = [(i, 1.0 + turn[i] / PI) for i in base]
     if sharp:
         ends = [(0, 0.5 * (1.0 + turn[0] / PI))]
-    removed = []
-    pole = middles(zeta[None], torch)[0]
+    removed, pole = [], middles(zeta[None], torch)[0]
     for i, k in ends:
         if removable(float(k.detach())):
             p = zeta[i]

@@ -14,8 +14,7 @@ from meshonet.solvers.neural.quad.coarse_grids import share
 from meshonet.solvers.neural.quad.encoding import LATENT, SCALE, WINSLOW, features, frame
 from meshonet.solvers.neural.quad.picard import AFTER, approach, nodes_after
 
-Sides = tuple[Tensor, ...]
-"""South, north (batch, 2, ni), west and east (batch, 2, nj)."""
+Sides = tuple[Tensor, ...]  # south, north (batch, 2, ni), west and east (batch, 2, nj)
 
 
 class QuadGrids(NetworkGrids):
@@ -27,15 +26,9 @@ class QuadGrids(NetworkGrids):
     def __call__(self, south: Tensor, north: Tensor, west: Tensor, east: Tensor) -> Tensor:
         """Return the nodes (batch, ni, nj, 2) of grids inside four edges each.
 
-        Parameters
-        ----------
-        south, north : (batch, ni, 2) nodes along xi, from west to east.
-        west, east : (batch, nj, 2) nodes along eta, from south to north; corners are shared.
-
-        Raises
-        ------
-        InputError
-            tensors of other shapes, or of another dtype than the network's.
+        `south`, `north`: (batch, ni, 2) nodes along xi, from west to east; `west`, `east`: (batch, nj, 2)
+        nodes along eta, from south to north; corners are shared. Raises InputError: tensors of other shapes,
+        or of another dtype than the network's.
         """
         check_sides(self._dtype, 2, south=south, north=north, west=west, east=east)
         sides = tuple(edge.movedim(-1, 1) for edge in (south, north, west, east))
@@ -85,10 +78,8 @@ def _moved(planes: Tensor, by: Tensor) -> Tensor:
 def interpolated(sides: Any, laws: Any) -> Tensor:
     """Return planes (batch, 2, ni, nj) by transfinite interpolation, as `meshonet.solvers.algebraic.tfi`.
 
-    Parameters
-    ----------
-    sides : south, north (batch, 2, ni), west, east (batch, 2, nj).
-    laws : parameters along them, 0 to 1, (batch, n) each.
+    `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj); `laws`: parameters along them, 0 to 1,
+    (batch, n) each.
     """
     south, north, west, east = sides
     s, n = (law[:, 1:-1, None] for law in laws[:2])

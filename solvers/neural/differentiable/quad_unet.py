@@ -23,10 +23,7 @@ from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 class GroupConvolution(nn.Module):
     """A convolution of `into` sets of channels to `out`, zero outside the grid.
 
-    Parameters
-    ----------
-    gain : of the random weights at the start, over He's.
-    around : the grid goes round along xi.
+    `gain`: of the random weights at the start, over He's; `around`: the grid goes round along xi.
     """
 
     places: Tensor
@@ -68,11 +65,8 @@ class Block(nn.Module):
 class QuadUNet(nn.Module):
     """Features of a grid to displacements of its nodes.
 
-    Parameters
-    ----------
-    widths : sets of eight channels on each level, the finest first; each level has every second node.
-    blocks : residual blocks on each level, on the way down and on the way up.
-    around : of O grids, unrolled: the grid goes round along xi.
+    `widths` are sets of eight channels on each level, the finest first, each with every second node; `blocks`
+    residual blocks on each, on the way down and on the way up; `around`, O grids go round along xi.
     """
 
     seen: Tensor

@@ -18,9 +18,7 @@ from meshonet.solvers.algebraic.resample.spline import bending
 def evaluated(coarse: Tensor, sides: tuple[Tensor, ...]) -> Tensor:
     """Return the planes (batch, 2, ni, nj) inside `sides` of grids `coarse` (batch, 2, m, n).
 
-    Parameters
-    ----------
-    sides : south, north (batch, 2, ni), west, east (batch, 2, nj).
+    `sides`: south, north (batch, 2, ni), west, east (batch, 2, nj).
     """
     nodes = _evaluated(coarse, sides)
     where = folded(nodes.detach()).nonzero()[:, 0]

@@ -14,16 +14,13 @@ from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.quad.operator import QuadOperator
 from meshonet.solvers.neural.registry import load
 
-SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}
-"""The operator of the quad network for a topology."""
+SHIPPED: dict[Topology, str] = {"quad": "quad-general", "o": "hole-o"}  # by topology
 
 
-def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:
+def check_sides(dtype: torch.dtype, least: int, nj: int = 2, **sides: Tensor) -> None:
     """Raise InputError unless opposite sides are (batch, n, 2) alike, of `dtype`, n at least `least`.
 
-    Parameters
-    ----------
-    sides : by name, each beside the one it is opposite to.
+    `sides`: by name, each beside the one it is opposite to.
     """
     names = list(sides)
     for name, side in sides.items():
@@ -39,10 +36,6 @@ def check_sides(dtype: torch.dtype, least: int, **sides: Tensor) -> None:
             raise InputError(problem, "opposite sides need equal counts")
     if len({side.shape[0] for side in sides.values()}) > 1:
         raise InputError("the sides are of different batches", "give as many of every side")
-
-
-def check_levels(nj: int) -> None:
-    """Raise InputError unless there is a wall and a far field."""
     if nj < 2:
         raise InputError(f"nj is {nj} nodes", "use at least 2")
 
@@ -50,16 +43,9 @@ def check_levels(nj: int) -> None:
 class NetworkGrids:
     """An operator of the quad network as a differentiable function.
 
-    Parameters
-    ----------
-    model : name of a shipped operator, the path of a file, or such an operator itself.
-    device : torch's name of where to compute.
-    dtype : torch's type of the arithmetic.
-
-    Raises
-    ------
-    InputError
-        no such model, or one that cannot be read or makes grids of another topology.
+    `model`: name of a shipped operator, the path of a file, or such an operator itself; `device`: torch's
+    name of where to compute; `dtype`: torch's type of the arithmetic. Raises InputError: no such model, or
+    one that cannot be read or makes grids of another topology.
     """
 
     topology: ClassVar[Topology]
@@ -78,9 +64,7 @@ class NetworkGrids:
         self._network.to(device=device, dtype=dtype).requires_grad_(False)
 
     def _answer(self, seen: Tensor) -> Tensor:
-        """Return the network's answer (batch, m, n) to features."""
-        answer: Tensor = self._network(seen)[:, self._head]
-        return answer
+        return self._network(seen)[:, self._head]
 
 
 def as_complex(planes: Tensor) -> Tensor:

@@ -26,10 +26,7 @@ class Spectral(nn.Module):
 class StripFNO(nn.Module):
     """Channels and scalars of `meshonet.solvers.neural.strip.encoding` to `outputs` channels.
 
-    Parameters
-    ----------
-    inputs, scalars, outputs : channel counts.
-    width, modes, layers : of the hidden state.
+    `inputs`, `scalars`, `outputs`: channel counts; `width`, `modes`, `layers`: of the hidden state.
     """
 
     def __init__(

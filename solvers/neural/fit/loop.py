@@ -1,22 +1,64 @@
-"""The training loop of every model, read from top to bottom."""
+"""The training loop of every model, read from top to bottom; what it trains, and where it goes on from."""
 
 from __future__ import annotations
 
+import os
 import time
+from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
-from torch import Tensor
+from torch import Tensor, nn
 
 from meshonet.geometry.errors import InputError, SolverError
-from meshonet.solvers.neural.fit.checkpoint import load_checkpoint, save_checkpoint
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.fit.team import Team
+
+SLOWER = "resume from the last checkpoint with a smaller learning rate"
+
+FREE = ("rate",)  # settings that may change when a run goes on: a smaller rate is that remedy
+
+
+class Task(nn.Module):
+    """A model with its training set; parameters and data are on one device.
+
+    `count`: training shapes; `parts`: names of the parts of the loss.
+    """
+
+    count: int
+    parts: ClassVar[tuple[str, ...]] = ("loss",)
+
+    @abstractmethod
+    def forward(self, rows: Tensor, step: int) -> Tensor:
+        """Return the parts of the loss over the shapes `rows`, weighted, each a mean over them.
+
+        `step` seeds what is drawn at random, so that a resumed run and every process draw the same.
+        """
+
+    def validate(self) -> dict[str, float]:
+        """Return ``loss`` and other figures over the held-out shapes; nothing when there are none."""
+        return {}
+
+    @abstractmethod
+    def figures(self, epoch: int) -> dict[str, Any]:
+        """Return what the trained model does on the held-out shapes; its weights are of `epoch`."""
+
+    @abstractmethod
+    def write(self, path: Path, *, recipe: Mapping[str, Any], figures: Mapping[str, Any]) -> None:
+        """Write the model file."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A task, the facts for its recipe, and further facts that a resumed run must have in common."""
+
+    task: Task
+    recipe: Mapping[str, Any]
+    identity: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -65,21 +107,16 @@ def fit(
     """Train `task` in place and return the epoch whose weights it has.
 
     A checkpoint stands at `checkpoint` after every `plan.checkpoint_every` epochs; `resume` starts from it.
-    With `plan.patience` the weights are those of the least held-out loss.
-
-    Parameters
-    ----------
-    facts : what a checkpoint must have in common with this run; ``model`` among them.
-    report : told every `plan.log_every` epochs and at the end.
-
-    Raises
-    ------
-    InputError
-        a checkpoint of another model or of other settings; patience, and no shapes held out.
-    SolverError
-        a loss or a weight that is not finite, not enough memory; the last checkpoint stays.
+    With `plan.patience` the weights are those of the least held-out loss. `facts`: what a checkpoint must
+    have in common with this run; ``model`` among them; `report`: told every `plan.log_every` epochs and at
+    the end. Raises InputError: a checkpoint of another model or of other settings; patience, and no shapes
+    held out. Raises SolverError: a loss or a weight that is not finite, not enough memory; the last
+    checkpoint stays.
     """
-    optimiser = _optimiser(task, plan)
+    trained = list(task.parameters())
+    optimiser: torch.optim.Optimizer = torch.optim.Adam(trained, plan.rate, fused=True)
+    if plan.weight_decay:
+        optimiser = torch.optim.AdamW(trained, plan.rate, weight_decay=plan.weight_decay)
     state = _State()
     saved = load_checkpoint(checkpoint, facts) if resume else None
     if saved is not None:
@@ -94,28 +131,21 @@ def fit(
         last = state.epoch == plan.epochs
         held_out = _judged(task, plan, state) if last or state.epoch % plan.validate_every == 0 else {}
         stop = plan.patience is not None and state.epoch - state.best_epoch >= plan.patience
-        if (last or stop or state.epoch % plan.log_every == 0) and report is not None:
-            spent = time.perf_counter() - begun
-            report(_progress(task, plan, state, rate, held_out, spent, first))
         if last or stop or state.epoch % plan.log_every == 0:
+            if report is not None:
+                spent = time.perf_counter() - begun
+                report(_progress(task, plan, state, rate, held_out, spent, first))
             state.summed, state.steps = 0.0, 0
         if team.leads and (stop or last or state.epoch % plan.checkpoint_every == 0):
             kept = {"facts": dict(facts), "epoch": state.epoch, "state": vars(state)}
-            trained = {name: value.detach().cpu() for name, value in task.named_parameters()}
-            save_checkpoint(checkpoint, {"task": trained, "optimiser": optimiser.state_dict(), **kept})
+            weights = {name: value.detach().cpu() for name, value in task.named_parameters()}
+            save_checkpoint(checkpoint, {"task": weights, "optimiser": optimiser.state_dict(), **kept})
         if stop:
             break
     if state.kept is None:
         return state.epoch
     task.load_state_dict({**task.state_dict(), **state.kept})
     return state.best_epoch
-
-
-def _optimiser(task: Task, plan: Plan) -> torch.optim.Optimizer:
-    parameters = list(task.parameters())
-    if plan.weight_decay:
-        return torch.optim.AdamW(parameters, plan.rate, weight_decay=plan.weight_decay)
-    return torch.optim.Adam(parameters, plan.rate, fused=True)
 
 
 def _wrapped(task: Task, plan: Plan, team: Team) -> Callable[[Tensor, int], Tensor]:
@@ -149,10 +179,7 @@ def _one_epoch(
             raise _explained(error, plan) from error
         parts = team.mean(parts.detach())
         if not torch.isfinite(parts).all():
-            raise SolverError(
-                f"the loss is not finite in epoch {state.epoch + 1}; resume from the "
-                "last checkpoint with a smaller learning rate"
-            )
+            raise SolverError(f"the loss is not finite in epoch {state.epoch + 1}; {SLOWER}")
         if plan.clip is not None:
             torch.nn.utils.clip_grad_norm_(task.parameters(), plan.clip)
         optimiser.step()
@@ -165,16 +192,12 @@ def _explained(error: Exception, plan: Plan) -> Exception:
     """Return what to raise for an error of a step: a compiler or memory that is missing is the user's."""
     if plan.compiled and type(error).__module__.startswith(("torch._dynamo", "torch._inductor")):
         first = str(error).splitlines()[0]
-        return InputError(
-            f"torch.compile cannot ({first})", "leave it out, or install a C++ compiler", parameter="compile"
-        )
-    short = isinstance(error, (torch.OutOfMemoryError, MemoryError)) or "allocate memory" in str(error)
-    if not short:
+        remedy = "leave it out, or install a C++ compiler"
+        return InputError(f"torch.compile cannot ({first})", remedy, parameter="compile")
+    if not isinstance(error, torch.OutOfMemoryError | MemoryError) and "allocate memory" not in str(error):
         return error
-    return SolverError(
-        f"not enough memory for {plan.batch} shapes a step; use a smaller batch or fewer points (the last "
-        "checkpoint is kept)"
-    )
+    remedy = "use a smaller batch or fewer points (the last checkpoint is kept)"
+    return SolverError(f"not enough memory for {plan.batch} shapes a step; {remedy}")
 
 
 def _judged(task: Task, plan: Plan, state: _State) -> dict[str, float]:
@@ -196,7 +219,51 @@ def _progress(
 ) -> Progress:  # fmt: skip
     means = (state.summed / state.steps).tolist()
     parts = dict(zip(task.parts, means, strict=True))
-    done = state.epoch - first
-    seen = state.epoch * task.count
+    done, seen = state.epoch - first, state.epoch * task.count
     speed = done * task.count / spent
     return Progress(state.epoch, plan.epochs, sum(means), parts, held_out, rate, seen, spent, speed, done)
+
+
+def beside(output: Path) -> Path:
+    """Return the checkpoint of a model file."""
+    return output.with_name(output.name + ".checkpoint")
+
+
+def save_checkpoint(path: Path, state: Mapping[str, Any]) -> None:
+    """Replace the checkpoint at `path`; a machine that stops in between leaves the last one.
+
+    Raises SolverError: a weight is not finite: the last checkpoint stays.
+    """
+    for name, value in state["task"].items():
+        if not torch.isfinite(value).all():
+            raise SolverError(f"{name} is not finite after epoch {state['epoch']}; {SLOWER}")
+    part = path.with_name(path.name + ".part")
+    with part.open("wb") as file:
+        torch.save(dict(state), file)
+        file.flush()
+        os.fsync(file.fileno())
+    part.replace(path)
+
+
+def load_checkpoint(path: Path, facts: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return the state that was saved, None when there is no file.
+
+    Raises InputError: a file that is no checkpoint, or one of another model or of a run with other settings.
+    """
+    if not path.exists():
+        return None
+    source = str(path)
+    try:
+        state: dict[str, Any] = torch.load(path, weights_only=True, map_location="cpu")
+        had = state["facts"]
+    except Exception as error:
+        raise InputError(f"not a checkpoint ({type(error).__name__})", "remove it", source=source) from error
+    if had.get("model") != facts.get("model"):
+        problem = f"the checkpoint is of model {had.get('model')}, not {facts.get('model')}"
+        raise InputError(problem, "remove it, or write to another file", source=source)
+    keys = [key for key in (*facts, *had) if key not in FREE and had.get(key) != facts.get(key)]
+    if keys:
+        settings = ", ".join(f"{key} {had.get(key)!r}" for key in dict.fromkeys(keys))
+        problem = f"the checkpoint was made with {settings}"
+        raise InputError(problem, "repeat that or remove it", source=source)
+    return state

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.compare import compare
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.solvers.neural.fit.task import Task
+from meshonet.solvers.neural.fit.loop import Task
 from meshonet.solvers.neural.model_file import PAPER, write_model
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Arrays, initial
@@ -25,17 +25,10 @@ from meshonet.solvers.neural.samples import Samples
 class ModelTask(Task):
     """A model on solved grids.
 
-    Parameters
-    ----------
-    model : what is trained.
-    training : its shapes.
-    targets : (n, ni, nj, 2) what the network is to answer for them.
-    points : places drawn for a step, inside and on the boundary; None takes all.
-    seed : of the first weights and of the places.
-
-    Attributes
-    ----------
-    samples : on which `figures` judges the trained model, by their splits; at first those of training.
+    `model`: what is trained; `training`: its shapes; `targets`: (n, ni, nj, 2) what the network is to answer
+    for them; `points`: places drawn for a step, inside and on the boundary; None takes all; `seed`: of the
+    first weights and of the places. `samples`: on which `figures` judges the trained model, by their splits;
+    at first those of training.
     """
 
     def __init__(

@@ -14,18 +14,17 @@ from torch.nn.functional import mse_loss
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.conformal.harmonic import extend
+from meshonet.solvers.neural.fit.loop import Run
 from meshonet.solvers.neural.fit.model_task import ModelTask, tensor, tensors
 from meshonet.solvers.neural.fit.physics_task import PhysicsTask
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.models.architecture import Architecture
 from meshonet.solvers.neural.models.mgnet import MGNet
 from meshonet.solvers.neural.registry import architecture, settings_of
 from meshonet.solvers.neural.samples import Samples
 
-PLAN = Plan(epochs=15_000, points=(1000, 200))
-"""The authors' published settings, with their thirty shapes in one step and places drawn at random."""
+PLAN = Plan(epochs=15_000, points=(1000, 200))  # the authors' published settings
 
 HELD_OUT = 0
 
@@ -42,13 +41,8 @@ class OperatorTask(ModelTask):
 
     over the places of a step, in squares of the unit of length; error = answer - (grid - base). Where there
     is a base, both are divided by the mean square of grid - base, so that the loss is of the order of 1.
-
-    Parameters
-    ----------
-    model : what is trained.
-    training, held_out : its shapes.
-    points : places drawn for a step, inside and on the boundary; None takes all.
-    seed : of the first weights and of the places.
+    `model`: what is trained; `training`, `held_out`: its shapes; `points`: places drawn for a step, inside
+    and on the boundary; None takes all; `seed`: of the first weights and of the places.
     """
 
     parts: ClassVar[tuple[str, ...]] = ("interior", "boundary")
@@ -123,7 +117,6 @@ def differences(model: Architecture, samples: Samples) -> Floats:
 
 
 def _by_place(nodes: Floats) -> Floats:
-    """Return nodes (n, ni, nj, 2) as (ni nj, n, 2)."""
     return nodes.reshape(len(nodes), -1, 2).swapaxes(0, 1)
 
 
@@ -137,15 +130,8 @@ def run(
 ) -> Run:
     """Return what `train` needs of the training grids of `data`; its test grids are never trained on.
 
-    Parameters
-    ----------
-    held_out : training grids, spread evenly, that are kept out to watch the loss.
-    settings : of the model, in place of its defaults.
-
-    Raises
-    ------
-    InputError
-        too few grids; settings that the model does not have.
+    `held_out`: training grids, spread evenly, that are kept out to watch the loss; `settings`: of the model,
+    in place of its defaults. Raises InputError: too few grids; settings that the model does not have.
     """
     made = architecture(model, data.topology, settings)
     rows = np.arange(len(data)) if made.physics else data.where("train")

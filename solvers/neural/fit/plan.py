@@ -14,38 +14,23 @@ Device = Literal["auto", "cpu", "cuda"]
 
 @dataclass(frozen=True)
 class Plan:
-    """Settings of the loop.
+    """Settings of the loop."""
 
-    Parameters
-    ----------
-    epochs : passes over the training shapes.
-    batch : shapes a step.
-    rate : largest learning rate.
-    schedule : ``cosine`` to zero after `warm_up` steps; ``step``: times `decay` each `decay_every` epochs.
-    weight_decay : of AdamW; Adam when zero.
-    clip : largest norm of the gradient, or None.
-    points : places of the grid drawn at random for each step, inside and on the boundary; None takes all.
-    patience : stop when the held-out loss has not improved over so many epochs; None never stops.
-    log_every, validate_every : epochs between reports, and between evaluations of the held-out shapes.
-    checkpoint_every : epochs between checkpoints.
-    device, amp, compiled : where and how a step is computed.
-    """
-
-    epochs: int
-    batch: int = 30
-    rate: float = 1e-3
-    schedule: Schedule = "step"
+    epochs: int  # passes over the training shapes
+    batch: int = 30  # shapes a step
+    rate: float = 1e-3  # the largest learning rate
+    schedule: Schedule = "step"  # cosine: to zero after `warm_up` steps; step: by `decay` each `decay_every`
     warm_up: int = 0
     decay: float = 0.9
-    decay_every: int = 1000
-    weight_decay: float = 0.0
-    clip: float | None = None
-    points: tuple[int, int] | None = None
+    decay_every: int = 1000  # epochs
+    weight_decay: float = 0.0  # of AdamW; Adam when zero
+    clip: float | None = None  # largest norm of the gradient
+    points: tuple[int, int] | None = None  # drawn for each step, inside and on the boundary; None takes all
     seed: int = 0
-    patience: int | None = None
-    log_every: int = 1
-    validate_every: int = 1
-    checkpoint_every: int = 1
+    patience: int | None = None  # stop when the held-out loss has not improved over so many epochs
+    log_every: int = 1  # epochs between reports
+    validate_every: int = 1  # epochs between evaluations of the held-out shapes
+    checkpoint_every: int = 1  # epochs
     device: Device = "auto"
     amp: bool = False
     compiled: bool = False
@@ -57,10 +42,7 @@ class Plan:
     def kept(self, count: int, held_out: int, what: str) -> int:
         """Return how many of the `count` shapes, called `what`, are trained on beside those held out.
 
-        Raises
-        ------
-        InputError
-            none held out, or fewer than one batch to train on.
+        Raises InputError: none held out, or fewer than one batch to train on.
         """
         if held_out < 1 or count < held_out + self.batch:
             needed = max(held_out, 1) + self.batch

@@ -15,11 +15,10 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes, Floats, Topology
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.differentiable.quad_unet import QuadUNet
-from meshonet.solvers.neural.fit.angles import excess
+from meshonet.solvers.neural.fit.loop import Run, Task
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.quad_figures import held_out_figures
+from meshonet.solvers.neural.fit.quad_figures import excess, held_out_figures
 from meshonet.solvers.neural.fit.quad_grids import Quads
-from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import QUAD, write_model
 from meshonet.solvers.neural.operator import Operator
@@ -34,21 +33,15 @@ PLAN = Plan(
 
 HELD_OUT = 600
 
-AVERAGED = 0.999
-"""Of the running mean of the weights, whose answers count, each step keeps so much."""
+AVERAGED = 0.999  # of the running mean of the weights, whose answers count, each step keeps so much
 
 PARTS = {"winslow": 0.2, "variational": 1.0, "angles": 5.0, "widest": 1.0, "folds": 0.8}
 """Weights of the loss's parts: the distances from Winslow's and from variational grids, then the mean angle,
 the largest and the folds of the variational answer. Picard steps are all but Winslow's grids."""
 
-FADE_IN = (0.1, 0.3)
-"""Between these shares of the steps angles and folds come into the loss."""
-
-NEAR, CLOSE = 0.1, 3e-4
-"""Weight of the logarithm of the distance from Winslow's grids, and where it sets in."""
-
-STARTS = 8
-"""Columns that strips begin at in turn: those that the coarsest of four levels tells apart."""
+FADE_IN = (0.1, 0.3)  # between these shares of the steps angles and folds come into the loss
+NEAR, CLOSE = 0.1, 3e-4  # weight of the logarithm of the distance from Winslow's grids, and where it sets in
+STARTS = 8  # columns that strips begin at in turn: those that the coarsest of four levels tells apart
 
 
 @dataclass(frozen=True)
@@ -62,13 +55,8 @@ class Sizes:
 class QuadTask(Task):
     """The quad network: distances of steps to both targets' steps, then the angles of its answer as well.
 
-    Parameters
-    ----------
-    training, held_out : domains.
-    sizes : of the network.
-    steps : in the whole run.
-    device : to compute on.
-    weights : of the parts of the loss, by name.
+    `training`, `held_out`: domains; `sizes`: of the network; `steps`: in the whole run; `device`: to compute
+    on; `weights`: of the parts of the loss, by name.
     """
 
     parts: ClassVar[tuple[str, ...]] = tuple(PARTS)
@@ -81,21 +69,19 @@ class QuadTask(Task):
         steps: int,
         device: torch.device,
         weights: Mapping[str, float] = PARTS,
+        initial: Mapping[str, Floats] | None = None,
     ) -> None:
         super().__init__()
         self.weights = [weights[part] for part in PARTS]
         self.training_set, self.held_out, self.steps = training, held_out, steps
         self.around = training.around
         self.net = QuadUNet(sizes.widths, sizes.blocks, self.around)
+        if initial is not None:
+            self.net.load_state_dict({key: torch.from_numpy(array) for key, array in initial.items()})
         self.mean = copy.deepcopy(self.net).requires_grad_(requires_grad=False)
         self.count = len(training)
         self.to(device)
         self.device = device
-
-    def begin(self, weights: Mapping[str, Floats]) -> None:
-        """Start from `weights`."""
-        for net in (self.net, self.mean):
-            net.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
 
     def forward(self, rows: Tensor, step: int) -> Tensor:
         """Return the parts of the loss over the domains `rows`."""
@@ -165,10 +151,7 @@ def _further(z: Tensor, by: int) -> Tensor:
 
 
 def _error(answer: Tensor, goal: Tensor) -> Tensor:
-    """Return the mean relative error of the steps between nodes, and a little of the nodes themselves.
-
-    The logarithm keeps the few domains that are hard from ruling the rest.
-    """
+    """Return the mean relative error of the steps between nodes, and a little of the nodes themselves."""
     error = answer - goal
     total = 3.0 * error.abs().mean()
     rough = torch.zeros(len(goal), device=goal.device)
@@ -196,16 +179,9 @@ def run(
 ) -> Run:
     """Return what `train` needs; the last `held_out` domains are never trained on.
 
-    Parameters
-    ----------
-    initial : quad operator whose weights are the first, and whose sizes count.
-    weights : of parts of the loss, by name, other than those of `PARTS`.
-
-    Raises
-    ------
-    InputError
-        fewer domains than one batch beside those held out; a weight of no part, or one that is no number
-        from 0 on; an initial operator of another kind.
+    `initial`: quad operator whose weights are the first, and whose sizes count; `weights`: of parts of the
+    loss, by name, other than those of `PARTS`. Raises InputError: fewer domains than one batch beside those
+    held out; a weight of no part, or one that is no number from 0 on; an initial operator of another kind.
     """
     sizes, kept = sizes or Sizes(), plan.kept(len(data), held_out, "domains")
     if initial is not None:
@@ -215,9 +191,8 @@ def run(
     torch.manual_seed(plan.seed)
     steps = plan.epochs * -(-kept // plan.batch)
     parts = _weights(weights or {})
-    task = QuadTask(data[:kept], data[kept:], sizes, steps, team.device, parts)
-    if initial is not None:
-        task.begin(initial.weights)
+    begun = None if initial is None else initial.weights
+    task = QuadTask(data[:kept], data[kept:], sizes, steps, team.device, parts, begun)
     names = ("epochs", "batch", "rate", "warm_up", "weight_decay", "clip", "seed")
     facts = {key: getattr(plan, key) for key in names}
     facts |= {key: list(value) for key, value in asdict(sizes).items()}
@@ -227,7 +202,6 @@ def run(
 
 
 def _weights(changed: Mapping[str, float]) -> dict[str, float]:
-    """Return the weights of all parts of the loss, some of them changed."""
     for part, weight in changed.items():
         if part not in PARTS:
             problem = f"the quad operator's loss has no part {part!r}"

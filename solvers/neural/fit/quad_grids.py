@@ -13,7 +13,7 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.quad.edges import Edges, rims
+from meshonet.solvers.neural.quad.coarse_grids import Edges, rims
 from meshonet.solvers.neural.quad.encoding import HEADS, LATENT, frame
 from meshonet.solvers.neural.quad.picard import approached
 from meshonet.solvers.neural.quad.unrolled import AROUND, even, factors, middles, unrolled
@@ -49,12 +49,8 @@ class Quads:
 def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
     """Return the domains that datasets of Winslow's and of variational grids have in common, normalised.
 
-    A dataset's first grid says by which method all of it was solved; several may be of one method.
-
-    Raises
-    ------
-    InputError
-        no grids; grids by one of the methods only, or by others; as `quads`.
+    A dataset's first grid says by which method all of it was solved; several may be of one method. Raises
+    InputError: no grids; grids by one of the methods only, or by others; as `quads`.
     """
     groups: dict[str, list[Grid]] = {}
     for dataset in datasets:
@@ -71,20 +67,15 @@ def quads_of(datasets: Iterable[Iterable[Grid]]) -> Quads:
 def quads(variational: Samples, winslow: Samples) -> Quads:
     """Return the domains whose grids are in both datasets, normalised.
 
-    Raises
-    ------
-    InputError
-        grids that are not quads of `LATENT` nodes along xi and eta, nor O grids of `AROUND` along xi; no
-        domain in common.
+    Raises InputError: grids that are not quads of `LATENT` nodes along xi and eta, nor O grids of `AROUND`
+    along xi; no domain in common.
     """
     around = variational.topology == "o"
     wanted = ("o", AROUND, LATENT) if around else ("quad", LATENT, LATENT)
     for samples in (variational, winslow):
         if (samples.topology, samples.ni, samples.nj) != wanted:
-            raise InputError(
-                f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on",
-                f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}",
-            )
+            problem = f"{samples.topology} grids of {samples.ni} x {samples.nj} nodes among those to train on"
+            raise InputError(problem, f"give quads of {LATENT} x {LATENT}, or O grids of {AROUND} x {LATENT}")
     sides = slice(2 if around else 4)  # the cut of an O grid is no boundary
     where = {_rim(nodes, sides): k for k, nodes in enumerate(winslow.nodes)}
     keys = [_rim(nodes, sides) for nodes in variational.nodes]
@@ -121,7 +112,6 @@ def _single(z: Complexes) -> Tensor:
 
 
 def _rim(nodes: Floats, sides: slice) -> bytes:
-    """Return a key that identifies a domain."""
     return b"".join(side.tobytes() for side in (nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1])[sides])
 
 

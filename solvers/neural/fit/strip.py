@@ -14,8 +14,8 @@ from torch import Tensor
 from meshonet.geometry.arrays import Complexes
 from meshonet.solvers.conformal.strip import across, harmonic, picard
 from meshonet.solvers.neural.differentiable.strip_fno import StripFNO
+from meshonet.solvers.neural.fit.loop import Run, Task
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Run, Task
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.model_file import STRIP, write_model
 from meshonet.solvers.neural.strip.dataset import Strips, make_targets
@@ -44,11 +44,7 @@ class Sizes:
 class StripTask(Task):
     """The strip network on solved strips and their mirror images, small answers weighted up.
 
-    Parameters
-    ----------
-    training, held_out : strips.
-    sizes : of the network.
-    device : to compute on.
+    `training`, `held_out`: strips; `sizes`: of the network; `device`: to compute on.
     """
 
     parts: ClassVar[tuple[str, ...]] = ("difference",)
@@ -122,10 +118,7 @@ def run(
 ) -> Run:
     """Return what `train` needs; the last `held_out` strips are never trained on.
 
-    Raises
-    ------
-    InputError
-        fewer strips than one batch beside those held out.
+    Raises InputError: fewer strips than one batch beside those held out.
     """
     sizes, kept = sizes or Sizes(), plan.kept(len(data), held_out, "shapes")
     torch.manual_seed(plan.seed)

@@ -15,16 +15,10 @@ from meshonet.solvers.neural.fit.plan import Device
 
 @dataclass(frozen=True)
 class Team:
-    """A process among those that train together.
+    """A process among those that train together."""
 
-    Parameters
-    ----------
-    device : of this process.
-    rank, size : its number, and how many there are.
-    """
-
-    device: torch.device
-    rank: int = 0
+    device: torch.device  # of this process
+    rank: int = 0  # its number, and how many there are
     size: int = 1
 
     @property
@@ -59,10 +53,7 @@ class Team:
 def team(device: Device) -> Team:
     """Return this process's place, joining the others under torchrun.
 
-    Raises
-    ------
-    InputError
-        ``cuda`` is asked for and there is none.
+    Raises InputError: ``cuda`` is asked for and there is none.
     """
     if device == "cuda" and not torch.cuda.is_available():
         raise InputError("torch sees no CUDA device", "use {device} cpu or auto", parameter="device")

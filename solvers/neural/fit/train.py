@@ -8,10 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from meshonet.geometry.errors import InputError
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress, fit
+from meshonet.solvers.neural.fit.loop import Progress, Run, beside, fit
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Run
 from meshonet.solvers.neural.fit.team import Team
 from meshonet.solvers.neural.registry import ARCHITECTURES, MODELS
 
@@ -31,24 +29,14 @@ def train(
 ) -> dict[str, Any]:
     """Fit a model, write it to `output` with its recipe and held-out figures, and return the figures.
 
-    Parameters
-    ----------
-    model : one of `registry.MODELS`.
-    data : for ``strip`` the `strip.dataset.Strips`, for ``quad`` the `fit.quad_grids.Quads`, for the others
-        `samples.Samples`.
-    plan : settings of the run; `standard` is the model's own.
-    held_out : shapes that are never trained on; None for the model's own number.
-    resume : go on from the checkpoint beside `output`, if there is one.
-    report : called every `plan.log_every` epochs and at the end.
-    choices : of the model: what the function ``run`` of its module in `fit` takes.
+    Raises InputError: no such model; too few shapes; a checkpoint of another model, data or settings; choices
+    that do not suit the model. Raises SolverError: as `meshonet.solvers.neural.fit.loop.fit`.
 
-    Raises
-    ------
-    InputError
-        no such model; too few shapes; a checkpoint of another model, data or settings; choices that do not
-        suit the model.
-    SolverError
-        as `meshonet.solvers.neural.fit.loop.fit`.
+    `model` is one of `registry.MODELS`; `data` are `strip.dataset.Strips` for ``strip``,
+    `fit.quad_grids.Quads` for ``quad``, else `samples.Samples`; `plan` as `standard`; `held_out` shapes are
+    never trained on, None for the model's own number; `resume` goes on from a checkpoint beside `output`;
+    `report` is called every `plan.log_every` epochs and at the end; `choices` are what ``run`` of
+    the model's module in `fit` takes.
     """
     module = _module(model)
     held_out = module.HELD_OUT if held_out is None else held_out

@@ -27,25 +27,14 @@ class Frame:
 
 @dataclass(frozen=True)
 class Architecture:
-    """An operator from boundaries to grids; its fields are its settings, kept in the header of its file.
+    """An operator from boundaries to grids; its fields are its settings, kept in the header of its file."""
 
-    Parameters
-    ----------
-    sensors : points of the boundary that the branches read, m in the paper.
-
-    Attributes
-    ----------
-    base : what the network's answer is added to: nothing, or the harmonic extension of the boundary.
-    physics : it learns from Winslow's equations, a network for each geometry.
-    interior, boundary : weights of the two parts of its loss.
-    """
-
-    base: ClassVar[Literal["none", "harmonic"]] = "none"
-    physics: ClassVar[bool] = False
-    interior: ClassVar[float] = 1.0
+    base: ClassVar[Literal["none", "harmonic"]] = "none"  # what the answer is added to
+    physics: ClassVar[bool] = False  # it learns from Winslow's equations, a network for each geometry
+    interior: ClassVar[float] = 1.0  # weights of the two parts of its loss
     boundary: ClassVar[float] = 1.0
 
-    sensors: int = 50
+    sensors: int = 50  # points of the boundary that the branches read, m in the paper
 
     @property
     def native(self) -> bool:
@@ -80,12 +69,8 @@ class Architecture:
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
         """Return coordinates (batch, p, 2) less the base.
 
-        Parameters
-        ----------
-        xp : numpy or torch.
-        w : trained and fixed arrays by name.
-        inputs : of `encode`.
-        places : what `seen` returned of p places (xi, eta).
-        index : (p,) their numbers among the nodes of the training grids; only native models use it.
+        `xp`: numpy or torch; `w`: trained and fixed arrays by name; `inputs`: of `encode`; `places`: what
+        `seen` returned of p places (xi, eta); `index`: (p,) their numbers among the nodes of the training
+        grids; only native models use it.
         """
         raise NotImplementedError

@@ -7,20 +7,14 @@ With s the coordinates of m sensors, [:k] and [k:] the halves of features for x 
     MIONet         x = (branch_x(s_x) * branch_y(s_y))[:k] . trunk(xi, eta) + b         y by [k:]
     POD-DeepONet   (x, y) = mean + sum_k branch(s)_k * mode_k(xi, eta)
 
-MeshONet is to the paper's letter: widths, powers and weights of the loss are the authors' published settings:
-branch 50-64-128-64-50, trunk 12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000
-boundary; 54,482 parameters. Xiao et al., arXiv 2501.11937.
-
-DeepONet's split features are how Lu et al. treat several outputs. Lu et al., Nature Machine Intelligence 3
-(2021) 218; Computer Methods in Applied Mechanics and Engineering 393 (2022) 114778, section 3.1.6.
-
-MIONet is the multi-input operator that the paper builds its theory on; either coordinate sees both. Jin, Meng
-& Lu, SIAM Journal on Scientific Computing 44 (2022) A3490.
-
+MeshONet is to the paper's letter, with the authors' published settings: branch 50-64-128-64-50, trunk
+12-50-50-50-50 with tanh after its last layer, powers to 4, 900 interior + 1000 boundary; 54,482 parameters.
 POD-DeepONet's trunk is the proper orthogonal decomposition of the training grids, x and y of a grid one
-vector. Modes are scaled by the root mean square of their coefficients over the training set, so that the
-branch answers numbers of the order of 1. It answers on the nodes of the training grids. Lu et al. (2022),
-section 3.1.4.
+vector, scaled so that the branch answers numbers of the order of 1; it answers on their nodes.
+
+Xiao et al., arXiv 2501.11937; Lu et al., Nature Machine Intelligence 3 (2021) 218; Computer Methods in
+Applied Mechanics and Engineering 393 (2022) 114778, sections 3.1.4 and 3.1.6; Jin, Meng & Lu, SIAM Journal on
+Scientific Computing 44 (2022) A3490.
 """
 
 from __future__ import annotations
@@ -39,26 +33,17 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONet(Architecture):
-    """Dual branch, shared trunk.
-
-    Parameters
-    ----------
-    hidden : widths of a branch's hidden layers (Adjust Layer).
-    features : of branch and trunk, k in the paper.
-    depth : layers of the trunk, each `features` wide.
-    powers : of xi and eta in the Lift-Layer, q in the paper.
-    """
+    """Dual branch, shared trunk."""
 
     interior: ClassVar[float] = 900.0
     boundary: ClassVar[float] = 1000.0
 
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    depth: int = 4
-    powers: int = 4
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers (Adjust Layer)
+    features: int = 50  # of branch and trunk, k in the paper
+    depth: int = 4  # layers of the trunk, each `features` wide
+    powers: int = 4  # of xi and eta in the Lift-Layer, q in the paper
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         trunk = (4 + 2 * self.powers, *[self.features] * self.depth)
         branches = _two_branches((self.sensors, *self.hidden, self.features))
         return {**branches, **dense_shapes("trunk", trunk), "output/bias": (2,)}
@@ -68,7 +53,6 @@ class MeshONet(Architecture):
         return lift(xp, points, self.powers)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         trunk = dense(xp, w, "trunk", places, last=True)
         s = inputs["sensors"]
         both = xp.stack([dense(xp, w, f"branch_{name}", s[..., k]) for k, name in enumerate("xy")], 1)
@@ -77,27 +61,18 @@ class MeshONet(Architecture):
 
 @dataclass(frozen=True)
 class DeepONet(Architecture):
-    """One branch, one trunk, features in halves.
+    """One branch, one trunk, features in halves."""
 
-    Parameters
-    ----------
-    hidden : widths of a branch's hidden layers.
-    features : of each coordinate.
-    width, depth : of the trunk's hidden layers.
-    """
-
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    width: int = 50
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of a branch's hidden layers
+    features: int = 50  # of each coordinate
+    width: int = 50  # of the trunk's hidden layers
     depth: int = 3
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branch = dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * self.features))
         return {**branch, **self._trunk(2 * self.features), "output/bias": (2,)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         c = dense(xp, w, "branch", inputs["sensors"].reshape(len(inputs["sensors"]), -1))
         trunk, k = dense(xp, w, "trunk", places, last=True), self.features
         return xp.stack([c[:, :k] @ trunk[:, :k].T, c[:, k:] @ trunk[:, k:].T], -1) + w["output/bias"]
@@ -111,12 +86,10 @@ class MIONet(DeepONet):
     """Two branches, multiplied, their features in halves, and a trunk."""
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branches = _two_branches((self.sensors, *self.hidden, 2 * self.features))
         return {**branches, **self._trunk(self.features), "output/bias": (2,)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         s = inputs["sensors"]
         c = dense(xp, w, "branch_x", s[..., 0]) * dense(xp, w, "branch_y", s[..., 1])
         trunk = dense(xp, w, "trunk", places, last=True)
@@ -125,24 +98,16 @@ class MIONet(DeepONet):
 
 @dataclass(frozen=True)
 class PODDeepONet(Architecture):
-    """A branch that answers coefficients of fixed modes.
+    """A branch that answers coefficients of fixed modes."""
 
-    Parameters
-    ----------
-    hidden : widths of the branch's hidden layers.
-    features : modes; fewer where the training set has fewer grids.
-    """
-
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 16
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
+    features: int = 16  # modes; fewer where the training set has fewer grids
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: yes."""
         return True
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         return dense_shapes("branch", (2 * self.sensors, *self.hidden, self.features))
 
     def fixed(self, samples: Samples, targets: Floats) -> Arrays:
@@ -158,7 +123,6 @@ class PODDeepONet(Architecture):
         return {"fixed/mean": mean.reshape(-1, 2), "fixed/modes": modes.reshape(shape).swapaxes(0, 1)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) at nodes of the training grids."""
         c = dense(xp, w, "branch", inputs["sensors"].reshape(len(inputs["sensors"]), -1))
         return xp.einsum("bk,pkd->bpd", c, w["fixed/modes"][index]) + w["fixed/mean"][index]
 

@@ -28,30 +28,20 @@ from meshonet.geometry.errors import InputError
 from meshonet.solvers.neural.models.architecture import Architecture, Frame
 from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense, dense_shapes, gelu
 
-SIDE = 5
-"""Nodes of west and of east that FNO1D sees."""
+SIDE = 5  # nodes of west and of east that FNO1D sees
 
 
 @dataclass(frozen=True)
 class Fourier(Architecture):
-    """The settings and layers of both.
+    """The settings and layers of both."""
 
-    Parameters
-    ----------
-    width : channels of the hidden state.
-    modes : that are mixed, in each direction (of eta positive and negative ones).
-    layers : Fourier layers.
-    padding : nodes of zeros before the transform, in each direction.
-    """
-
-    width: int = 48
-    modes: int = 16
-    layers: int = 4
-    padding: int = 9
+    width: int = 48  # channels of the hidden state
+    modes: int = 16  # that are mixed, in each direction (of eta positive and negative ones)
+    layers: int = 4  # Fourier layers
+    padding: int = 9  # nodes of zeros before the transform, in each direction
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: yes."""
         return True
 
     def _shapes(self, seen: int, mixing: tuple[int, ...], project: tuple[int, ...]) -> Shapes:
@@ -62,7 +52,6 @@ class Fourier(Architecture):
         return {**shapes, **dense_shapes("project", (self.width, *project))}
 
     def _layered(self, xp: Any, w: Weights, h: Any) -> Any:
-        """Return the hidden state after all layers."""
         for k in range(self.layers):
             local = dense(xp, w, f"local{k}", h)
             h = gelu(xp, self._mixed(xp, w[f"mix{k}/spectral"], h) + local)
@@ -78,7 +67,6 @@ class FNO1D(Fourier):
     """Fourier layers along xi."""
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         return self._shapes(4 + 4 * SIDE + 1, (self.modes,), (128, 2 * frame.nj))
 
     def encode(self, boundaries: Sequence[Boundary]) -> Arrays:
@@ -92,13 +80,11 @@ class FNO1D(Fourier):
         return {"edges": np.array(rows)}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) at nodes of the training grids."""
         h = self._layered(xp, w, dense(xp, w, "lift", inputs["edges"]))
         out = dense(xp, w, "project", h)
         return out.reshape(len(out), -1, 2)[:, index]
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        """Return h (batch, n, width) with its lowest modes mixed."""
         n = h.shape[1]
         spectrum = xp.fft.rfft(h, n + self.padding, 1)
         m = min(self.modes, spectrum.shape[1])
@@ -115,13 +101,7 @@ class FNO2D(Fourier):
     modes: int = 8
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained.
-
-        Raises
-        ------
-        InputError
-            more modes than the grids have.
-        """
+        """Return the shapes of what is trained. Raises InputError: more modes than the grids have."""
         most = (min(frame.ni, frame.nj) + self.padding) // 2
         if not 1 <= self.modes <= most:
             problem = f"modes={self.modes} of grids of {frame.ni} x {frame.nj} nodes"
@@ -135,7 +115,6 @@ class FNO2D(Fourier):
         return {"along": along, "across": across}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) at nodes of the training grids."""
         along, across = inputs["along"], inputs["across"]
         batch, ni, nj = len(along), along.shape[1], across.shape[1]
         weight, bias = w["lift/0/weight"], w["lift/0/bias"]
@@ -146,7 +125,6 @@ class FNO2D(Fourier):
         return dense(xp, w, "project", h.reshape(batch, ni * nj, self.width)[:, index])
 
     def _mixed(self, xp: Any, weight: Any, h: Any) -> Any:
-        """Return h (batch, ni, nj, width) with its lowest modes mixed."""
         batch, ni, nj, width = h.shape
         m = self.modes
         along, across, back = (array_like(table, h, xp) for table in _waves(ni, nj, m, self.padding))
@@ -161,10 +139,10 @@ class FNO2D(Fourier):
 
 @cache
 def _waves(ni: int, nj: int, modes: int, padding: int) -> tuple[NDArray[Any], Floats, Floats]:
-    """Return the matrices of discrete Fourier transforms of n nodes and `padding` zeros, lowest modes only.
+    """Return the matrices of Fourier transforms of n nodes and `padding` zeros, lowest modes only.
 
-    Along xi (ni, 2 modes), complex, its modes from 0 up and from -`modes` up; across it (2 modes, nj), the
-    real and the imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
+    Along xi (ni, 2 modes), complex, from 0 up and from -`modes` up; across it (2 modes, nj), real and
+    imaginary part of every mode from 0 up, and the way back (nj, 2 modes), which has both norms.
     """
     m, k = ni + padding, np.concatenate([np.arange(modes), np.arange(-modes, 0)])
     along = np.exp(-2j * np.pi / m * np.outer(np.arange(ni), k))

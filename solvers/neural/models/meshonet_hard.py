@@ -5,19 +5,14 @@
     (x, y) = H + s * B(xi, eta) * branch(x_1, y_1 .. x_m, y_m) . trunk(lift(xi, eta))
 
 H is the harmonic extension of the boundary and B is zero there, so that the answer has the boundary's own
-nodes, whatever the weights. The branch sees both coordinates, since Winslow's equations couple them; the
-network learns the difference from H, whose size is s. Of an O grid the lift is periodic in xi, and so is the
-answer.
+nodes, whatever the weights. The network learns the difference from H, whose size is s. Of an O grid the lift
+is periodic in xi, and so is the answer.
 
-With `modes` the trunk is not trained: B trunk is replaced by modes of the training grids' differences from H
-(proper orthogonal decomposition, x and y together, so that they share them). At a sharp kink of the boundary
-the differences are not smooth, or the cells are small; a trained trunk, smooth and as wrong there as
-elsewhere, folds them. An error in the coefficient of a mode is small where the mode is. Lu et al., Computer
-Methods in Applied Mechanics and Engineering 393 (2022) 114778.
-
-Beyond the training shapes the branch has nothing to go by, and what it adds to H may fold cells. With
-`within` it sees sensors no further out than any training shape's: H follows the boundary, the difference
-stays that of the last shapes known.
+With `modes`, B trunk is replaced by modes of the training grids' differences from H (proper orthogonal
+decomposition of x and y together): where they are small, at sharp kinks of the boundary, so are errors, which
+of a smooth trained trunk fold cells there. Lu et al., Computer Methods in Applied Mechanics and Engineering
+393 (2022) 114778. With `within` the branch sees sensors no further out than any training shape's, since what
+it adds to H beyond them may fold cells.
 """
 
 from __future__ import annotations
@@ -36,38 +31,25 @@ from meshonet.solvers.neural.samples import Samples
 
 @dataclass(frozen=True)
 class MeshONetHard(Architecture):
-    """One branch that sees everything, a trunk that vanishes on the boundary.
-
-    Parameters
-    ----------
-    hidden : widths of the branch's hidden layers.
-    features : functions of the trunk, shared by x and y.
-    width, depth : of the trunk's hidden layers.
-    waves : frequencies of xi and eta that the trunk sees.
-    modes : of the training grids' differences in place of a trained trunk; 0 for the trunk.
-    within : sensors are seen no further out than those of the training shapes.
-    periodic : in xi (an O grid).
-    """
+    """One branch that sees everything, a trunk that vanishes on the boundary."""
 
     base: ClassVar[Literal["none", "harmonic"]] = "harmonic"
     boundary: ClassVar[float] = 0.0
 
-    hidden: tuple[int, ...] = (64, 128, 64)
-    features: int = 50
-    width: int = 64
+    hidden: tuple[int, ...] = (64, 128, 64)  # widths of the branch's hidden layers
+    features: int = 50  # functions of the trunk, shared by x and y
+    width: int = 64  # of the trunk's hidden layers
     depth: int = 3
-    waves: int = 6
-    modes: int = 0
-    within: bool = False
-    periodic: bool = False
+    waves: int = 6  # frequencies of xi and eta that the trunk sees
+    modes: int = 0  # of the training grids' differences in place of a trained trunk; 0 for the trunk
+    within: bool = False  # sensors are seen no further out than those of the training shapes
+    periodic: bool = False  # in xi (an O grid)
 
     @property
     def native(self) -> bool:
-        """Whether it answers on the nodes of its training grids only: modes do."""
         return self.modes > 0
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         branch = dense_shapes("branch", (2 * self.sensors, *self.hidden, 2 * (self.modes or self.features)))
         if self.modes:
             return branch
@@ -95,7 +77,6 @@ class MeshONetHard(Architecture):
         return xp.concatenate([self._lifted(xp, points), self._bubble(points)], -1)
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2) less the base."""
         seen = inputs["sensors"]
         if self.within:
             seen = xp.clip(seen, w["fixed/least"], w["fixed/most"])
@@ -110,7 +91,8 @@ class MeshONetHard(Architecture):
     def _lifted(self, xp: Any, points: Any) -> Any:
         turn = 2.0 if self.periodic else 1.0
         angles = [np.pi * k * points for k in range(1, self.waves + 1)]
-        waves = [f(xp, turn * a[:, :1], a[:, 1:]) for a in angles for f in (_sines, _cosines)]
+        pairs = [(f(turn * a[:, :1]), f(a[:, 1:])) for a in angles for f in (xp.sin, xp.cos)]
+        waves = [wave for pair in pairs for wave in pair]
         linear = points[:, 1:] if self.periodic else points
         return xp.concatenate([linear, *waves], -1)
 
@@ -121,21 +103,10 @@ class MeshONetHard(Architecture):
 
 
 def _modes(targets: Floats, count: int) -> Floats:
-    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them.
-
-    The first is of mean square 1; those that n grids do not have are zero.
-    """
+    """Return modes (nodes, count) of x and y of `targets` (n, ni, nj, 2), as large as they occur in them."""
     rows = np.moveaxis(targets, -1, 0).reshape(2 * len(targets), -1)
     _, size, vectors = np.linalg.svd(rows, full_matrices=False)
     largest = vectors[:count] * (size[:count, None] / (size[0] or 1.0)) * np.sqrt(rows.shape[1])
     modes: Floats = np.zeros((rows.shape[1], count))
     modes[:, : len(largest)] = largest.T
     return modes
-
-
-def _sines(xp: Any, a: Any, b: Any) -> Any:
-    return xp.concatenate([xp.sin(a), xp.sin(b)], -1)
-
-
-def _cosines(xp: Any, a: Any, b: Any) -> Any:
-    return xp.concatenate([xp.cos(a), xp.cos(b)], -1)

@@ -5,11 +5,9 @@
     (x, y) = N_g(phi(xi, eta))    phi = (2 xi - 1, 2 eta - 1); of an O grid (sin, cos of 2 pi xi, 2 eta - 1)
     loss   = mean |alpha X_xx - 2 beta X_xe + gamma X_ee|^2 + boundary * mean |X - U|^2
 
-in units of each geometry's own size. The networks of all geometries of a dataset are stacked and trained
-together. A trained file answers the geometries it was trained on, at any resolution, and no others: that is
-what operators are for. Derivatives are carried through the layers exactly, or taken by central differences.
-Chen et al., MGNet, Engineering with Computers 38 (2022) 4409; an improved method, arXiv 2210.09546
-(auxiliary lines).
+in units of each geometry's own size. The networks of all geometries are stacked and trained together. A
+trained file answers these geometries, at any resolution, and no others. Chen et al., MGNet, Engineering with
+Computers 38 (2022) 4409; an improved method, arXiv 2210.09546 (auxiliary lines).
 """
 
 from __future__ import annotations
@@ -27,38 +25,25 @@ from meshonet.solvers.neural.models.layers import Arrays, Shapes, Weights, dense
 from meshonet.solvers.neural.models.sensors import sensors
 from meshonet.solvers.neural.samples import Samples
 
-SAME = 1e-4
-"""Largest distance of a sensor, over the geometry's size, at which two geometries are one."""
+SAME = 1e-4  # largest distance of a sensor, over the geometry's size, at which two geometries are one
 
 
 @dataclass(frozen=True)
 class MGNet(Architecture):
-    """Dense networks with tanh, one a geometry.
-
-    Parameters
-    ----------
-    width, depth : of the hidden layers.
-    rim : weight of the boundary in the loss.
-    data : weight of known nodes in the loss, where there are any.
-    finite : step of central differences; 0 for exact derivatives.
-    lines : auxiliary lines of either direction whose nodes are known from the solved grids; 0 for none.
-    coarse : nodes a direction of a coarse grid whose nodes are known from the solved grids; 0 for none.
-    periodic : in xi (an O grid).
-    """
+    """Dense networks with tanh, one a geometry."""
 
     physics: ClassVar[bool] = True
 
-    width: int = 40
+    width: int = 40  # of the hidden layers
     depth: int = 4
-    rim: float = 1000.0
-    data: float = 1000.0
-    finite: float = 0.0
-    lines: int = 0
-    coarse: int = 0
-    periodic: bool = False
+    rim: float = 1000.0  # weight of the boundary in the loss
+    data: float = 1000.0  # weight of known nodes in the loss, where there are any
+    finite: float = 0.0  # step of central differences; 0 for exact derivatives
+    lines: int = 0  # auxiliary lines of either direction whose nodes are known from the solved grids
+    coarse: int = 0  # nodes a direction of a coarse grid whose nodes are known from the solved grids
+    periodic: bool = False  # in xi (an O grid)
 
     def shapes(self, frame: Frame) -> Shapes:
-        """Return the shapes of what is trained."""
         sizes = (3 if self.periodic else 2, *[self.width] * self.depth, 2)
         return dense_shapes("net", sizes, stacked=frame.count)
 
@@ -72,7 +57,6 @@ class MGNet(Architecture):
         return {"fixed/sensors": seen, "fixed/centre": centre, "fixed/size": size[:, None]}
 
     def answer(self, xp: Any, w: Weights, inputs: Weights, places: Any, index: Any) -> Any:
-        """Return coordinates (batch, p, 2)."""
         which = self.which(w, inputs["sensors"])
         net = {key: value[which] for key, value in w.items()}
         scaled = dense(xp, net, "net", self.features(xp, places)[None])
@@ -88,10 +72,8 @@ class MGNet(Architecture):
         k = self.which(w, seen)
         away = np.sqrt(((seen - w["fixed/sensors"][k]) ** 2).sum(-1)).max(axis=1) / w["fixed/size"][k, 0]
         if away.max() > SAME:
-            known = len(w["fixed/sensors"])
-            problem = (
-                f"the model knows {known} geometries, and this one is off the nearest by {away.max():.1e}"
-            )
+            problem = f"the model knows {len(w['fixed/sensors'])} geometries"
+            problem += f", and this one is off the nearest by {away.max():.1e}"
             raise InputError(problem, "train it on this one too: it has a network for each geometry")
 
     def features(self, xp: Any, points: Any) -> Any:

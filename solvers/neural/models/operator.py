@@ -23,31 +23,20 @@ from meshonet.solvers.neural.operator import Operator
 from meshonet.solvers.neural.registry import architecture, name_of, settings_of
 from meshonet.solvers.solution import Solution
 
-DIRECT = 129 * 129
-"""Nodes up to which a network is evaluated at each; larger grids are interpolated where that is exact."""
-
-TABLE = 65
-"""Chebyshev points along xi and eta that are interpolated between."""
-
-CLOSE = 1e-6
-"""Largest error of that interpolation, relative to the answer, at places between its points."""
+DIRECT = 129 * 129  # nodes up to which a network is evaluated at each; more are interpolated if exact
+TABLE = 65  # Chebyshev points along xi and eta that are interpolated between
+CLOSE = 1e-6  # largest error of that interpolation, relative to the answer, at places between its points
 
 
 @dataclass(frozen=True)
 class PaperOperator(Operator):
-    """A model of `registry.ARCHITECTURES` with its weights.
-
-    Parameters
-    ----------
-    model, frame : what it is and what it was trained on.
-    weights : trained and fixed arrays, float32.
-    """
+    """A model of `registry.ARCHITECTURES` with its weights."""
 
     batched: ClassVar[bool] = False
 
-    model: Architecture = field(default_factory=Architecture)
+    model: Architecture = field(default_factory=Architecture)  # what it is and what it was trained on
     frame: Frame = field(default_factory=lambda: Frame("quad", 2, 2))
-    weights: Weights = field(default_factory=dict)
+    weights: Weights = field(default_factory=dict)  # trained and fixed arrays, float32
 
     @classmethod
     def of_file(cls, name: str, header: Mapping[str, Any], arrays: dict[str, Floats]) -> Self:
@@ -83,10 +72,9 @@ class PaperOperator(Operator):
         facts = {"method": "operator", "model": self.name, "boundary_error": error}
         grid = boundary.grid(nodes, facts)
         done = "replaced by the true one" if paste else "left so"
-        notes = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
-        return Solution(
-            grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes if error > 0.0 else ()
-        )
+        off = (f"the network's own boundary was off by {error:.1e} at most, and was {done}",)
+        notes = off if error > 0.0 else ()
+        return Solution(grid, "operator", model=self.name, seconds={"grid": spent}, notes=notes)
 
     def nodes(self, boundary: Boundary, *, paste: bool = True) -> tuple[Floats, float]:
         """Return the nodes (ni, nj, 2), and how far their edges were from `boundary` at most before pasting.
@@ -111,10 +99,7 @@ class PaperOperator(Operator):
     def difference(self, boundary: Boundary) -> Floats:
         """Return the answer at the nodes of `boundary`'s grid (ni, nj, 2), less the model's base.
 
-        Raises
-        ------
-        InputError
-            a boundary of another topology than the training grids'.
+        Raises InputError: a boundary of another topology than the training grids'.
         """
         self.check([boundary])
         ni, nj = boundary.ni, boundary.nj

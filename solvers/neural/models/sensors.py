@@ -19,7 +19,8 @@ def sensors(boundary: Boundary, count: int) -> Floats:
     """
     if boundary.periodic:
         inner = count - count // 2
-        return np.concatenate([_along(boundary.south, inner), _along(boundary.north, count - inner)])
+        rings = (boundary.south, inner), (boundary.north, count - inner)
+        return np.concatenate([_at(ring, np.arange(n) / n) for ring, n in rings])
     place = 4.0 * np.arange(count) / count
     sides = (boundary.south, boundary.east, boundary.north[::-1], boundary.west[::-1])
     points = np.empty((count, 2))
@@ -50,10 +51,6 @@ def lift(xp: Any, points: Any, powers: int) -> Any:
     `xp` is numpy or torch. Xiao et al., arXiv 2501.11937, section III.
     """
     return xp.concatenate([xp.sin(points), xp.cos(points), *(points**q for q in range(1, powers + 1))], -1)
-
-
-def _along(ring: Floats, count: int) -> Floats:
-    return _at(ring, np.arange(count) / count)
 
 
 def _at(side: Floats, place: Floats) -> Floats:

@@ -1,9 +1,8 @@
 """Boundaries in a canonical frame, where the steps after the network are taken.
 
-Descents amplify rounding: thirty steps in a window around a corner turn 1e-16 into 1e-3, and those of
-Newton's method are led by single precision. So that a domain moved, turned, scaled, mirrored or with its
-sides named otherwise takes the same steps to the bit, its edges are taken to a frame of their own, rounded
-there to 1e-9 of their size, and relabelled as the first of their images is:
+Descents amplify rounding: thirty steps around a corner turn 1e-16 into 1e-3. So that a domain moved, turned,
+scaled, mirrored or with its sides named otherwise takes the same steps to the bit, its edges are taken to a
+frame of their own, rounded there to 1e-9 of their size, and relabelled as the first of their images is:
 
 ========  ==================================================  ============================================
 o         the cut runs from 0 to 1                            mirrored if the mirror image comes first
@@ -24,37 +23,23 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.far_field import straight
 
-STEP = 2.0**-30
-"""Of the rounding, over the size of the edges up to the next power of two."""
-
-LEAST = 0.1
-"""Mean side along xi, over the size, that is long enough to tell a direction; else a diagonal does."""
-
-Element = tuple[bool, bool, bool]
-"""A relabelling: xi runs the other way, then eta does, then both change places."""
+STEP = 2.0**-30  # of the rounding, over the size of the edges up to the next power of two
+LEAST = 0.1  # mean side along xi over the size that still tells a direction; else a diagonal does
+Element = tuple[bool, bool, bool]  # xi runs the other way, eta does, both change places
 
 IDENTITY: Element = (False, False, False)
 
 
 @dataclass(frozen=True)
 class Canonical:
-    """A boundary and what it is in its canonical frame.
-
-    Parameters
-    ----------
-    original : the boundary.
-    boundary : the same in the frame, its edges rounded and relabelled.
-    element : the relabelling.
-    origin, unit : a point u there is ``origin + unit u`` here, its conjugate if the element mirrors.
-    symmetric : an O boundary that is its own mirror image.
-    """
+    """A boundary and what it is in its canonical frame."""
 
     original: Boundary
-    boundary: Boundary
+    boundary: Boundary  # the same in the frame, its edges rounded and relabelled
     element: Element
-    origin: complex
+    origin: complex  # a point u there is ``origin + unit u`` here, its conjugate if the element mirrors
     unit: complex
-    symmetric: bool = False
+    symmetric: bool = False  # an O boundary that is its own mirror image
 
     def back(self, planes: Floats) -> Floats:
         """Return the planes (2, ni, nj) of a grid in the frame, inside the original boundary."""
@@ -127,7 +112,6 @@ def _framed(sides: tuple[Complexes, ...], element: Element) -> tuple[tuple[Compl
 
 
 def _step(edges: Complexes) -> float:
-    """Return what coordinates of `edges` are rounded to multiples of."""
     return float(STEP * 2.0 ** np.ceil(np.log2(np.abs(edges).max())))
 
 
@@ -140,5 +124,4 @@ def _mirrors(element: Element) -> bool:
 
 
 def _complex(edge: Floats) -> Complexes:
-    """Return nodes (n, 2) as x + iy."""
     return np.asarray(edge[:, 0] + 1j * edge[:, 1])

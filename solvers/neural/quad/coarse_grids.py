@@ -12,32 +12,107 @@ Winslow's grid goes over 65 x 65 nodes, where a few steps bring it nearer to its
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.quality.measure import count_folded
-from meshonet.kernels._native import add_answers, frame_put_back, frame_take_out, grid_features, tfi_coarse
+from meshonet.kernels._native import (
+    add_answers,
+    frame_put_back,
+    frame_take_out,
+    grid_features,
+    tfi_batch,
+    tfi_coarse,
+)
 from meshonet.solvers.algebraic.resample import quad as evaluation
-from meshonet.solvers.algebraic.resample.spline import places
-from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.algebraic.resample.spline import between, places
 from meshonet.solvers.neural.quad.encoding import FEATURES, LATENT, SCALE, WINSLOW
 from meshonet.solvers.neural.quad.network import CHUNK, Network, rim_factor
 from meshonet.solvers.neural.quad.picard import AFTER, nodes_after, step_all
 
-SHARES = (0.95, 0.9, 0.8)
-"""Of the way from the grid that the network sees to its answer, the first of them without folds; else all."""
+SHARES = (0.95, 0.9, 0.8)  # of the way to the network's answer, the first without folds; else all
+Sides = tuple[Floats, Floats, Floats, Floats]  # of south, north, west and east
+
+
+@dataclass(frozen=True)
+class Edges:
+    """South, north (batch, 2, ni), west and east (batch, 2, nj) of a batch of domains."""
+
+    south: Floats
+    north: Floats
+    west: Floats
+    east: Floats
+
+    @classmethod
+    def of(cls, boundaries: Sequence[Boundary]) -> Edges:
+        """Return the edges of boundaries that have the same node counts."""
+        names = ("south", "north", "west", "east")
+        return cls(*(_planes([getattr(boundary, name) for boundary in boundaries]) for name in names))
+
+    def __len__(self) -> int:
+        return len(self.south)
+
+    def __getitem__(self, rows: slice) -> Edges:
+        return Edges(*(side[rows] for side in self.sides))
+
+    @property
+    def sides(self) -> Sides:
+        """South, north, west and east."""
+        return self.south, self.north, self.west, self.east
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Nodes along xi and eta."""
+        return self.south.shape[-1], self.west.shape[-1]
+
+    def thinned(self, ni: int, nj: int) -> Edges:
+        """Return the edges with ni and nj nodes, at equal steps of the index of the given ones."""
+        south, north = between(self.south, ni), between(self.north, ni)
+        return Edges(south, north, between(self.west, nj), between(self.east, nj))
+
+    def laws(self) -> Sides:
+        """Return the length up to each node over the whole edge's, (batch, n) for each side, 0 to 1."""
+        south, north, west, east = (_fraction(side) for side in self.sides)
+        return south, north, west, east
+
+    def interpolated(self, laws: Sides) -> Floats:
+        """Return the planes (batch, 2, ni, nj) of transfinite interpolation with `laws` along the edges."""
+        nodes = np.empty((len(self), 2, *self.counts))
+        tfi_batch(nodes, tuple(map(np.ascontiguousarray, self.sides)), laws)
+        return nodes
+
+
+def rims(planes: Floats) -> Sides:
+    """Return south, north, west and east of grids (batch, 2, m, n)."""
+    return planes[..., 0], planes[..., -1], planes[:, :, 0], planes[:, :, -1]
+
+
+def _fraction(side: Floats) -> Floats:
+    steps = np.diff(side)
+    along = np.zeros((len(side), side.shape[-1]))
+    steps *= steps
+    np.cumsum(np.sqrt(steps[:, 0] + steps[:, 1]), axis=-1, out=along[:, 1:])
+    along /= along[:, -1:]
+    return along
+
+
+def _planes(edges: Sequence[Floats]) -> Floats:
+    return np.ascontiguousarray(np.moveaxis(np.stack(edges), -1, 1))
 
 
 def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
     """Return the planes (batch, 2, m, n) of the network's grids inside the `edges`: 33 x 33 nodes.
 
-    Winslow's have up to 65 along a direction, where the edges have as many.
-
-    Parameters
-    ----------
-    head : index into `encoding.HEADS`.
+    Winslow's have up to 65 along a direction, where the edges have as many. `head`: index into
+    `encoding.HEADS`.
     """
-    base = _begun(edges)
+    base = np.empty((len(edges), 2, LATENT, LATENT))
+    ni, nj = edges.counts
+    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
     room = np.empty((min(CHUNK, len(base)), LATENT, LATENT, FEATURES), network.dtype)
     for k in range(0, len(base), CHUNK):
         planes = base[k : k + CHUNK]
@@ -55,21 +130,12 @@ def coarse_grids(edges: Edges, network: Network, head: int) -> Floats:
 
 
 def _nearer(coarse: Floats, edges: Edges) -> Floats:
-    """Return grids `coarse` on more nodes, nearer to Winslow's."""
     planes = evaluate(coarse, edges.thinned(*(nodes_after(n) for n in edges.counts)))
     unit, factors = _unit(planes)
     near = unit.copy()
     step_all(near, steps=AFTER, harmonic=False)
     frame_put_back(planes, near, unit, factors)
     return planes
-
-
-def _begun(edges: Edges) -> Floats:
-    """Return transfinite grids as planes (batch, 2, 33, 33)."""
-    base = np.empty((len(edges), 2, LATENT, LATENT))
-    ni, nj = edges.counts
-    tfi_coarse(edges.sides, (places(ni, LATENT), places(nj, LATENT)), base)
-    return base
 
 
 def _unit(planes: Floats) -> tuple[Floats, Floats]:

@@ -8,33 +8,22 @@ from __future__ import annotations
 
 from typing import Any
 
-LATENT = 33
-"""Nodes along xi and eta of the grid the network sees."""
-
-SCALE = 0.1
-"""What an answer of 1 means, in the normalised domain's unit."""
-
-HEADS = ("winslow", "variational")
-"""The grids a network answers with, in order."""
-
-WINSLOW = 0
-"""The number of the first of these, which takes a few steps of `picard.approach` after the network."""
+LATENT = 33  # nodes along xi and eta of the grid the network sees
+SCALE = 0.1  # what an answer of 1 means, in the normalised domain's unit
+HEADS = ("winslow", "variational")  # the grids a network answers with, in order
+WINSLOW = 0  # the first of these, which takes a few steps of `picard.approach` after the network
 
 FEATURES = 20
 """Channels a node: first differences (4), second differences (4), log lengths of both steps (2), place (2),
 cosine and sine between the steps (2), the Jacobian's inverse hyperbolic sine (1), xi and eta (2), the last
 step of `approach` over its size (2), and the logarithm of that size (1)."""
 
-FLOOR = 1e-2
-"""Added to lengths before their logarithm."""
+FLOOR = 1e-2  # added to lengths before their logarithm
 
 TINY = 1e-6
 
-STILL = 1e-3
-"""Added to the size of the last step."""
-
-STRETCH = 30.0
-"""How far small steps are drawn out, by the inverse hyperbolic sine."""
+STILL = 1e-3  # added to the size of the last step
+STRETCH = 30.0  # how far small steps are drawn out, by the inverse hyperbolic sine
 
 
 def frame(z: Any, xp: Any) -> tuple[Any, Any]:
@@ -59,13 +48,9 @@ def frame(z: Any, xp: Any) -> tuple[Any, Any]:
 def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
     """Return (batch, n, n, FEATURES) of normalised grids `z` (batch, n, n), complex.
 
-    Parameters
-    ----------
-    step : of the shape of `z`, what last moved it (`picard.approach`).
-    around : `z` are O grids (batch, m + 1, n) unrolled (`unrolled`), whose last column is the first a turn
-        on: differences along xi go round, and places are those less even steps. Returns (batch, m, n, ...).
-
-    The order is that of `symmetry.SEEN`.
+    `step`, of the shape of `z`, is what last moved it (`picard.approach`). `around`: `z` are unrolled O grids
+    (batch, m + 1, n), whose last column is the first a turn on: differences along xi go round, places are
+    those less even steps, and the answer is (batch, m, n, ...). The order is that of `symmetry.SEEN`.
     """
     n = z.shape[-1]
     if around:
@@ -92,10 +77,7 @@ def features(z: Any, step: Any, xp: Any, around: bool = False) -> Any:
 
 
 def _round(z: Any, xp: Any) -> tuple[Any, Any, Any, Any]:
-    """Return slopes, bends, places, places less even steps (batch, m, n) of strips (batch, m + 1, n).
-
-    Differences are per as many cells as there are across, as a quad's are.
-    """
+    """Return slopes, bends, places, places less even steps (batch, m, n) of strips (batch, m + 1, n)."""
     cells, m = z.shape[2] - 1, z.shape[1] - 1
     turn = z[:, -1:, :1] - z[:, :1, :1]
     ring = xp.concatenate([z[:, -2:-1] - turn, z], 1)

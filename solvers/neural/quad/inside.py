@@ -4,9 +4,8 @@
 
     V(p) = ∮ |p - x|⁻⁴ ds
 
-rises without bound towards the wall, so its least value inside is in the middle of where the body is
-thickest. It moves, turns and grows with the body; of equal places that nearest to the wall's first node is
-taken.
+rises without bound towards the wall, so it is least where the body is thickest. The point moves, turns and
+grows with the body; of equal places that nearest to the wall's first node is taken.
 """
 
 from __future__ import annotations
@@ -18,17 +17,10 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 
-PIECES = 8
-"""Pieces of each of the wall's edges whose middles stand for it."""
-
-EQUAL = 1e-9
-"""Relative difference of two values of the potential that count as equal."""
-
-WITHIN = 0.3
-"""Share of the distance to the wall that a step may have."""
-
-STEPS, STILL = 50, 1e-14
-"""Newton's steps at the most, and the step over the body's size that is the last."""
+PIECES = 8  # pieces of each of the wall's edges whose middles stand for it
+EQUAL = 1e-9  # relative difference of two values of the potential that count as equal
+WITHIN = 0.3  # share of the distance to the wall that a step may have
+STEPS, STILL = 50, 1e-14  # Newton's steps at the most, and the step over the body's size that is the last
 
 
 def inside(wall: Complexes) -> complex:

@@ -32,24 +32,16 @@ from meshonet.solvers.neural.quad.symmetry import ELEMENTS, ORDER, SEEN
 Reals: TypeAlias = NDArray[Any]
 Shapes: TypeAlias = dict[str, tuple[int, ...]]
 
-CHUNK = 16
-"""Domains that go through a layer together: their fields stay in the cache, and so do its weights."""
-
-MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8
-"""Of networks that are read; five levels are 33, 17, 9, 5 and 3 nodes."""
-
-LINE = 64
-"""Bytes that a row of weights is rounded up to."""
+CHUNK = 16  # domains that go through a layer together: their fields stay in the cache, and so do its weights
+MOST_LEVELS, MOST_SETS, MOST_BLOCKS = 5, 64, 8  # that are read; five levels have 33 to 3 nodes
+LINE = 64  # bytes that a row of weights is rounded up to
 
 
 def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
     """Return the names and shapes of the weights of a network.
 
-    Parameters
-    ----------
-    widths : sets of eight channels on each level, the finest first.
-    blocks : residual blocks on each.
-    heads : displacement fields that it answers with.
+    `widths`: sets of eight channels on each level, the finest first; `blocks`: residual blocks on each;
+    `heads`: displacement fields that it answers with.
     """
     arrays: Shapes = {"lift": (widths[0], FEATURES), "lift_bias": (widths[0],)}
 
@@ -70,10 +62,7 @@ def shapes(widths: Sequence[int], blocks: Sequence[int], heads: int) -> Shapes:
 def sizes(tensors: Mapping[str, Reals]) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return widths and blocks of the network that `tensors` are of, as their names and shapes tell them.
 
-    Raises
-    ------
-    ValueError
-        of no network.
+    Raises ValueError: of no network.
     """
     if not {"lift", "project"} <= set(tensors):
         raise ValueError("no lift, or no project")
@@ -101,12 +90,8 @@ def rim_factor(m: int, n: int, around: bool) -> Floats:
 class Network:
     """The network of one set of weights, its kernels expanded and laid out once.
 
-    Parameters
-    ----------
-    weights : of the names and shapes of `shapes`, in any precision.
-    blocks : as there.
-    dtype : float32 or float64, of the arithmetic.
-    around : of O grids, unrolled: they go round along xi.
+    `weights` and `blocks` as in `shapes`, in any precision; `dtype` (float32 or float64) of the arithmetic;
+    `around`, unrolled O grids go round along xi.
     """
 
     def __init__(
@@ -131,10 +116,7 @@ class Network:
         self.heads = len(exact["project"])
 
     def __call__(self, seen: Reals, head: int | None = None) -> Complexes:
-        """Return the fields (batch, heads, m, n) for `features` (batch, m, n, FEATURES).
-
-        Of one `head` alone (batch, m, n).
-        """
+        """Return the fields (batch, heads, m, n), or one `head`'s, for features (batch, m, n, FEATURES)."""
         pairs = self.answers(seen)
         m, n = pairs.shape[1:3]
         pairs = np.moveaxis(pairs, 3, 1) if head is None else pairs[..., head, :]
@@ -150,19 +132,15 @@ class Network:
         try:
             program = idle.pop()
         except IndexError:
-            program = self._program(m, n)
+            program = self._recorded(np.empty((CHUNK, m, n, FEATURES), self.dtype))
         for k in range(0, batch, CHUNK):
             program.run(seen[k : k + CHUNK], answer[k : k + CHUNK])
         idle.append(program)
         return answer.reshape(batch, m, n, self.heads, 2)
 
-    def _program(self, m: int, n: int) -> LayerProgram:
-        """Return the layers for `CHUNK` domains or fewer, on arrays that no other program has."""
+    def _recorded(self, h: Reals) -> LayerProgram:
+        """Return the layers for as many domains as `h` has or fewer, on arrays that no other program has."""
         work = _Work(self._layers, self.around)
-        self._record(work, np.empty((CHUNK, m, n, FEATURES), self.dtype))
-        return work.program
-
-    def _record(self, work: _Work, h: Reals) -> None:
         h = work.layer("lift", h)
         skips: list[Reals] = []
         coarsest = len(self.blocks) - 1
@@ -175,6 +153,7 @@ class Network:
             h = work.finer(work.layer(f"up.{level}", h), skips[level])
             h = work.blocks(f"after.{level}", self.blocks[level], h)
         work.layer("project", work.silu(h, pad=0))
+        return work.program
 
 
 class _Work:
@@ -218,10 +197,7 @@ class _Work:
 
 
 def _packed(kernel: Floats, bias: Floats | None, dtype: np.dtype[Any]) -> tuple[Reals, Reals, int]:
-    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are.
-
-    `kernel` is (out, in) or (out, in, size, size), `bias` (out / 8,).
-    """
+    """Return a kernel as (size² in, out rounded up), biases likewise, and how many outputs there are."""
     outputs = len(kernel)
     rows = np.moveaxis(kernel, (0, 1), (-1, -2)).reshape(-1, outputs)
     per = LINE // dtype.itemsize

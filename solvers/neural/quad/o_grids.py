@@ -32,21 +32,14 @@ from meshonet.solvers.neural.quad.unrolled import AROUND, TURN, around_middles, 
 
 NOT_ROUND = "its walls do not go once round a middle of the body", "use meshonet solve-pde for this shape"
 
-COMPACT = 0.15
-"""Least over largest distance of wall nodes from the middle, of bodies that models are trained on."""
+COMPACT = 0.15  # least over largest distance of the wall from the middle, of bodies to train on
 
 
 def coarse_grids(boundaries: Sequence[Boundary], network: Network, head: int) -> Floats:
     """Return the planes (batch, 2, 65, 33) of the network's grids of O `boundaries` with equal node counts.
 
-    Parameters
-    ----------
-    head : index into `encoding.HEADS`.
-
-    Raises
-    ------
-    InputError
-        walls that, at 65 nodes, do not go once round the body's centroid, nor round a point inside it.
+    `head`: index into `encoding.HEADS`. Raises InputError: walls that, at 65 nodes, do not go once round the
+    body's centroid, nor round a point inside it.
     """
     walls, strips, centres, once = _strips(boundaries)
     if not once.all():
@@ -71,10 +64,8 @@ def answered(
 ) -> Any:
     """Return strips `base` (batch, m + 1, n) of even steps, moved as the network says and closed.
 
-    Parameters
-    ----------
-    factor : (batch, 1, 1) to unit size.
-    network : answers (batch, m, n) by what it sees; `approach` is that of `picard`; both of `xp`.
+    `factor`: (batch, 1, 1) to unit size; `network`: answers (batch, m, n) by what it sees; `approach` is that
+    of `picard`; both of `xp`.
     """
     z = base * factor
     near, step = approach(z, xp, around=True)
@@ -91,9 +82,7 @@ def _approached(z: Complexes, _: Any, **settings: Any) -> tuple[Complexes, Compl
     return _complex(planes), _complex(steps)
 
 
-def _strips(
-    boundaries: Sequence[Boundary],
-) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
+def _strips(boundaries: Sequence[Boundary]) -> tuple[Complexes, Complexes, Complexes, NDArray[np.bool_]]:
     """Return the walls at 65 nodes, their strips, the middles, and which walls go round these once."""
     sides = [np.stack([getattr(b, side) for b in boundaries]).swapaxes(1, 2) for side in ("south", "north")]
     walls = _complex(np.stack([between(side, AROUND) for side in sides], axis=3))

@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain
 from typing import Any, Self
 
@@ -21,25 +22,17 @@ from meshonet.solvers.neural.quad.network import Network, Reals, sizes
 from meshonet.solvers.neural.quad.polish import polished
 from meshonet.solvers.solution import Solution
 
-AUTO = {WINSLOW: 2, 1: 5}
-"""Steps of "auto": cycles of multigrid for Winslow's answer, of descent for the variational one."""
+AUTO = {WINSLOW: 2, 1: 5}  # steps of "auto": multigrid cycles for Winslow's answer, else of descent
 
 
 @dataclass(frozen=True)
 class QuadOperator(Operator):
-    """A network for four-sided domains, or for what is between a body and its far field.
+    """A network for four-sided domains, or for what is between a body and its far field."""
 
-    Parameters
-    ----------
-    widths, blocks : of the network.
-    weights : its arrays, as `network.shapes` has them.
-    head : which of the network's answers is taken, an index into `encoding.HEADS`.
-    """
-
-    widths: tuple[int, ...] = ()
+    widths: tuple[int, ...] = ()  # of the network
     blocks: tuple[int, ...] = ()
-    weights: Mapping[str, Reals] = field(default_factory=dict)
-    head: int = len(HEADS) - 1
+    weights: Mapping[str, Reals] = field(default_factory=dict)  # its arrays, as `network.shapes` has them
+    head: int = len(HEADS) - 1  # which of the network's answers is taken, an index into `encoding.HEADS`
     _networks: dict[str, Network] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
@@ -73,11 +66,12 @@ class QuadOperator(Operator):
         steps = AUTO[self.head] if polish == "auto" else 0 if polish == "off" else polish
         groups = list(in_batches(boundaries, threads))
         batches = [[boundaries[k] for k in group] for group in groups]
+        solved = partial(self._solved, network=network, steps=steps)
         if threads == 1:
-            answers = [self._solved(batch, network, steps) for batch in batches]
+            answers = [solved(batch) for batch in batches]
         else:
             with ThreadPoolExecutor(threads) as pool:
-                answers = list(pool.map(lambda batch: self._solved(batch, network, steps), batches))
+                answers = list(pool.map(solved, batches))
         solutions = dict(zip(chain(*groups), chain(*answers), strict=True))
         return [solutions[k] for k in range(len(boundaries))]
 
@@ -97,8 +91,6 @@ class QuadOperator(Operator):
         solutions = []
         for boundary, nodes, cycles in zip(boundaries, planes.transpose(0, 2, 3, 1), taken, strict=True):
             facts = {"method": "operator", "model": self.name, "polish": cycles}
-            grid = boundary.grid(nodes, facts, finite=finite)
-            solutions.append(
-                Solution(grid, "operator", model=self.name, cycles=cycles, seconds={"grid": spent})
-            )
+            grid, seconds = boundary.grid(nodes, facts, finite=finite), {"grid": spent}
+            solutions.append(Solution(grid, "operator", model=self.name, cycles=cycles, seconds=seconds))
         return solutions

@@ -6,12 +6,9 @@ Winslow's equations with the coefficients of the last grid::
     alpha = |z_eta|^2, beta = z_xi . z_eta, gamma = |z_xi|^2
 
 Each step inverts, by sine transforms, the operator with alpha / (alpha + gamma) and gamma / (alpha + gamma)
-at their means over the domain. Differences are of nearly fourth order: three quarters of the leading error
-are taken out, which leaves that of a grid with half the steps.
-
-What is left is the network's: corners and tails, where this many nodes are too few. A few more steps after
-it, which alone converge slowly or not at all where coefficients vary much, are extrapolated: each goes to
-where the step would vanish if it were linear along the last move. `xp` is numpy or torch.
+at their means over the domain. Three quarters of the leading error of differences are taken out. Steps after
+the network, which alone converge slowly or not at all, are extrapolated to where they would vanish if they
+were linear along the last move. `xp` is numpy or torch.
 Winslow, J. Comput. Phys. 1 (1966) 149-172; Swarztrauber, SIAM Review 19 (1977) 490-501; Anderson, J. ACM 12
 (1965) 547-560.
 """
@@ -27,25 +24,15 @@ from meshonet.geometry.arrays import Complexes, Floats, array_like, read_only
 from meshonet.kernels._native import LINE, winslow_steps
 from meshonet.solvers.neural.quad.encoding import LATENT
 
-STEPS = 4
-"""After the harmonic grid. A fifth takes a tenth of what is left on average."""
-
-AFTER = 3
-"""Once more, after the network's answer for Winslow's grid."""
-
-FINER = 65
-"""Nodes along a direction at the most that these are taken on: evaluating the solution from 33 costs 3e-4."""
-
-SHARE = 0.75
-"""Of the leading error of differences that is taken out."""
-
-GROWTH = 4.0
-"""A step whose square is so many times the last one's, in the mean, is not taken."""
+STEPS = 4  # after the harmonic grid; a fifth takes a tenth of what is left on average
+AFTER = 3  # once more, after the network's answer for Winslow's grid
+FINER = 65  # most nodes along a direction that these are taken on: splines from 33 err by 3e-4
+SHARE = 0.75  # of the leading error of differences that is taken out
+GROWTH = 4.0  # a step whose square is so many times the last one's, in the mean, is not taken
 
 TINY = 1e-30
 
-Tables = tuple[Floats, Floats, Floats]
-"""A transform, its transpose, and minus the eigenvalues of second differences, as compiled code has them."""
+Tables = tuple[Floats, Floats, Floats]  # a transform, its transpose, minus the eigenvalues of differences
 
 
 def approach(
@@ -53,12 +40,9 @@ def approach(
 ) -> tuple[Any, Any]:
     """Return grids nearer to Winslow's in the rims of `z`, and the last step, both of the shape of `z`.
 
-    Parameters
-    ----------
-    z : (batch, n, n) grids of unit size, complex, arrays of `xp`.
-    around : `z` are strips (batch, m + 1, n), whose last column is the first a turn on.
-    steps : of Picard's iteration.
-    harmonic : they go out from the harmonic grid, else from `z`, and are extrapolated.
+    `z`: (batch, n, n) grids of unit size, complex, arrays of `xp`; `around`: `z` are strips (batch, m + 1,
+    n), whose last column is the first a turn on; `steps`: of Picard's iteration; `harmonic`: they go out from
+    the harmonic grid, else from `z`, and are extrapolated.
     """
     p = xp.stack([z.real, z.imag], 1)
     turn = p[:, :, -1:] - p[:, :, :1]
@@ -93,7 +77,11 @@ def step_all(near: Floats, around: bool = False, steps: int = STEPS, *, harmonic
     """Move planes `near` (batch, 2, m, n) in place as `approach` does; return the last steps, likewise."""
     last, (m, n) = np.empty_like(near), near.shape[2:]
     turns = np.ascontiguousarray(near[:, :, -1] - near[:, :, 0])
-    xi = _plain(m - 1) if around else _folded(m)
+    if around:
+        table, values = _transform(m - 1, around=True)
+        xi = table, table, values[None]
+    else:
+        xi = _folded(m)
     winslow_steps(near, turns, harmonic, steps, SHARE, GROWTH, xi, _folded(n), around, last)
     return last
 
@@ -111,18 +99,8 @@ def nodes_after(n: int) -> int:
 
 
 @lru_cache(maxsize=8)
-def _plain(n: int) -> Tables:
-    """Return the tables of n nodes that go round."""
-    table, values = _transform(n, around=True)
-    return table, table, values[None]
-
-
-@lru_cache(maxsize=8)
 def _folded(n: int) -> Tables:
-    """Return the tables of n nodes for sums of values and their mirror images, and for differences.
-
-    A wave of an odd number is its own mirror image, one of an even number is so with the other sign.
-    """
+    """Return the tables of n nodes for sums of values and their mirror images, and for differences."""
     table, values = _transform(n, around=False)
     less = len(values) // 2
     half = len(values) - less
@@ -140,10 +118,7 @@ def _folded(n: int) -> Tables:
 
 
 def _missed(p: Any, xp: Any, around: bool, share: float, *, linear: bool) -> tuple[Any, Any, Any]:
-    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients.
-
-    `linear`: Laplace's along xi and eta instead of Winslow's.
-    """
+    """Return by how much planes `p` miss the equations at nodes off the rim, and their mean coefficients."""
     body = p[:, :, 2:-2] if around else p[:, :, 1:-1]
     bends = _second(p, share, xp, around)[..., 1:-1], _across(_second, body, share, xp)
     if linear:
@@ -198,10 +173,7 @@ def _waves(p: Any, axis: int, xp: Any, around: bool) -> tuple[Any, Any]:
 
 @lru_cache(maxsize=8)
 def _transform(n: int, around: bool) -> tuple[Floats, Floats]:
-    """Return a symmetric matrix that is its own inverse and makes second differences of n nodes diagonal.
-
-    `around`, Hartley's; else of sines, for the nodes between the ends.
-    """
+    """Return a matrix, its own inverse, to which second differences are diagonal: sines, or Hartley's."""
     if around:
         k = np.arange(n)
         angle = 2.0 * np.pi * (np.outer(k, k) % n) / n

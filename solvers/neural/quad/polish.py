@@ -12,29 +12,22 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.algebraic.resample.grids import thinned
 from meshonet.solvers.neural.quad import coarse_grids, o_grids
-from meshonet.solvers.neural.quad.edges import Edges
+from meshonet.solvers.neural.quad.coarse_grids import Edges
 from meshonet.solvers.neural.quad.encoding import WINSLOW
 from meshonet.solvers.neural.quad.network import Network
 
-Counts: TypeAlias = tuple[int, int]
-"""Nodes along xi and eta."""
-
-MOST_SOLVED = 129
-"""Nodes along a direction at the most of the grid that Winslow's equations are solved on."""
-
-MOST_DESCENDED, LARGER_DESCENDED = 513, 257
-"""Nodes along a direction up to which grids descend in full, and how many the larger ones do with."""
+Counts: TypeAlias = tuple[int, int]  # nodes along xi and eta
+MOST_SOLVED = 129  # nodes along a direction at the most of the grid that Winslow's equations are solved on
+MOST_DESCENDED, LARGER_DESCENDED = 513, 257  # most nodes that descend in full; larger grids' nodes
 
 LAST = 2
 """Most steps that are taken at full resolution; those before are taken on the network's coarse grid.
 
-There they gain most of the angles in the mean, above all as steps of Newton's method, which four-sided
-domains have: where the network is far off, dozens of others would not do. The last, a descent that follows
-the coarse grid's Hessian in smooth moves, remove folds and kinks between its nodes.
+There they gain most of the angles in the mean, above all by Newton's method, which four-sided domains have.
+The last, a descent that follows the coarse grid's Hessian in smooth moves, remove folds and kinks between.
 """
 
-STILL = 1e-4
-"""Moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`."""
+STILL = 1e-4  # moves at which a descent stops sooner, as `meshonet.solvers.energy.variational.STILL`
 
 
 def polished(
@@ -49,7 +42,10 @@ def polished(
     last = steps if head == WINSLOW else min((steps + 1) // 2 if newton else steps, LAST)
     begin = _newton if newton else _descent
     taken = [begin(grid, steps - last, topology) for grid in coarse]
-    ni, nj = (_most_nodes(n, head) for n in counts)
+    if head == WINSLOW:
+        ni, nj = (min(n, MOST_SOLVED) for n in counts)
+    else:
+        ni, nj = (n if n <= MOST_DESCENDED else LARGER_DESCENDED for n in counts)
     planes = evaluated(coarse, (ni, nj))
     for k, grid in enumerate(planes):
         if head == WINSLOW:
@@ -65,25 +61,14 @@ def _coarse(
     """Return the network's coarse grids, and what evaluates them at other counts."""
     if topology == "quad":
         edges = Edges.of(boundaries)
-        return (
-            coarse_grids.coarse_grids(edges, network, head),
-            lambda planes, counts: coarse_grids.evaluate(planes, edges.thinned(*counts)),
-        )
-    return (
-        o_grids.coarse_grids(boundaries, network, head),
-        lambda planes, counts: o_grids.evaluate(planes, [_with(b, counts) for b in boundaries]),
-    )
+        grids = coarse_grids.coarse_grids(edges, network, head)
+        return grids, lambda planes, counts: coarse_grids.evaluate(planes, edges.thinned(*counts))
 
+    def around(planes: Floats, counts: Counts) -> Floats:
+        own = counts == (boundaries[0].ni, boundaries[0].nj)
+        return o_grids.evaluate(planes, boundaries if own else [thinned(b, *counts) for b in boundaries])
 
-def _with(boundary: Boundary, counts: Counts) -> Boundary:
-    """Return a boundary with the node counts."""
-    return boundary if counts == (boundary.ni, boundary.nj) else thinned(boundary, *counts)
-
-
-def _most_nodes(n: int, head: int) -> int:
-    if head == WINSLOW:
-        return min(n, MOST_SOLVED)
-    return n if n <= MOST_DESCENDED else LARGER_DESCENDED
+    return o_grids.coarse_grids(boundaries, network, head), around
 
 
 def _newton(planes: Floats, steps: int, topology: Topology) -> int:
@@ -104,8 +89,9 @@ def _descent(planes: Floats, steps: int, topology: Topology, coarse: Floats | No
     from meshonet.solvers.energy.variational import WEIGHTS
 
     weights = WEIGHTS[topology]
-    every_second = None if coarse is None else np.moveaxis(coarse[:, ::2, ::2].copy(), 0, -1)
-    stiffness = None if every_second is None else stiffness_of(every_second, weights)
+    stiffness = None
+    if coarse is not None:
+        stiffness = stiffness_of(np.moveaxis(coarse[:, ::2, ::2].copy(), 0, -1), weights)
     nodes = np.moveaxis(planes, 0, -1)
     return descend(nodes, weights, STILL, steps, periodic=topology == "o", stiffness=stiffness)[0]
 

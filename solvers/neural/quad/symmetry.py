@@ -1,14 +1,13 @@
 """The eight relabellings of a quad, and convolutions that commute with them.
 
-A quad stays the same domain when its index axes are turned by quarters or mirrored, and the plane with
-them. These eight signed permutations form the dihedral group D4. A layer's channels come in sets of eight,
-one for each element; a kernel of the layer is one small set of weights, seen from every element::
+A quad stays the same domain when its index axes, and the plane with them, are turned by quarters or mirrored:
+the dihedral group D4. A layer's channels come in sets of eight, one for each element; a kernel of the layer
+is one small set of weights, seen from every element::
 
     K[h, g](p) = w[h^-1 g](h^-1 p)
 
-so the network's answer to a relabelled domain is the relabelled answer, to rounding, and an ordinary
-convolution with the expanded kernels computes it. Channels lie as (set, element), the element fastest; arrays
-are of numpy or of torch where `xp` is the module they are of.
+so the network's answer to a relabelled domain is the relabelled answer, to rounding. Channels lie as (set,
+element), the element fastest; arrays are of numpy or of torch where `xp` is the module they are of.
 Cohen & Welling, Group Equivariant Convolutional Networks, ICML 2016.
 """
 
@@ -24,8 +23,7 @@ from meshonet.geometry.arrays import Floats
 Integers: TypeAlias = NDArray[np.int64]
 Reals: TypeAlias = NDArray[np.floating[Any]]
 
-ORDER = 8
-"""Elements of the group."""
+ORDER = 8  # elements of the group
 
 
 def _elements() -> Integers:
@@ -35,16 +33,14 @@ def _elements() -> Integers:
     return np.stack([*turns, *(turn @ mirror for turn in turns)])
 
 
-ELEMENTS: Integers = _elements()
-"""(8, 2, 2) what an element does to index steps (along xi, along eta) and to vectors (x, y) of the plane."""
+ELEMENTS: Integers = _elements()  # (8, 2, 2) on index steps and on vectors of the plane
 
 
 def _number(element: Integers) -> int:
     return int(np.flatnonzero((element == ELEMENTS).all(axis=(1, 2)))[0])
 
 
-INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])
-"""(8,) number of the inverse of each element."""
+INVERSE: Integers = np.array([_number(g.T) for g in ELEMENTS])  # (8,) number of the inverse of each element
 
 PRODUCT: Integers = np.array([[_number(a @ b) for b in ELEMENTS] for a in ELEMENTS])
 """(8, 8) number of the product of two."""
@@ -58,15 +54,11 @@ def _taps(size: int) -> Integers:
     return (moved[:, 0] * size + moved[:, 1]).reshape(ORDER, size, size)
 
 
-TAPS: dict[int, Integers] = {size: _taps(size) for size in (1, 3)}
-"""Of kernels with this many places along each axis."""
-
-RELATIVE: Integers = PRODUCT[INVERSE]
-"""(8, 8) number of h^-1 g."""
+TAPS: dict[int, Integers] = {size: _taps(size) for size in (1, 3)}  # by places along an axis
+RELATIVE: Integers = PRODUCT[INVERSE]  # (8, 8) number of h^-1 g
 
 
 def _sum(*blocks: Reals) -> Floats:
-    """Return a block diagonal matrix."""
     sizes = [len(block) for block in blocks]
     result, at = np.zeros((sum(sizes), sum(sizes))), 0
     for block, size in zip(blocks, sizes, strict=True):
@@ -87,8 +79,7 @@ def _seen(element: Integers) -> Floats:
     )  # fmt: skip
 
 
-SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])
-"""(8, FEATURES, FEATURES)"""
+SEEN: Floats = np.stack([_seen(element) for element in ELEMENTS])  # (8, FEATURES, FEATURES)
 
 
 def table(size: int) -> Integers:

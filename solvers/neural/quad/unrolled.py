@@ -15,8 +15,7 @@ from typing import Any
 
 import numpy as np
 
-AROUND = 65
-"""Nodes along xi, the last a turn after the first, of the grid that the network sees around a body."""
+AROUND = 65  # nodes along xi, the last a turn after the first, that the network sees around a body
 
 TURN = 2.0 * np.pi
 
@@ -24,9 +23,7 @@ TURN = 2.0 * np.pi
 def middles(walls: Any, xp: Any = np) -> Any:
     """Return the centroids (batch,) of the areas inside closed curves (batch, n), first node not repeated.
 
-    Parameters
-    ----------
-    xp : the module, numpy or torch, that arrays are of; the same in the functions below.
+    `xp`: the module, numpy or torch, that arrays are of; the same in the functions below.
     """
     off = walls - walls[:, :1]  # near the origin, against cancellation
     ahead = xp.roll(off, -1, 1)
@@ -51,10 +48,8 @@ def unrolled(z: Any, centres: Any, xp: Any = np) -> tuple[Any, Any]:
 def around_middles(wall: Any, walls: Any, inside: Callable[[Any], Any], xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the strips of `walls` (batch, m + 1, n), the middles of bodies, and which are gone round once.
 
-    Parameters
-    ----------
-    wall : (batch, ni) closed walls of the bodies: middles are their centroids where `walls` go round them.
-    inside : a point inside a curve (m,), which is the middle elsewhere.
+    Middles are the centroids of the bodies' closed walls `wall` (batch, ni) where `walls` go round them,
+    elsewhere the point that `inside` returns inside a curve (m,).
     """
     centres = middles(wall[:, :-1], xp)
     strips, once = unrolled(walls, centres, xp)

@@ -44,12 +44,8 @@ def solve_strips(
 ) -> Strips:
     """Return the strips of O boundaries; those without a lift or a converged solution are left out.
 
-    `progress` is called with how many are done and how many were left out.
-
-    Raises
-    ------
-    InputError
-        no boundary could be used, or one is not an O boundary.
+    `progress` is called with how many are done and how many were left out. Raises InputError: no boundary
+    could be used, or one is not an O boundary.
     """
     rows: list[tuple[Complexes, Complexes, Complexes]] = []
     left_out = 0

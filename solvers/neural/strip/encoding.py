@@ -14,28 +14,22 @@ import numpy as np
 from meshonet.geometry.arrays import array_like
 from meshonet.solvers.conformal.strip import decay, from_columns, to_columns, wavenumbers
 
-DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])
-"""eta at which the network sees the harmonic base."""
+DEPTHS = np.array([0.0, 0.03, 0.08, 0.16, 0.32, 0.6, 1.0])  # eta at which the network sees the harmonic base
 
 CHANNELS = 4 * len(DEPTHS)
 SCALARS = 3
 
-SLOPE = 0.3
-"""Factor of slopes, which are larger than values by about their wave number."""
+SLOPE = 0.3  # factor of slopes, which are larger than values by about their wave number
 
 
 def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
     """Return the network's input for a batch of strips.
 
-    Parameters
-    ----------
-    wall, far : (batch, 2 MODES + 1) modes of F on the two walls.
+    `wall`, `far`: (batch, 2 MODES + 1) modes of F on the two walls.
 
-    Returns
-    -------
-    channels : (batch, CHANNELS, COLUMNS) the harmonic base and its slope along theta at `DEPTHS`, unit size.
-    scalars : (batch, SCALARS) log size, strip height, shear, each shifted and scaled to about one.
-    size : (batch,) root mean square of the walls' deviation from straight.
+    Channels (batch, CHANNELS, COLUMNS) are the harmonic base and its slope along theta at `DEPTHS`, at unit
+    size; scalars (batch, SCALARS) log size, strip height and shear, about one; size (batch,) the root mean
+    square of the walls' deviation from straight.
     """
     mean = (far - wall)[:, 0]
     a, b = (xp.concatenate([xp.zeros_like(side[:, :1]), side[:, 1:]], 1) for side in (wall, far))
@@ -52,12 +46,8 @@ def encode(wall: Any, far: Any, xp: Any = np) -> tuple[Any, Any, Any]:
 def decode(coefficients: Any, basis: Any, scale: float, size: Any, xp: Any = np) -> Any:
     """Return the modes (batch, 2 MODES + 1, LEVELS) of R from the network's answers.
 
-    Parameters
-    ----------
-    coefficients : (batch, 2 Q, COLUMNS) real parts, then imaginary parts.
-    basis : (Q, LEVELS - 2) functions of the inner Chebyshev points.
-    scale : of the training targets.
-    size : (batch,) from `encode`.
+    `coefficients`: (batch, 2 Q, COLUMNS) real parts, then imaginary parts; `basis`: (Q, LEVELS - 2) functions
+    of the inner Chebyshev points; `scale`: of the training targets; `size`: (batch,) from `encode`.
     """
     q = len(basis)
     c = from_columns(coefficients[:, :q] + 1j * coefficients[:, q:], xp)

@@ -25,21 +25,15 @@ GATE = 0.3
 class StripNetwork:
     """The network of one set of weights, its arrays laid out once for the products below.
 
-    Parameters
-    ----------
-    weights : arrays by torch's names.
+    `weights`: arrays by torch's names.
     """
 
     def __init__(self, weights: Mapping[str, Floats]) -> None:
         self._lift, self._project = (_Convolution(weights, name) for name in ("lift", "project"))
-        self._layers = [
-            (
-                _Convolution(weights, f"conv.{n}"),
-                _mixing(weights, f"spectral.{n}"),
-                _Convolution(weights, f"expand.{n}"),
-            )
-            for n in range(sum(name.startswith("conv.") for name in weights) // 2)
-        ]
+        self._layers = []
+        for n in range(_depth(weights)):
+            convolution, expand = (_Convolution(weights, f"{name}.{n}") for name in ("conv", "expand"))
+            self._layers.append((convolution, _mixing(weights, f"spectral.{n}"), expand))
         self._spectral_out = _mixing(weights, "spectral_out")
 
     def __call__(self, channels: Floats, scalars: Floats) -> Floats:
@@ -63,22 +57,23 @@ def check_shapes(weights: Mapping[str, Floats]) -> None:
     """Raise ValueError or KeyError unless `weights` are those of a network, by names and shapes."""
     width, inputs = weights["lift.weight"].shape[0] // 2, weights["lift.weight"].shape[1]
     outputs = weights["project.weight"].shape[0]
-    wanted: dict[str, tuple[int, ...]] = {
-        "lift.weight": (2 * width, inputs, 1), "lift.bias": (2 * width,),
-        "project.weight": (outputs, width, 1), "project.bias": (outputs,),
-        "spectral_out.weight": (weights["spectral_out.weight"].shape[0], width, outputs, 2),
-    }  # fmt: skip
-    for n in range(sum(name.startswith("conv.") for name in weights) // 2):
-        modes = weights[f"spectral.{n}.weight"].shape[0]
-        wanted |= {
-            f"conv.{n}.weight": (2 * width, width, TAPS), f"conv.{n}.bias": (2 * width,),
-            f"expand.{n}.weight": (width, width, 1), f"expand.{n}.bias": (width,),
-            f"spectral.{n}.weight": (modes, width, width, 2),
-        }  # fmt: skip
+    dense = {"lift": (2 * width, inputs, 1), "project": (outputs, width, 1)}
+    mixing = {"spectral_out": (width, outputs, 2)}
+    for n in range(_depth(weights)):
+        dense |= {f"conv.{n}": (2 * width, width, TAPS), f"expand.{n}": (width, width, 1)}
+        mixing[f"spectral.{n}"] = (width, width, 2)
+    wanted: dict[str, tuple[int, ...]] = {f"{name}.weight": shape for name, shape in dense.items()}
+    wanted |= {f"{name}.bias": shape[:1] for name, shape in dense.items()}
+    for name, shape in mixing.items():
+        wanted[f"{name}.weight"] = (weights[f"{name}.weight"].shape[0], *shape)
     for name in [*wanted, *weights]:
-        shape = weights[name].shape if name in weights else None
-        if shape != wanted.get(name) or not width:
-            raise ValueError(f"array {name!r:.60} has shape {shape} in place of {wanted.get(name)}")
+        had = weights[name].shape if name in weights else None
+        if had != wanted.get(name) or not width:
+            raise ValueError(f"array {name!r:.60} has shape {had} in place of {wanted.get(name)}")
+
+
+def _depth(weights: Mapping[str, Floats]) -> int:
+    return sum(name.startswith("conv.") for name in weights) // 2
 
 
 def gelu(x: Floats) -> Floats:

@@ -24,13 +24,10 @@ from meshonet.solvers.solution import Solution
 class StripOperator(Operator):
     """A strip network with its encoding; without weights the harmonic base alone.
 
-    Parameters
-    ----------
-    weights : of the network, float64.
-    basis, scale : (Q, LEVELS - 2) functions of the network's targets, and their size.
+    `basis`, `scale`: (Q, LEVELS - 2) functions of the network's targets, and their size.
     """
 
-    weights: Mapping[str, Floats] = field(default_factory=dict)
+    weights: Mapping[str, Floats] = field(default_factory=dict)  # of the network, float64
     basis: Floats = field(default_factory=lambda: np.zeros((0, LEVELS - 2)))
     scale: float = 1.0
     network: StripNetwork | None = None

@@ -22,7 +22,6 @@ from meshonet.solvers.neural.quad import network, picard
         lambda: nufft._transform(256),
         lambda: [network.rim_factor(9, 9, False)],
         lambda: picard._folded(9),
-        lambda: picard._plain(8),
         lambda: picard._transform(9, True),
         lambda: _waves(9, 9, 2, 1),
     ],

@@ -16,10 +16,8 @@ from families import arches, rings
 
 from meshonet.geometry.errors import InputError, SolverError
 from meshonet.solvers.conformal.harmonic import extend
-from meshonet.solvers.neural.fit.checkpoint import beside
-from meshonet.solvers.neural.fit.loop import Progress
+from meshonet.solvers.neural.fit.loop import Progress, Task, beside
 from meshonet.solvers.neural.fit.plan import Plan
-from meshonet.solvers.neural.fit.task import Task
 from meshonet.solvers.neural.fit.team import Team, team
 from meshonet.solvers.neural.fit.train import train
 from meshonet.solvers.neural.models.operator import PaperOperator

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from meshonet.solvers.conformal.panels import NODES, WORTH, panels
+from meshonet.solvers.conformal.chebyshev import NODES, WORTH, panels
 
 
 @pytest.mark.parametrize("levels", [200, 800, 3200])

@@ -10,7 +10,7 @@ import torch
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.measure import per_cell
-from meshonet.solvers.neural.fit.angles import excess, extremes
+from meshonet.solvers.neural.fit.quad_figures import excess, extremes
 
 
 def sheared(n: int, slope: float) -> torch.Tensor:

@@ -1,4 +1,4 @@
-"""Blunt trailing edges with their two corners rounded off.
+"""Blunt trailing edges with their two corners rounded off, or closed by a wedge behind them.
 
 ::
 
@@ -6,6 +6,11 @@
                        )      and meets the base at `across` from it: 0.9 of half the base, capped, and twice
                        |      that along the surface. The rest of the outline stays.
     base               |
+
+    upper surface ----.__          Both surfaces go on as cubics, leaving along their own directions, to a tip
+                     |   `--.._    `REACH` bases behind the middle of the base, where the mean of the two
+    base             |     __..--  directions points; nearer where they would meet before. The given points
+    lower surface ---+--``         stay; those on the base are dropped.
 """
 
 from __future__ import annotations
@@ -26,21 +31,19 @@ _TURN = 0.5
 """Nodes of half a base that turns by 90 degrees that follow its turning, for each that follows its length."""
 _MORE = 1.3  # factor up to which cells are added so that neither half has fewer than wanted
 _NEAR = 0.1  # chords from the corner within which the surface is given by points taken from the curve
+REACH = 4.0
+"""Largest length of the wedge in widths of the base: 14 degrees at the tip between parallel surfaces."""
+LEAST = 1.0
+"""The same at least: surfaces that would meet before are bent outwards, with a corner each."""
+_WEDGE_POINTS = 9
 
 
 def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     """Return the curve of a blunt section with its trailing corners rounded, and where the rounding ends.
 
-    Parameters
-    ----------
-    curve : closed; its first point is the middle of the base, its second and its last are the corners.
-    chord : unit of the caps.
-
-    Returns
-    -------
-    tuple
-        the curve, from the middle of the base on as before, and the arc length at which it leaves the rounded
-        part; it comes back to it as far before its end.
+    The closed curve's first point is the middle of the base, its second and its last are the corners. The
+    new one begins there too, leaves the rounded part at the arc length returned and comes back to it as far
+    before its end.
     """
     length, half = curve.length, float(curve.knots[1])
     across = min(_ACROSS * half, _CAP * chord)
@@ -48,9 +51,8 @@ def rounded_base(curve: Curve, chord: float) -> tuple[Curve, float]:
     near = along * 1.25 ** np.arange(1 + int(np.log(max(_NEAR * chord / along, 1.25)) / np.log(1.25)))
     inner = (curve.knots > half + 1.2 * near[-1]) & (curve.knots < length - half - 1.2 * near[-1])
     corner_arcs = curve.corners[(curve.corners > half + along) & (curve.corners < length - half - along)]
-    arcs = np.unique(
-        np.concatenate([half + near, curve.knots[inner], length - half - near[::-1], corner_arcs])
-    )
+    surface = half + near, curve.knots[inner], length - half - near[::-1], corner_arcs
+    arcs = np.unique(np.concatenate(surface))
     lower = _fillet(curve, half - across, half, half + along)
     upper = _fillet(curve, length - half + across, length - half, length - half - along)[::-1]
     points = np.concatenate([curve.points[:1], lower[:-1], curve.at(arcs), upper[1:]])
@@ -64,13 +66,8 @@ def half_rounds(curve: Curve, end: float, cells: int) -> tuple[Floats, Floats]:
 
     The density of nodes follows length and turning; turning is averaged over two cells to each side, as the
     cells where the base turns most are the skewest of the grid. A slanted base turns more at one end, and has
-    more cells there.
-
-    Parameters
-    ----------
-    curve : of `rounded_base`.
-    end : arc length at which the rounding ends.
-    cells : of a half that turns by a right angle, at least 3.
+    more cells there. `curve` and `end` are those of `rounded_base`, `cells`, at least 3, those of a half that
+    turns by a right angle.
     """
     per_cell = 64
     n = per_cell * cells  # on either half; place n is the middle
@@ -103,3 +100,28 @@ def _fillet(curve: Curve, begin: float, corner: float, end: float) -> Floats:
     u = np.linspace(0.0, 1.0, _POINTS)[:, None]
     v = 1.0 - u
     return np.asarray(v**3 * a + 3 * v * v * u * p + 3 * v * u * u * q + u**3 * b)
+
+
+def wedged_base(points: Floats, tangents: tuple[Floats, Floats]) -> Floats:
+    """Return the ring (m, 2) of a blunt section, closed by a wedge; it starts at the tip.
+
+    The points (n, 2) run clockwise from the lower corner of the base to the upper one; the `tangents` are the
+    unit directions (2,) in which the lower and the upper surface arrive there.
+    """
+    lower, upper = tangents
+    gap = float(np.hypot(*(points[0] - points[-1])))
+    along = (lower + upper) / np.hypot(*(lower + upper))
+    cross = float(lower[1] * upper[0] - lower[0] * upper[1])
+    closing = cross / (1.0 + float(lower @ upper))  # tan of half the angle at which the surfaces converge
+    reach = min(REACH, 0.5 / max(closing, 0.5 / REACH))
+    reach = max(reach, LEAST)
+    tip = 0.5 * (points[0] + points[-1]) + reach * gap * along
+    u = np.linspace(0.0, 1.0, _WEDGE_POINTS)[1:, None]
+    sides = []
+    for corner, leaving in ((points[0], lower), (points[-1], upper)):
+        way = tip - corner
+        if reach == LEAST:
+            leaving = way / np.hypot(*way)
+        bend = u * (1 - u) ** 2 * float(np.hypot(*way)) * leaving - u * u * (1 - u) * way
+        sides.append(corner + u * u * (3 - 2 * u) * way + bend)
+    return np.concatenate([[tip], sides[0][-2::-1], points, sides[1][:-1]])
