@@ -152,8 +152,8 @@ def folds(kept: Kept, count: int) -> str:
     for spacing in ("conformal", "cosine", "curvature", None):
         shapes = random_airfoils(count, 200, spacing)  # type: ignore[arg-type]
         label = "every law, random first cells at both edges" if spacing is None else str(spacing)
-        found = [kept.row(("folds", label, one.name), partial(folded, one)) for one in shapes]
-        share = 100.0 * (1.0 - np.array(found).mean(axis=0))
+        folds = [kept.row(("folds", label, one.name), partial(folded, one)) for one in shapes]
+        share = 100.0 * (1.0 - np.array(folds).mean(axis=0))
         lines.append(f"| {label} | {share[0]:.1f} % | {share[1]:.1f} % | {share[2]:.1f} % |")
     return "\n".join(lines) + "\n"
 

@@ -37,8 +37,8 @@ def main() -> None:
     for name, (arguments, limit) in LIMITS.items():
         spent = seconds(arguments, runs)
         middle, least = statistics.median(spent), min(spent)
-        told = "" if limit is None else f"{limit:6.3f} s {'' if middle <= limit else 'EXCEEDED'}"
-        print(f"{name:24} {middle:.3f} s  {least:.3f} s  {told}".rstrip())
+        verdict = "" if limit is None else f"{limit:6.3f} s {'' if middle <= limit else 'EXCEEDED'}"
+        print(f"{name:24} {middle:.3f} s  {least:.3f} s  {verdict}".rstrip())
 
 
 if __name__ == "__main__":

@@ -331,8 +331,8 @@ def _trained() -> list[str]:
     train = "train made/hexgrids.h5 --model {0} --epochs 10 --seed 4 --json -> {0}.safetensors"
     infer = "infer made/hexagons.h5#test --model made/{}.safetensors --answer {} --allow-invalid --json"
     answers = _each(infer, product(names, ("raw", "pasted", "valid")))
-    told = ["models --json", "--version -> no", "--help -> no", "solve-pde --help -> no"]
-    return [*(train.format(name) for name in names), *answers, *told]
+    printing = ["models --json", "--version -> no", "--help -> no", "solve-pde --help -> no"]
+    return [*(train.format(name) for name in names), *answers, *printing]
 
 
 def _quality() -> list[str]:

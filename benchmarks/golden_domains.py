@@ -46,13 +46,13 @@ def airfoil_names(folder: Path) -> list[str]:
 
 def figures_of(run: Run) -> Figures:
     """Return the figures of every grid that a command tells of."""
-    told = [json.loads(line) for line in run.stream("stdout").splitlines()]
-    return [[one["exit_code"]] if "error" in one else _figures(one) for one in told]
+    answers = [json.loads(line) for line in run.stream("stdout").splitlines()]
+    return [[one["exit_code"]] if "error" in one else _figures(one) for one in answers]
 
 
-def _figures(told: Mapping[str, Mapping[str, Mapping[str, float]]]) -> list[float]:
-    angle = told["quality"]["max_angle"]
-    return [float(str(told["folded"])), angle["max"], angle["mean"]]
+def _figures(answer: Mapping[str, Mapping[str, Mapping[str, float]]]) -> list[float]:
+    angle = answer["quality"]["max_angle"]
+    return [float(str(answer["folded"])), angle["max"], angle["mean"]]
 
 
 def summary(label: str, figures: Figures) -> str:

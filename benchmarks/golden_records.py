@@ -228,8 +228,8 @@ def _array_difference(old: NDArray[np.float64], new: NDArray[np.float64]) -> tup
     extent = float(np.ptp(old[np.isfinite(old)])) or 1.0
     k = np.unravel_index(int(gap.argmax()), gap.shape)
     largest = float(gap[k]) / extent
-    told = f"largest relative difference {largest:.3g} at {tuple(map(int, k))}"
-    return largest, f"{told}, {np.count_nonzero(gap)} of {gap.size} values differ"
+    largest_text = f"largest relative difference {largest:.3g} at {tuple(map(int, k))}"
+    return largest, f"{largest_text}, {np.count_nonzero(gap)} of {gap.size} values differ"
 
 
 def _is_float(value: Any) -> bool:

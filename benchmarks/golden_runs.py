@@ -62,7 +62,7 @@ def parse(line: str) -> Job:
     ['tfi', 'duct.csv', '-o', 'out/grid.vts']
     """
     text, _, output = (part.strip() for part in line.partition("->"))
-    given = re.search(r"< (\S+)", text)
+    standard_input = re.search(r"< (\S+)", text)
     words = shlex.split(re.sub(r"< \S+", "", text))
     target, *options = output.split() or [".h5"]
     name = None
@@ -72,7 +72,7 @@ def parse(line: str) -> Job:
         name, target = target, f"out/{target}"
     if target != "no" and words[0] not in WITHOUT_OUTPUT:
         words += ["-o", target, *options]
-    return Job(line, words, given[1] if given else None, name)
+    return Job(line, words, standard_input[1] if standard_input else None, name)
 
 
 def needed(lines: Sequence[str], chosen: Sequence[str]) -> list[str]:

@@ -27,19 +27,19 @@ OUT = Path("out")
 def main() -> None:
     """Run the jobs of a file."""
     tree, jobs = Path(sys.argv[1]).resolve(), json.loads(Path(sys.argv[2]).read_text())
-    found = importlib.util.find_spec("meshonet_cli")
-    if found is None or tree not in Path(str(found.origin)).resolve().parents:
-        sys.exit(f"meshonet_cli is not that of {tree}: {found and found.origin}")
+    command_line = importlib.util.find_spec("meshonet_cli")
+    if command_line is None or tree not in Path(str(command_line.origin)).resolve().parents:
+        sys.exit(f"meshonet_cli is not that of {tree}: {command_line and command_line.origin}")
     for job in jobs:
         run(job["words"], job["input"], Path(job["folder"]), job["name"])
 
 
-def run(words: list[str], given: str | None, folder: Path, name: str | None) -> None:
+def run(words: list[str], standard_input: str | None, folder: Path, name: str | None) -> None:
     """Run one command into `folder`; what is in ``out`` then is kept in ``made`` too when it has a `name`."""
     shutil.rmtree(OUT, ignore_errors=True)
     OUT.mkdir()
     folder.mkdir(parents=True)
-    with redirected(given or os.devnull, folder):
+    with redirected(standard_input or os.devnull, folder):
         code = exit_code(words)
     if name:
         shutil.copytree(OUT, "made", dirs_exist_ok=True)
@@ -62,11 +62,14 @@ def exit_code(words: list[str]) -> int | str:
 
 
 @contextmanager
-def redirected(given: str, folder: Path) -> Iterator[None]:
+def redirected(standard_input: str, folder: Path) -> Iterator[None]:
     """Connect the standard streams to files, and restore them."""
     kept = [os.dup(number) for number in range(3)]
     flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC
-    files = [os.open(given, os.O_RDONLY), *(os.open(folder / name, flags) for name in ("stdout", "stderr"))]
+    files = [
+        os.open(standard_input, os.O_RDONLY),
+        *(os.open(folder / name, flags) for name in ("stdout", "stderr")),
+    ]
     stdin = sys.stdin
     for number, file in enumerate(files):
         os.dup2(file, number)

@@ -119,9 +119,9 @@ def compare(before: Goldens, options: argparse.Namespace) -> int:
     """Run what was recorded, print what differs, and return the exit code."""
     begun, count = time.perf_counter(), Counter[str]()
     for line, after in _records(options, before.commands):
-        found = list(differences(before.commands[line], after, options.tolerance))
-        _tell_of(line, found)
-        kinds = {one.kind for one in found}
+        gaps = list(differences(before.commands[line], after, options.tolerance))
+        _print_of(line, gaps)
+        kinds = {one.kind for one in gaps}
         count["commands"] += 1
         count["failed" if "failed" in kinds else "within" if "within" in kinds else "same"] += 1
         count["words"] += "words" in kinds
@@ -137,23 +137,23 @@ def compare(before: Goldens, options: argparse.Namespace) -> int:
     return int(count["failed"] > 0 or wrong)
 
 
-def _tell_of(line: str, found: list[Difference]) -> None:
-    for kind, told in {"failed": "FAILED", "within": "within", "words": "words differ"}.items():
-        texts = [one.text for one in found if one.kind == kind]
+def _print_of(line: str, gaps: list[Difference]) -> None:
+    for kind, heading in {"failed": "FAILED", "within": "within", "words": "words differ"}.items():
+        texts = [one.text for one in gaps if one.kind == kind]
         hidden = [f"and {len(texts) - SHOWN} more"] if len(texts) > SHOWN else []
         for text in [*texts[:SHOWN], *hidden]:
-            print(f"{told}: {line}: {text}", flush=True)
+            print(f"{heading}: {line}: {text}", flush=True)
 
 
 def _compare_domains(before: Mapping[str, Figures], after: Mapping[str, Figures]) -> bool:
     """Print what differs between grids of domains, and say whether any does."""
     wrong = False
     for label, figures in after.items():
-        found = list(differing(before[label], figures)) if label in before else ["not recorded"]
-        print(f"{summary(label, figures)}: {'DIFFERENT' if found else 'the same'}")
-        for text in found:
+        gaps = list(differing(before[label], figures)) if label in before else ["not recorded"]
+        print(f"{summary(label, figures)}: {'DIFFERENT' if gaps else 'the same'}")
+        for text in gaps:
             print(f"FAILED: {label}: {text}")
-        wrong = wrong or bool(found)
+        wrong = wrong or bool(gaps)
     return wrong
 
 
@@ -170,19 +170,19 @@ def _tell_of_record(made: Goldens) -> None:
 def save(made: Goldens, path: Path) -> None:
     """Write what was recorded to a JSON file, and the arrays to a .npz beside it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    told = {line: {"numbers": one.numbers, "words": one.words} for line, one in made.commands.items()}
-    path.write_text(json.dumps({"commands": told, "domains": made.domains}, indent=0))
+    commands = {line: {"numbers": one.numbers, "words": one.words} for line, one in made.commands.items()}
+    path.write_text(json.dumps({"commands": commands, "domains": made.domains}, indent=0))
     arrays = {_key(line, place): a for line, one in made.commands.items() for place, a in one.arrays.items()}
     np.savez_compressed(path.with_suffix(".npz"), **arrays)
 
 
 def load(path: Path) -> Goldens:
     """Return what was recorded to a file."""
-    told = json.loads(path.read_text())
-    made = Goldens(domains=told["domains"])
+    content = json.loads(path.read_text())
+    made = Goldens(domains=content["domains"])
     with np.load(path.with_suffix(".npz")) as file:
         stored = set(file.files)
-        for line, one in told["commands"].items():
+        for line, one in content["commands"].items():
             arrays = {p: file[_key(line, p)] for p in one["numbers"] if _key(line, p) in stored}
             made.commands[line] = Record(one["numbers"], one["words"], arrays)
     return made

@@ -11,7 +11,7 @@ from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.formats.source import Source, open_source, printable
 from meshonet.formats.table import TABLE
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError, MeshonetError
+from meshonet.geometry.errors import InputError, MeshonetError, in_source
 from meshonet.geometry.shapes.shape import Shape
 
 Kind = Literal["grids", "boundaries"]
@@ -105,7 +105,7 @@ def read_shapes(text: str, fmt: str | None = None) -> Iterator[Shape]:
     Raises InputError: a source that cannot be opened, is of no known format, or is not right; named with its
     place.
     """
-    if _is_designation(text):
+    if is_designation(text):
         if fmt:
             format_named(fmt)
         from meshonet.geometry.shapes.airfoil.naca import naca
@@ -126,7 +126,7 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
 
     Raises InputError: as `read_shapes`; also a file that holds boundaries only.
     """
-    if _is_designation(text):
+    if is_designation(text):
         remedy = f"make a grid of it first: meshonet infer {text} -o grid.vts"
         raise InputError("is an airfoil, not a grid", remedy, source=text)
     source = open_source(text)
@@ -139,7 +139,8 @@ def read_grids(text: str, fmt: str | None = None) -> Iterator[Grid]:
     raise _unreadable(record, source)
 
 
-def _is_designation(text: str) -> bool:
+def is_designation(text: str) -> bool:
+    """Return whether `text` names an airfoil by its designation, ``naca:2412``, and no file."""
     return text.lower().startswith(_DESIGNATION) and not Path(text).exists()
 
 
@@ -152,12 +153,10 @@ class _Records(Iterator[T]):
 
     def __next__(self) -> T:
         try:
-            if self._records is None:
-                self._records = self._read()
-            return next(self._records)
-        except InputError as error:
-            error.source = error.source or self._source.name
-            raise
+            with in_source(self._source.name):
+                if self._records is None:
+                    self._records = self._read()
+                return next(self._records)
         except MeshonetError:
             raise
         except (OSError, MemoryError) as error:

@@ -9,7 +9,8 @@
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 
@@ -47,6 +48,16 @@ class InputError(MeshonetError):
         parts = (self.source, parameter, self.place, spelled(self.problem, spelling))
         text = ": ".join(part for part in parts if part)
         return f"{text}; {spelled(self.remedy, spelling)}" if self.remedy else text
+
+
+@contextmanager
+def in_source(name: str) -> Iterator[None]:
+    """Name the source in the input errors of a block that do not name one."""
+    try:
+        yield
+    except InputError as error:
+        error.source = error.source or name
+        raise
 
 
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:

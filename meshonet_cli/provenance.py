@@ -18,8 +18,8 @@ def provenance(arguments: Sequence[str] | None = None) -> dict[str, str]:
     >>> provenance(["tfi", "a b.csv", "-o", "grid.vts", "--res", "80"])["command"]
     "meshonet tfi 'a b.csv' --res 80"
     """
-    given = tuple(sys.argv[1:] if arguments is None else arguments)
-    return {"software": f"meshonet {__version__}", "command": _command(given)}
+    line = tuple(sys.argv[1:] if arguments is None else arguments)
+    return {"software": f"meshonet {__version__}", "command": _command(line)}
 
 
 @lru_cache(maxsize=1)  # every grid of many files has the same, and it names all of them

@@ -43,11 +43,11 @@ def measure_grids(
         with session.member(item.label, item.source):
             begun = time.perf_counter()
             reference = references.match(item.what.name) if references else None
-            found = time.perf_counter()
+            paired = time.perf_counter()
             measured = Measured(item, quality(item.what, profile=profile, compare=reference))
-            measured.seconds["quality"] = time.perf_counter() - found
+            measured.seconds["quality"] = time.perf_counter() - paired
             if references:
-                measured.seconds["compare"] = found - begun
+                measured.seconds["compare"] = paired - begun
             for destination in outputs:
                 destination.check_only(item)
                 with measured.timed("write"):

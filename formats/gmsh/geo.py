@@ -62,11 +62,11 @@ def _named(grid: Grid, number: Indices, lines: Indices) -> dict[str, Indices]:
     own = np.unique(number)  # the mesh counts its points without gaps
     width = int(number.max()) + 1
     keys = lines[:, 0] * width + lines[:, 1]
-    found = {}
+    line_numbers = {}
     for name, edges in mesh.edges.items():
         ends = np.sort(own[edges], axis=1)
-        found[name] = np.searchsorted(keys, ends[:, 0] * width + ends[:, 1]) + 1
-    return found
+        line_numbers[name] = np.searchsorted(keys, ends[:, 0] * width + ends[:, 1]) + 1
+    return line_numbers
 
 
 def _listed(numbers: Indices) -> str:

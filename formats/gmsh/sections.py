@@ -167,9 +167,9 @@ def _lines_22(stream: _Stream) -> Iterator[tuple[int, int, Indices]]:
 
 def physical_tags(section: bytes, binary: bool, order: str) -> dict[tuple[int, int], int]:
     """Return the first physical group of each entity (dimension, tag) of ``$Entities``."""
-    found: dict[tuple[int, int], int] = {}
+    groups_of: dict[tuple[int, int], int] = {}
     if not section:
-        return found
+        return groups_of
     stream = _Stream(section, binary, order)
     counts = stream.take("u8", 4).tolist()
     for dimension, count in enumerate(counts):
@@ -180,8 +180,8 @@ def physical_tags(section: bytes, binary: bool, order: str) -> dict[tuple[int, i
             if dimension:
                 stream.take("i4", stream.one("u8"))
             if groups:
-                found[dimension, tag] = abs(groups[0])
-    return found
+                groups_of[dimension, tag] = abs(groups[0])
+    return groups_of
 
 
 def _whole(values: Floats) -> Indices:

@@ -29,16 +29,16 @@ def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Gr
     data = source.read_bytes()
     every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)
     wanted = options - _WRITTEN_ONLY
-    found = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
-    blocks = len(found.layout.dims)
+    reading = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
+    blocks = len(reading.layout.dims)
     for block in range(blocks):
         name = source.stem if blocks == 1 else f"{source.stem}-{block + 1}"
         try:
-            grid = recovered(found.plane(block), name)
-            flags = found.iblank(block)
+            grid = recovered(reading.plane(block), name)
+            flags = reading.iblank(block)
             yield replace(grid, provenance={"iblank": flags}) if flags else grid
         except InputError as error:
-            error.place = error.place or f"block {block + 1}, read as {found.numbers}"
+            error.place = error.place or f"block {block + 1}, read as {reading.numbers}"
             raise
 
 

@@ -44,17 +44,17 @@ def _candidate(layout: Layout, values: Floats) -> Candidate:
     return Candidate(layout, block, "ASCII", frozenset({"ascii", "whole"}))
 
 
-def _misfit(tried: list[Layout], found: int) -> InputError:
+def _misfit(tried: list[Layout], numbers: int) -> InputError:
     if not tried:
         return InputError(
             "does not start with the dims of a Plot3D grid",
             "start it with [count of blocks] ni nj [nk], or name another format with {from_format}",
         )
     plain = (layout for layout in tried if not layout.iblank)
-    near = min(plain, key=lambda layout: abs(layout.length() - found))
+    near = min(plain, key=lambda layout: abs(layout.length() - numbers))
     dims = ", ".join("x".join(map(str, dims)) for dims in near.dims[:3])
     return InputError(
-        f"has {found} numbers and no Plot3D layout fits (nearest: dims {dims}, {near.length()} numbers)",
+        f"has {numbers} numbers and no Plot3D layout fits (nearest: dims {dims}, {near.length()} numbers)",
         "the file is cut short or its dims are wrong: write it again",
     )
 

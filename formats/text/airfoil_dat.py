@@ -16,7 +16,7 @@ import numpy as np
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 
 MOST_POINTS = 20_000
@@ -34,7 +34,7 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
     >>> parse("Plate\n1 0\n.5 .05\n0 0\n.5 -.05\n1 0\n", "plate.dat").name
     'Plate'
     """
-    try:
+    with in_source(source):
         lines = read_lines(text)
         rows, blocks, counts = _data(lines)
         points, order, upper = _once_around(*_columns(rows), blocks)
@@ -42,9 +42,6 @@ def parse(text: str, source: str, stem: str = "") -> Airfoil:
         places = [f"line {rows[k].number}" for k in order]
         notes = (*left_out(lines), *_wrong_counts(counts, len(rows), upper))
         return Airfoil(points, _name(lines, rows[0].number) or stem or source, places, notes)
-    except InputError as error:
-        error.source = error.source or source
-        raise
 
 
 def sniff(head: bytes) -> bool:

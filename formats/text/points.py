@@ -19,7 +19,7 @@ from meshonet.formats.source import Source
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
@@ -44,7 +44,7 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
     ('square', 'quad')
     """
     name = stem or Path(source).stem
-    try:
+    with in_source(source):
         lines = read_lines(text)
         blocks = table(lines)
         count = sum(map(len, blocks))
@@ -59,9 +59,6 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
             place = f"line {blocks[1][0].number}" if len(blocks) > 1 else ""
             raise InputError(f"{len(blocks)} blocks of points", remedy, place=place)
         return _with_notes(_closed_curve(blocks[0], name), left_out(lines))
-    except InputError as error:
-        error.source = error.source or source
-        raise
 
 
 def sniff(head: bytes) -> bool:

@@ -89,13 +89,13 @@ def read_lines(text: str) -> list[Line]:
 
 @lru_cache(maxsize=1)  # what finds out the format reads the same text as the format itself
 def _lines(text: str) -> tuple[Line, ...]:
-    found = re.split(r"\r\n|\r|\n", text.replace("\x1a", ""))
-    if found and not found[-1]:
-        found.pop()
-    if len(found) > MOST_LINES:
-        problem = f"{len(found)} lines are too many for a file of points"
+    texts = re.split(r"\r\n|\r|\n", text.replace("\x1a", ""))
+    if texts and not texts[-1]:
+        texts.pop()
+    if len(texts) > MOST_LINES:
+        problem = f"{len(texts)} lines are too many for a file of points"
         raise InputError(problem, f"give at most {MOST_LINES}")
-    return tuple(_line(number, line) for number, line in enumerate(found, start=1))
+    return tuple(_line(number, line) for number, line in enumerate(texts, start=1))
 
 
 def table(lines: list[Line]) -> list[list[Line]]:

@@ -96,9 +96,9 @@ def _range(text: str | None, kind: Family | None) -> tuple[float, float]:
         return 0.0, 1.0
     if text is None:
         return kind.low, kind.high
-    found = re.fullmatch(r"\s*([-+.\w]+)\s*:\s*([-+.\w]+)\s*", text)
+    match = re.fullmatch(r"\s*([-+.\w]+)\s*:\s*([-+.\w]+)\s*", text)
     try:
-        low, high = (float(word) for word in found.groups()) if found else (1.0, 0.0)
+        low, high = (float(word) for word in match.groups()) if match else (1.0, 0.0)
     except ValueError:
         low, high = 1.0, 0.0
     if not low <= high:

@@ -3,15 +3,17 @@
 from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from meshonet.formats.output import whole_file
-from meshonet.formats.registry import format_for_output, format_of, read_grids, read_shapes
+from meshonet.formats.registry import format_for_output, format_of, is_designation, read_grids, read_shapes
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
+
+T = TypeVar("T")
 
 
 def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
@@ -19,12 +21,21 @@ def read(path: str | Path, *, from_format: str | None = None) -> Grid | Shape:
 
     Raises InputError: a file that cannot be read, or holds several: `read_all` has them.
     """
-    records = read_all(path, from_format=from_format)
+    nothing = "holds nothing", "give a file with a boundary or a grid in it"
+    several = "holds several grids or boundaries", "use read_all"
+    return only(read_all(path, from_format=from_format), str(path), nothing, several)
+
+
+def only(records: Iterator[T], source: str, nothing: tuple[str, str], several: tuple[str, str]) -> T:
+    """Return the only one of the records of a source.
+
+    Raises InputError: there is none, or another one; `nothing` and `several` are problem and remedy then.
+    """
     record = next(records, None)
     if record is None:
-        raise InputError("holds nothing", "give a file with a boundary or a grid in it", source=str(path))
+        raise InputError(*nothing, source=source)
     if next(records, None) is not None:
-        raise InputError("holds several grids or boundaries", "use read_all", source=str(path))
+        raise InputError(*several, source=source)
     return record
 
 
@@ -34,7 +45,7 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
     Raises InputError: a file that cannot be read.
     """
     text = str(path)
-    if text.lower().startswith("naca:") and not Path(text).exists():
+    if is_designation(text):
         return read_shapes(text, from_format)
     fmt = format_of(open_source(text), from_format)
     if fmt.read_grids is None:

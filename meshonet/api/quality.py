@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from meshonet.api.files import only
 from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.report import QualityReport, quality_report
 
 
@@ -40,10 +40,8 @@ def single_grid(grid: Grid | str | Path) -> Grid:
     """
     if isinstance(grid, Grid):
         return grid
-    found = read_grids(str(grid))
-    first = next(found, None)
-    if first is None:
-        raise InputError("holds no grid", "use a file with one", source=str(grid))
-    if next(found, None) is not None:
-        raise InputError("holds several grids", "read them one by one", source=str(grid))
-    return first
+    nothing, several = (
+        ("holds no grid", "use a file with one"),
+        ("holds several grids", "read them one by one"),
+    )
+    return only(read_grids(str(grid)), str(grid), nothing, several)

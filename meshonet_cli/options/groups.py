@@ -23,11 +23,11 @@ def bad_value(text: str, what: str, remedy: str, parameter: str) -> Exception:
     return InputError(f"{text!r} is not {what}", remedy, parameter=parameter)
 
 
-def only_with(needed: str, given: bool, **others: object) -> None:
+def only_with(needed: str, present: bool, **others: object) -> None:
     """Raise InputError when one of the `others` is there (not None) without the option `needed`."""
     from meshonet.geometry.errors import InputError
 
     for name, value in others.items():
-        if value is not None and not given:
+        if value is not None and not present:
             remedy = f"give {{{needed}}} as well, or drop {{{name}}}"
             raise InputError(f"{{{name}}} without {{{needed}}}", remedy)

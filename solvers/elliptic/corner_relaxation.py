@@ -56,12 +56,12 @@ def _part(direction: Direction, nodes: slice) -> tuple[Floats, Floats, Floats]:
 
 def reentrant(edges: Four) -> list[Corner]:
     """Return side and index of the re-entrant corners of a quad's `edges` (south, north, west, east)."""
-    found: list[Corner] = []
+    sharp: list[Corner] = []
     for side, edge in zip(("south", "north", "west", "east"), edges, strict=True):
         outwards = -1.0 if side in {"south", "east"} else 1.0
         turns = outwards * turning(edge)
-        found += [(side, int(k)) for k in find_corners(edge) if turns[k] > REENTRANT]
-    return found
+        sharp += [(side, int(k)) for k in find_corners(edge) if turns[k] > REENTRANT]
+    return sharp
 
 
 def patches(

@@ -180,8 +180,8 @@ def _settled(
             )  # fmt: skip
         except SolverError:
             continue
-        found = solution.grid.nodes
-        if count_folded(found) <= folded and _error(found, edges) <= most:
+        nearer = solution.grid.nodes
+        if count_folded(nearer) <= folded and _error(nearer, edges) <= most:
             return solution, part
     begun = boundary.grid(start)
     return solve(boundary, tol=tol, max_cycles=max_cycles, initial=begun, method="steger-sorenson"), 0.0

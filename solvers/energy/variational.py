@@ -84,10 +84,10 @@ def solve(
         full = tol is not None or boundary.around_body
         limits = max_cycles, max_cycles if full else min(max_cycles, FEW)
         few = FEW_AROUND if tol is None and boundary.periodic else None
-        found = _nested(boundary, weights, still, limits, few=few)
-        if not found[-1] and not boundary.around_body:  # the other minimum of the coarsest level
-            found = _nested(boundary, weights, still, limits, np.inf)
-        nodes, weights, iterations, valid = found
+        solved = _nested(boundary, weights, still, limits, few=few)
+        if not solved[-1] and not boundary.around_body:  # the other minimum of the coarsest level
+            solved = _nested(boundary, weights, still, limits, np.inf)
+        nodes, weights, iterations, valid = solved
     else:
         nodes = initial_nodes(boundary, initial)
         iterations, valid = descend(nodes, weights, still, max_cycles, periodic=boundary.periodic)

@@ -235,8 +235,8 @@ class GridRequest:
 
     def _chosen(self) -> tuple[str, ...]:
         """Return what was given and is not so by default, in the order in which it is refused."""
-        given = {**self.settings, "initial": self.initial, "coarse": self.coarse, "refine": self.refine}
-        return tuple(name for name, value in given.items() if value != DEFAULTS.get(name))
+        values = {**self.settings, "initial": self.initial, "coarse": self.coarse, "refine": self.refine}
+        return tuple(name for name, value in values.items() if value != DEFAULTS.get(name))
 
 
 def grid_request(
