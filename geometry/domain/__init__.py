@@ -1,0 +1,1 @@
+"""Planar domains: an outer loop, any number of holes, corners and names."""

@@ -1,0 +1,98 @@
+"""A closed curve that bounds a domain, with its corners and the names of its stretches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import turning
+
+CORNER_DEG = 30.0
+"""A point where the loop turns by more is a corner, unless the input says which are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A closed curve with the domain on its left: an outer loop counter-clockwise, a hole clockwise.
+
+    Parameters
+    ----------
+    curve : closed; its `points` (n, 2) are those of the input, places on it are arc lengths from the first.
+        A polygon is followed exactly (``Curve(..., straight=...)``), an airfoil is a spline between corners.
+    corners : indices of the points that are corners, ascending. A grid has a node at each.
+    names : one for the whole loop, or one for each stretch from a corner to the next.
+
+    Raises InputError: a corner that is no point, names for another number of stretches.
+    """
+
+    curve: Curve
+    corners: tuple[int, ...] = ()
+    names: tuple[str, ...] = ("outer",)
+    places: tuple[str, ...] = field(default=(), repr=False)
+    """Where each point stands in its source, for messages; may be empty."""
+
+    def __post_init__(self) -> None:
+        n = len(self.curve.points)
+        if any(not 0 <= k < n for k in self.corners):
+            raise InputError(f"corners {self.corners} of a loop of {n} points", f"use 0 to {n - 1}")
+        if len(self.names) not in (1, max(len(self.corners), 1)):
+            stretches = f"{len(self.names)} names for {max(len(self.corners), 1)} stretches between corners"
+            raise InputError(stretches, "give one name, or one for each")
+
+    @classmethod
+    def of_polygon(
+        cls, points: Floats, corners: tuple[int, ...] | None = None, names: tuple[str, ...] = ("outer",)
+    ) -> Loop:
+        """Return the loop along a polygon (n, 2), the domain on its left; corners are found unless given."""
+        curve = Curve(points, closed=True, corners=(), straight=np.ones(len(points), dtype=bool))
+        if corners is None:
+            corners = tuple(
+                np.flatnonzero(np.abs(turning(curve.points, closed=True)) > np.radians(CORNER_DEG))
+            )
+        return cls(curve, tuple(int(k) for k in corners), names)
+
+    @property
+    def length(self) -> float:
+        """Arc length."""
+        return self.curve.length
+
+    @cached_property
+    def corner_arcs(self) -> Floats:
+        """Arc lengths (c,) at the corners."""
+        return self.curve.knots[list(self.corners)]
+
+    @cached_property
+    def corner_angles(self) -> Floats:
+        """Angles (c,) of the domain at the corners, in degrees, 0 to 360: 90 is convex, 270 re-entrant."""
+        turn = np.degrees(turning(self.curve.points, closed=True))
+        return np.asarray(180.0 - turn[list(self.corners)])
+
+    @cached_property
+    def corner_cells(self) -> NDArray[np.intp]:
+        """Cells (c,) that should meet at each corner: its angle in right angles, 1 to 4."""
+        return np.clip(np.round(self.corner_angles / 90.0), 1, 4).astype(np.intp)
+
+    def at(self, arc: Floats) -> Floats:
+        """Return the points (m, 2) at arc lengths (m,), which wrap around."""
+        return self.curve.at(np.mod(arc, self.length))
+
+    def tangent(self, arc: Floats) -> Floats:
+        """Return unit tangents (m, 2) at arc lengths (m,), of the side ahead at corners."""
+        return self.curve.tangent(np.mod(arc, self.length))
+
+    def name_at(self, arc: float) -> str:
+        """Return the name of the stretch that an arc length lies in."""
+        if len(self.names) == 1:
+            return self.names[0]
+        stretch = int(np.searchsorted(self.corner_arcs, arc % self.length, side="right")) - 1
+        return self.names[stretch]
+
+    def sample(self, count: int) -> Floats:
+        """Return `count` points (count, 2) at equal steps of arc length."""
+        return self.at(np.linspace(0.0, self.length, count, endpoint=False))

@@ -1,0 +1,1 @@
+"""Quadrilaterals that share nodes, and layouts: the blocks that they form."""

@@ -1,0 +1,104 @@
+"""Quadrilaterals over one table of nodes: what a decomposition works on.
+
+Unlike blocks, quads share their nodes: an interface node or a singular vertex is one unknown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.polygon.corners import Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where nodes lie on the boundary of a domain; arrays of one number a node."""
+
+    loop: Indices
+    """Number of the loop, -1 inside."""
+    arc: Floats
+    """Arc length on that loop, in [0, its length); 0 inside."""
+    cells: Indices
+    """Cells that should meet at a node which is a corner and stays where it is; 0 for all others."""
+    partner: Indices
+    """The node that this one is, moved by the domain's period; -1 for all others."""
+
+    @classmethod
+    def inside(cls, count: int) -> Places:
+        """Return the places of `count` nodes inside."""
+        none = np.full(count, -1, dtype=np.intp)
+        return cls(none, np.zeros(count), np.zeros(count, dtype=np.intp), none.copy())
+
+    def take(self, nodes: Indices) -> Places:
+        """Return the places of some nodes; partners are not kept."""
+        cleared = np.full(len(nodes), -1, dtype=np.intp)
+        return Places(self.loop[nodes], self.arc[nodes], self.cells[nodes], cleared)
+
+
+@dataclass(frozen=True, eq=False)
+class QuadMesh:
+    """Conforming quadrilaterals inside a domain.
+
+    Parameters
+    ----------
+    domain : the wall nodes lie on its loops.
+    nodes : (n, 2).
+    quads : (m, 4) nodes of each cell, counter-clockwise.
+    places : of the nodes on the boundary.
+    """
+
+    domain: Domain
+    nodes: Floats
+    quads: Indices
+    places: Places = field(repr=False)
+
+    @cached_property
+    def _sides(self) -> tuple[Indices, Indices]:
+        first, second = self.quads.ravel(), np.roll(self.quads, -1, axis=1).ravel()
+        low, high = np.minimum(first, second), np.maximum(first, second)
+        keys, inverse = np.unique(low * len(self.nodes) + high, return_inverse=True)
+        edges = np.stack(np.divmod(keys, len(self.nodes)), axis=1)
+        return edges, inverse.reshape(self.quads.shape)
+
+    @property
+    def edges(self) -> Indices:
+        """(e, 2) nodes of each edge, the lower first."""
+        return self._sides[0]
+
+    @property
+    def edge_of(self) -> Indices:
+        """(m, 4) edge from each node of a quad to its next."""
+        return self._sides[1]
+
+    @cached_property
+    def on_wall(self) -> NDArray[np.bool_]:
+        """(e,) edges of one quad only."""
+        return np.bincount(self.edge_of.ravel(), minlength=len(self.edges)) == 1
+
+    @cached_property
+    def wall_nodes(self) -> NDArray[np.bool_]:
+        """(n,) nodes on the boundary."""
+        on = np.zeros(len(self.nodes), dtype=bool)
+        on[self.edges[self.on_wall].ravel()] = True
+        return on
+
+    @cached_property
+    def valence(self) -> Indices:
+        """(n,) quads around each node."""
+        return np.bincount(self.quads.ravel(), minlength=len(self.nodes))
+
+    @cached_property
+    def irregular(self) -> NDArray[np.bool_]:
+        """(n,) nodes where other than four quads meet, or on the boundary other than two."""
+        return self.valence != np.where(self.wall_nodes, 2, 4)
+
+    def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
+        """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
+        places = self.places if arc is None else replace(self.places, arc=arc)
+        return replace(self, nodes=nodes, places=places)

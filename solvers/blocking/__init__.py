@@ -1,0 +1,1 @@
+"""Decomposition of planar domains into blocks."""
