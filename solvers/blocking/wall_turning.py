@@ -1,4 +1,4 @@
-"""By how much walls turn between two places on them, corners left out."""
+"""By how much walls turn between two places on them, and the corners there."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.polygon.corners import Indices, turning
 
 
 @lru_cache(maxsize=64)
@@ -24,7 +24,10 @@ def _table(loop: Loop) -> tuple[Floats, Floats]:
 
 
 def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
-    """Return the degrees (k,) by which a loop turns, either way, from arc lengths `first` to `last` beyond."""
+    """Return the degrees (k,) by which a loop turns, either way, from arc lengths `first` to `last` beyond.
+
+    Corners are left out.
+    """
     arcs, turned = _table(loop)
     return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
 
@@ -32,3 +35,16 @@ def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
 def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
     rounds = np.floor(arc / loop.length)
     return np.asarray(np.interp(arc - rounds * loop.length, arcs, turned) + rounds * turned[-1])
+
+
+def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
+    """Return the corners of a loop strictly between two arc lengths, in that direction, and their cells."""
+    low, high = min(first, last), max(first, last)
+    rounds = np.floor(low / loop.length) + np.arange(3)
+    arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()
+    cells = np.tile(loop.corner_cells, 3)
+    slack = 1e-9 * loop.length
+    inside = np.flatnonzero((arcs > low + slack) & (arcs < high - slack))
+    if last < first:
+        inside = inside[::-1]
+    return arcs[inside], cells[inside]
