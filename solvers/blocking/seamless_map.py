@@ -67,8 +67,8 @@ class SeamlessMap:
     fan_start: Indices
     """(n + 1,) where the corners around each vertex start in `fan_corners`."""
     fan_corners: Indices
-    """(3 t,) corners around each vertex, counter-clockwise, as 3 times the triangle plus the corner in it; at a
-    wall's vertex from the edge that leaves along the wall to the one that arrives."""
+    """(3 t,) corners around each vertex, counter-clockwise, as 3 times the triangle plus the corner in it;
+    at a wall's vertex from the edge that leaves along the wall to the one that arrives."""
     size: Floats
     """(t,) target length of the gradients of u and v in each triangle, e^H."""
 

@@ -44,7 +44,7 @@ def test_random_positive_definite_matrices_of_any_pattern(seed):
 
 
 def test_quasi_definite_systems_hold_their_equations():
-    """Minimum of |x|_K^2/2 - f x under C x = 0, some equations given twice, from a matrix with -1e-8 for 0."""
+    """Minimum of x K x / 2 - f x under C x = 0, some equations twice, by a matrix with -1e-8 for 0."""
     rng = np.random.default_rng(1)
     stiff = laplacian(20, 20)
     n, m = stiff.shape[0], 40
