@@ -1,8 +1,8 @@
 """Chords of blocks taken out of a quad mesh, as long as its score falls.
 
 A chord is a row of blocks from wall to wall, or a ring of them. Contracting all edges across it removes the
-row: the nodes on both sides of it become one. What is left is a quad mesh with fewer blocks, often with the same
-irregular nodes or fewer, now closer to each other.
+row: the nodes on both sides of it become one. What is left is a quad mesh with fewer blocks and often as many
+irregular nodes or fewer.
 
 Borden, Benzley, Shepherd, "Hexahedral sheet extraction", 11th International Meshing Roundtable (2002);
 Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans. Graph. 27 (2008).
