@@ -11,6 +11,7 @@ Indices: TypeAlias = NDArray[np.intp]
 Reals: TypeAlias = NDArray[Any]
 Edges: TypeAlias = tuple[Floats, ...]
 Placed: TypeAlias = tuple[Indices, Floats]
+TriangleMap: TypeAlias = tuple[Floats, Indices, Indices, Indices]
 
 # geometry
 def count_folded(x: Floats, y: Floats) -> int: ...
@@ -152,3 +153,17 @@ INTEGER_BYTES: int
 FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
+
+# motorcycle
+def probe_rays(
+    tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
+    limit: int,
+) -> Indices: ...  # fmt: skip
+def trace_rays(
+    tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
+    limit: int, room: int,
+) -> tuple[Indices, Floats, Indices, Floats] | None: ...  # fmt: skip
+def walk_map(
+    tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
+    targets: Floats, limit: int,
+) -> Floats: ...  # fmt: skip
