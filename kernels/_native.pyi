@@ -11,6 +11,7 @@ Indices: TypeAlias = NDArray[np.intp]
 Reals: TypeAlias = NDArray[Any]
 Edges: TypeAlias = tuple[Floats, ...]
 Placed: TypeAlias = tuple[Indices, Floats]
+TriangleMap: TypeAlias = tuple[Floats, Indices, Indices, Indices]
 
 # geometry
 def count_folded(x: Floats, y: Floats) -> int: ...
@@ -153,6 +154,7 @@ FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
 
+<<<<<<< HEAD
 # collapse
 def connect_quads(quads: Indices, n: int) -> tuple[Indices, Indices, Indices, bool]: ...
 def joined_classes(pairs: Indices, n: int) -> tuple[Indices, int]: ...
@@ -167,3 +169,18 @@ def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePatte
 def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
 def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
 def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
+=======
+# motorcycle
+def probe_rays(
+    tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
+    limit: int,
+) -> Indices: ...  # fmt: skip
+def trace_rays(
+    tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
+    limit: int, room: int,
+) -> tuple[Indices, Floats, Indices, Floats] | None: ...  # fmt: skip
+def walk_map(
+    tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
+    targets: Floats, limit: int,
+) -> Floats: ...  # fmt: skip
+>>>>>>> mot
