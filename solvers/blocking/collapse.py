@@ -24,11 +24,11 @@ from meshonet.solvers.blocking.score import PRICE, score
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
 
-ITERATIONS = 40
-"""Iterations of the functional before a trial is judged."""
+ITERATIONS = (6, 12, 22)
+"""Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
 
-def simplify(mesh: QuadMesh, *, price: float = PRICE, iterations: int = ITERATIONS) -> BaseComplex:
+def simplify(mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
     `price` is what a block costs, in degrees of mean deviation from 90.
@@ -43,7 +43,7 @@ def simplify(mesh: QuadMesh, *, price: float = PRICE, iterations: int = ITERATIO
 
 
 def _first_gain(
-    current: BaseComplex, best: float, price: float, iterations: int
+    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...]
 ) -> tuple[BaseComplex, float] | None:
     """Return the first collapse, and its score, that lowers `best`; None after `FAILURES`."""
     failures = 0
@@ -51,11 +51,15 @@ def _first_gain(
         trial = _collapsed(current, chord)
         if trial is None:
             continue
-        optimum = optimise(trial.mesh, iterations=iterations)
-        if optimum.valid:
-            value = score(optimum.mesh, len(trial.blocks), price)
+        mesh = trial.mesh
+        for more in iterations:
+            optimum = optimise(mesh, iterations=more)
+            if not optimum.valid:
+                break
+            mesh = optimum.mesh
+            value = score(mesh, len(trial.blocks), price)
             if value < best:
-                return base_complex(optimum.mesh), value
+                return base_complex(mesh), value
         failures += 1
         if failures >= FAILURES:
             return None
