@@ -154,7 +154,6 @@ FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
 
-<<<<<<< HEAD
 # collapse
 def connect_quads(quads: Indices, n: int) -> tuple[Indices, Indices, Indices, bool]: ...
 def joined_classes(pairs: Indices, n: int) -> tuple[Indices, int]: ...
@@ -169,7 +168,6 @@ def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePatte
 def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
 def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
 def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
-=======
 # motorcycle
 def probe_rays(
     tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
@@ -183,4 +181,27 @@ def walk_map(
     tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
     targets: Floats, limit: int,
 ) -> Floats: ...  # fmt: skip
->>>>>>> mot
+
+# quads
+def quad_edges(quads: Indices, nodes: int) -> tuple[Indices, Indices]: ...
+def line_neighbours(
+    quads: Indices, edge_of: Indices, node: Indices, edge: Indices
+) -> tuple[Indices, int]: ...
+
+class QuadDescent:
+    def __init__(
+        self, nodes: Floats, cells: tuple[Indices, Floats, Floats], lines: tuple[Indices, Indices, int, Floats],
+        eased: tuple[Indices, Floats], inner: Indices, tied: tuple[Indices, tuple[float, float]],
+        unknown: Indices, wall: Indices, wall_nodes: tuple[Indices, Indices, Floats],
+        wall_edges: tuple[Indices, Floats], loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
+    ) -> None: ...  # fmt: skip
+    def run(
+        self,
+        shape: float,
+        smoothness: float,
+        epsilon: float,
+        size: float,
+        gain: float,
+        most: int,
+        renew: bool,
+    ) -> tuple[float, float, int]: ...

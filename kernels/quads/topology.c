@@ -45,10 +45,10 @@ typedef struct {
 
 static void pair_up(Lines *l, ptrdiff_t a, ptrdiff_t b)
 {
-    if (a == b || l->filled[a] == LINE || l->filled[b] == LINE)
+    if (a == b || l->filled[a] == NEXT_EDGES || l->filled[b] == NEXT_EDGES)
         return;
-    l->line[a * LINE + l->filled[a]++] = b;
-    l->line[b * LINE + l->filled[b]++] = a;
+    l->line[a * NEXT_EDGES + l->filled[a]++] = b;
+    l->line[b * NEXT_EDGES + l->filled[b]++] = a;
     l->pairs++;
 }
 
@@ -90,8 +90,8 @@ ptrdiff_t line_neighbours(const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrd
     memset(start, 0, (size_t)(2 * n + 1) * sizeof *start);
     memset(filled, 0, (size_t)(2 * e) * sizeof *filled);
     for (ptrdiff_t k = 0; k < e; k++)
-        for (int i = 0; i < LINE; i++)
-            line[k * LINE + i] = k;
+        for (int i = 0; i < NEXT_EDGES; i++)
+            line[k * NEXT_EDGES + i] = k;
     for (ptrdiff_t k = 0; k < 4 * m; k++)
         start[node[quads[k]] + 1]++, sides[edge[edge_of[k]]]++;
     for (ptrdiff_t v = 0; v < n; v++)
