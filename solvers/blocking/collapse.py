@@ -11,7 +11,6 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 from __future__ import annotations
 
 import numpy as np
-from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -20,6 +19,7 @@ from meshonet.solvers.blocking.contract import contract
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import wrong_count
 from meshonet.solvers.blocking.score import PRICE, score
+from meshonet.solvers.energy.quads import optimise
 
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
@@ -28,7 +28,9 @@ ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
 
-def simplify(mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS) -> BaseComplex:
+def simplify(
+    mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS
+) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
     `price` is what a block costs, in degrees of mean deviation from 90.

@@ -205,7 +205,9 @@ class _Walks:
         direction = np.array([1, 1j, -1, -1j])
         origin = trails.origin[piece] + part * step * direction[trails.axis[piece]]
         east = direction[(trails.axis[piece] + np.concatenate(self._turn)) % 4]
-        sizes = np.repeat([block.shape[1] for block in self._targets], [len(block) for block in self._targets])
+        sizes = np.repeat(
+            [block.shape[1] for block in self._targets], [len(block) for block in self._targets]
+        )
         flat = np.concatenate([block.ravel() for block in self._targets])
         targets = np.repeat(origin, sizes) + flat * np.repeat(east, sizes)
         reached = walk_map(
