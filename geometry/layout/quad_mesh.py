@@ -108,4 +108,11 @@ class QuadMesh:
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
         places = self.places if arc is None else replace(self.places, arc=arc)
-        return replace(self, nodes=nodes, places=places)
+        return self.with_places(nodes, places)
+
+    def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
+        """Return the same quads with other nodes (n, 2) and places on the boundary."""
+        moved = replace(self, nodes=nodes, places=places)
+        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # quads alone say these
+        moved.__dict__.update({name: self.__dict__[name] for name in known if name in self.__dict__})
+        return moved

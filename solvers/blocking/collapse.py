@@ -10,6 +10,8 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -17,7 +19,6 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.contract import contract
 from meshonet.solvers.blocking.errors import BlockingError
-from meshonet.solvers.blocking.padding import wrong_count
 from meshonet.solvers.blocking.score import PRICE, score
 from meshonet.solvers.energy.quads import optimise
 
@@ -61,7 +62,7 @@ def _first_gain(
             mesh = optimum.mesh
             value = score(mesh, len(trial.blocks), price)
             if value < best:
-                return base_complex(mesh), value
+                return replace(trial, mesh=mesh), value
         failures += 1
         if failures >= FAILURES:
             return None
@@ -72,7 +73,7 @@ def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
     """Return the mesh without a chord, None where that is not allowed or simplifies nothing."""
     mesh = current.mesh
     trial = contract(mesh, current.chord == chord)
-    if trial is None or np.count_nonzero(wrong_count(trial)) > np.count_nonzero(wrong_count(mesh)):
+    if trial is None:
         return None
     try:
         blocks = base_complex(trial)
@@ -92,16 +93,10 @@ def widths(current: BaseComplex) -> Floats:
     step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
     edges = np.bincount(current.chord, minlength=current.chords)
     mean = np.bincount(current.chord, np.hypot(*step.T), minlength=current.chords) / edges
-    rows = np.zeros(current.chords)
-    seen = np.zeros(current.chords, dtype=bool)
-    for block in current.blocks:
-        for line in (block[:, 0], block[0]):
-            chord = current.chord[_edge_between(mesh, line[0], line[1])]
-            if not seen[chord]:
-                seen[chord], rows[chord] = True, len(line) - 1
-    return np.asarray(mean * rows)
-
-
-def _edge_between(mesh: QuadMesh, a: int, b: int) -> int:
+    sides = [line for block in current.blocks for line in (block[:, 0], block[0])]
+    ends = np.array([line[:2] for line in sides])
     keys = mesh.edges[:, 0] * len(mesh.nodes) + mesh.edges[:, 1]
-    return int(np.searchsorted(keys, min(a, b) * len(mesh.nodes) + max(a, b)))
+    first = np.searchsorted(keys, ends.min(axis=1) * len(mesh.nodes) + ends.max(axis=1))
+    rows = np.zeros(current.chords)
+    rows[current.chord[first]] = [len(line) - 1 for line in sides]
+    return np.asarray(mean * rows)

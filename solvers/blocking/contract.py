@@ -8,10 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import joined_classes
+from meshonet.solvers.blocking.padding import wrong_count
 
 VALENCES = (3, 5)
 """Fewest and most quads around a node inside."""
@@ -20,48 +21,55 @@ VALENCES = (3, 5)
 def contract(mesh: QuadMesh, rungs: NDArray[np.bool_]) -> QuadMesh | None:
     """Return the mesh with the nodes of each edge in `rungs` (e,) made one; None where it would be invalid.
 
-    That is where two corners would become one, wall nodes that no wall edges in `rungs` join, or where what
-    is left is no conforming mesh of the same domain with 3 to 5 quads around each node inside.
+    That is where two corners would become one, wall nodes that no wall edges in `rungs` join, where more wall
+    nodes than before have a wrong count of quads, or where what is left is no conforming mesh of the same
+    domain with 3 to 5 quads around each node inside.
     """
-    pairs = np.ascontiguousarray(mesh.edges[rungs])
-    label, count = joined_classes(pairs, len(mesh.nodes))
-    merged = _merged_places(mesh, label, count, pairs[mesh.on_wall[rungs]])
+    label, count = joined_classes(np.ascontiguousarray(mesh.edges[rungs]), len(mesh.nodes))
     kept = ~rungs[mesh.edge_of].any(axis=1)
-    if merged is None or not kept.any():
+    if not kept.any() or not _may_join(mesh, label, count, rungs):
         return None
-    places, nodes = merged
-    trial = QuadMesh(mesh.domain, nodes, label[mesh.quads[kept]], places)
-    return trial if is_conforming(trial) else None
+    places = Places.inside(count)
+    wall, corners = np.flatnonzero(mesh.places.loop >= 0), np.flatnonzero(mesh.places.cells > 0)
+    places.loop[label[wall]] = mesh.places.loop[wall]
+    places.cells[label[corners]] = mesh.places.cells[corners]
+    trial = QuadMesh(mesh.domain, np.zeros((count, 2)), label[mesh.quads[kept]], places)
+    more = np.count_nonzero(wrong_count(trial)) > np.count_nonzero(wrong_count(mesh))
+    return _placed(trial, mesh, label) if not more and is_conforming(trial) else None
 
 
-def _merged_places(
-    mesh: QuadMesh, label: Indices, count: int, wall_rungs: Indices
-) -> tuple[Places, Floats] | None:
-    """Return places and nodes (count, 2) of classes of nodes."""
-    places, size = mesh.places, np.bincount(label, minlength=count)
-    corners, wall = np.flatnonzero(places.cells > 0), np.flatnonzero(places.loop >= 0)
+def _may_join(mesh: QuadMesh, label: Indices, count: int, rungs: NDArray[np.bool_]) -> bool:
+    """Return whether no class of nodes has two corners, and wall nodes in one are joined along the wall."""
+    corners, wall = np.flatnonzero(mesh.places.cells > 0), np.flatnonzero(mesh.places.loop >= 0)
+    if len(distinct(label[corners])) < len(corners):
+        return False
     of_wall = np.bincount(label[wall], minlength=count)
-    links = np.bincount(label[wall_rungs[:, 0]], minlength=count)
-    if (np.bincount(label[corners], minlength=count) > 1).any() or (
-        (of_wall > 1) & (links != of_wall - 1)
-    ).any():
-        return None
-    loop, arc, cells = np.full(count, -1), np.zeros(count), np.zeros(count, dtype=np.intp)
-    loop[label[wall]] = places.loop[wall]
-    first = np.zeros(count)
-    first[label[wall[::-1]]] = places.arc[wall[::-1]]
-    length = np.array([one.length for one in mesh.domain.loops])[places.loop[wall]]
-    off = np.mod(places.arc[wall] - first[label[wall]] + 0.5 * length, length) - 0.5 * length
-    arc = first + np.bincount(label[wall], off, minlength=count) / np.maximum(of_wall, 1)
+    links = np.bincount(label[mesh.edges[rungs & mesh.on_wall, 0]], minlength=count)
+    return not ((of_wall > 1) & (links != of_wall - 1)).any()
+
+
+def _placed(trial: QuadMesh, mesh: QuadMesh, label: Indices) -> QuadMesh:
+    """Put the nodes of `trial`, classes of those of `mesh`, at their places."""
+    places, count = mesh.places, len(trial.nodes)
+    corners, wall = np.flatnonzero(places.cells > 0), np.flatnonzero(places.loop >= 0)
+    of, loop, cells = label[wall], trial.places.loop, trial.places.cells
+    members = np.bincount(of, minlength=count)
+    first, arc = np.zeros(count), np.zeros(count)
+    first[of[::-1]] = places.arc[wall[::-1]]
+    lengths = np.array([one.length for one in mesh.domain.loops])
+    length = lengths[places.loop[wall]]
+    off = np.mod(places.arc[wall] - first[of] + 0.5 * length, length) - 0.5 * length
+    mean = first + np.bincount(of, off, minlength=count) / np.maximum(members, 1)
+    arc[of] = np.mod(mean[of], length)
+    size = np.bincount(label, minlength=count)
     nodes = np.stack([np.bincount(label, axis, minlength=count) / size for axis in mesh.nodes.T], axis=1)
-    nodes[label[wall]] = mesh.nodes[wall]
-    for number, one in enumerate(mesh.domain.loops):
-        moved = np.flatnonzero((loop == number) & (of_wall > 1))
-        arc[loop == number] %= one.length
-        nodes[moved] = one.at(arc[moved])
-    loop[label[corners]], arc[label[corners]] = places.loop[corners], places.arc[corners]
-    cells[label[corners]], nodes[label[corners]] = places.cells[corners], mesh.nodes[corners]
-    return Places(loop, arc, cells, np.full(count, -1)), nodes
+    nodes[of] = mesh.nodes[wall]
+    merged = np.flatnonzero(members > 1)
+    for number in distinct(loop[merged]):
+        moved = merged[loop[merged] == number]
+        nodes[moved] = mesh.domain.loops[number].at(arc[moved])
+    arc[label[corners]], nodes[label[corners]] = places.arc[corners], mesh.nodes[corners]
+    return trial.with_places(nodes, Places(loop, arc, cells, trial.places.partner))
 
 
 def is_conforming(mesh: QuadMesh) -> bool:

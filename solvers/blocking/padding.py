@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -27,7 +28,7 @@ def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
     """Return the numbers of loops without corners on which some node has a wrong count of quads."""
-    wrong = np.unique(mesh.places.loop[wrong_count(mesh)])
+    wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 
