@@ -31,9 +31,9 @@ SMOOTHNESS = 2e-3  # its β
 ALLOWED = np.radians(30.0)  # that a wall turns by within an edge
 BENT = 5.0  # weight of the squares of what it turns by beyond that, over the number of cells
 
-UNFOLDING = 0.1, 0.3  # w, and the weight of areas, while folded
+UNFOLDING = 0.0, 0.3  # w, and the weight of areas, while folded: angles would hold on to folds
 ROUNDS = 14  # regularisations at the most
-PER_ROUND = 40  # iterations with each
+FIRST_ROUND, PER_ROUND = 80, 40  # iterations with the first, and with each other
 
 Bools = NDArray[np.bool_]
 
@@ -222,7 +222,8 @@ class _Problem:
         epsilon = max(0.3 * cell, min(2.0 * abs(low), 3.0 * cell))
         shape, size = UNFOLDING
         for number in range(ROUNDS):
-            _, low, more = self.descent.run(shape, SMOOTHNESS, epsilon, size, 1e-5, PER_ROUND, number == 0)
+            most = PER_ROUND if number else FIRST_ROUND
+            _, low, more = self.descent.run(shape, SMOOTHNESS, epsilon, size, 1e-5, most, True)
             done += more
             if low > 0.0:
                 break
