@@ -38,7 +38,7 @@ class Frames:
 
 
 def cut_frames(field: CrossField) -> Frames:
-    """Return frames made to agree over a spanning tree of the triangles; what the cut does not need is closed again."""
+    """Return frames that agree over a spanning tree of the triangles, and the edges to cut."""
     surface = field.surface
     turn, cut = surface_comb(surface.arrays, surface.size, field.quarters)
     keep = surface.on_wall.copy()
@@ -59,7 +59,7 @@ def cut_frames(field: CrossField) -> Frames:
 
 
 def _wedges(field: CrossField, cut: NDArray[np.bool_]) -> Indices:
-    """Number the corners around each vertex anew behind each edge of the cut."""
+    """Give the corners around each vertex one number (t, 3) between any two edges of the cut."""
     surface = field.surface
     start, corners = surface.fans
     behind = cut[:, PREVIOUS].ravel()[corners]  # between a corner of a fan and the next
@@ -79,8 +79,8 @@ def _wedges(field: CrossField, cut: NDArray[np.bool_]) -> Indices:
 def frame_sizes(field: CrossField) -> Floats:
     """Return the length e^H (t,) that makes the crosses nearly the gradients of two functions, median 1.
 
-    Frames e^H (cos theta, sin theta) have no curl where grad H is grad theta turned by a quarter; H is that in
-    the sense of least squares.
+    Frames e^H (cos theta, sin theta) have no curl where grad H is grad theta turned by a quarter; H is that
+    in the sense of least squares.
     """
     surface = field.surface
     corner = np.angle(field.crosses)[surface.vertices] / 4.0

@@ -25,9 +25,9 @@ class Parametrisation:
 
         |grad u - s (cos theta, sin theta)|^2 + |grad v - s (-sin theta, cos theta)|^2
 
-    where u or v is the same at both ends of a wall edge, and the differences w_a - w_b along either side of the
-    cut are quarter-turns of each other: a seamless map (Bommes, Zimmer, Kobbelt, ACM Trans. Graph. 28 (2009) 77)
-    with real shifts. Unknowns of walls are one each; the cut has multipliers.
+    where u or v is the same at both ends of a wall edge, and the differences w_a - w_b along either side of
+    the cut are quarter-turns of each other: the map of Bommes, Zimmer, Kobbelt (ACM Trans. Graph. 28 (2009)
+    77) with real shifts in place of whole ones. A wall's u or v is one unknown; the cut has multipliers.
 
     Parameters
     ----------

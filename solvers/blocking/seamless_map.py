@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cross_field import CrossField, cross_field
 from meshonet.solvers.blocking.frames import cut_frames, frame_sizes
 from meshonet.solvers.blocking.parametrisation import Parametrisation
 from meshonet.solvers.blocking.surface import Surface
-
-if TYPE_CHECKING:
-    from meshonet.geometry.domain.domain import Domain
-    from meshonet.solvers.blocking.triangulation import Triangulation
+from meshonet.solvers.blocking.triangulation import Triangulation, triangulate
 
 _FINER = 0.35
 """Edges at singularities, by those of the first triangulation."""
@@ -82,7 +79,7 @@ class SeamlessMap:
     sizes: Floats
     """(t,) wanted length of the gradients of u and v in each triangle, e^H."""
     jacobians: Floats
-    """(t,) determinant of the map's derivative, by `sizes` squared: 1 where it is as wanted, <= 0 where folded."""
+    """(t,) determinant of the map's derivative by `sizes` squared: 1 is as wanted, 0 or less is folded."""
 
     def fan(self, vertex: int) -> Indices:
         """Return the corners around a vertex, counter-clockwise, as 3 times triangle plus corner."""
@@ -102,20 +99,21 @@ class SeamlessMap:
 def seamless_map(domain: Domain, count: int = 1500, seed: int = 0) -> SeamlessMap:
     """Return a seamless map of a domain, triangulated by about `count` vertices.
 
-    Where the field has singularities inside, the domain is triangulated anew with smaller triangles there. A map
-    that is nearly folded is made stiffer where it is (`Parametrisation`); see `SeamlessMap.folded` for whether
-    that was enough.
+    Where the field has singularities inside, the domain is triangulated anew with smaller triangles there. A
+    map that is nearly folded is solved again with larger weights where it is; `SeamlessMap.folded` says
+    whether that was enough.
 
     Raises SolverError: the field or the map have no solution; InputError: the domain cannot be triangulated.
     """
-    from meshonet.solvers.blocking.triangulation import triangulate
-
     surface = Surface.of(triangulate(domain, count, seed=seed))
     field = cross_field(surface)
     singular = field.singular
     if len(singular):
-        finer = surface.triangulation.points[singular], _FINER * surface.edge_size(singular)
-        field = cross_field(Surface.of(triangulate(domain, count, finer=finer, seed=seed)))
+        points, sizes = surface.triangulation.points[singular], _FINER * surface.edge_size(singular)
+        if domain.periodic is not None:
+            shift = np.asarray(domain.periodic.shift)
+            points, sizes = np.concatenate([points, points + shift, points - shift]), np.tile(sizes, 3)
+        field = cross_field(Surface.of(triangulate(domain, count, finer=(points, sizes), seed=seed)))
     return map_of_field(field)
 
 

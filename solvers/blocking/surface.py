@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +15,7 @@ from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_fans
-
-if TYPE_CHECKING:
-    from meshonet.solvers.blocking.triangulation import Triangulation
+from meshonet.solvers.blocking.triangulation import Triangulation
 
 NEXT = np.array([1, 2, 0])
 PREVIOUS = np.array([2, 0, 1])
@@ -40,10 +37,27 @@ class Surface:
 
     @classmethod
     def of(cls, triangulation: Triangulation) -> Surface:
-        """Return the surface of a triangulation."""
+        """Return the surface of a triangulation; the stretches of a periodic domain are glued.
+
+        Raises SolverError: the vertices on the two stretches do not correspond.
+        """
         joined = (triangulation.triangles, triangulation.neighbours, triangulation.neighbour_edge)
-        vertices, neighbours, edge = (np.ascontiguousarray(a, dtype=np.intp) for a in joined)
-        return cls(triangulation, vertices, neighbours, edge, np.zeros_like(vertices))
+        vertices, neighbours, edge = (np.array(a, dtype=np.intp, order="C") for a in joined)
+        periods = np.zeros_like(vertices)
+        if triangulation.domain.periodic is not None:
+            first, second = periodic_pairs(triangulation)
+            same = np.arange(len(triangulation.points))
+            same[second] = first
+            triangle, side = np.nonzero(neighbours < 0)
+            walls = zip(vertices[triangle, side].tolist(), triangle.tolist(), side.tolist(), strict=True)
+            leaving = {start: (f, e) for start, f, e in walls}
+            # along the second stretch the loop runs the other way
+            for here, there in zip(first[:-1].tolist(), second[1:].tolist(), strict=True):
+                (f, e), (g, i) = leaving[here], leaving[there]
+                neighbours[f, e], neighbours[g, i], edge[f, e], edge[g, i] = g, f, i, e
+                periods[f, e], periods[g, i] = 1, -1
+            vertices = same[vertices]
+        return cls(triangulation, vertices, neighbours, edge, periods)
 
     @property
     def size(self) -> int:
@@ -104,6 +118,13 @@ class Surface:
         return np.asarray(np.diff(self.fans[0]) > 0)
 
     @cached_property
+    def vertex_of(self) -> Indices:
+        """(n,) the vertex that each point of the triangulation is."""
+        number = np.arange(self.size)
+        number[self.triangulation.triangles] = self.vertices
+        return number
+
+    @cached_property
     def edge_weights(self) -> Floats:
         """(t, 3) integral of the product of the gradients at an edge's ends: minus half a cotangent."""
         g = self.gradients
@@ -128,3 +149,28 @@ class Surface:
         """Return the mean length of the edges around each of some vertices."""
         lengths = self.gather(np.abs(self.edges))
         return np.asarray(lengths[vertices] / np.diff(self.fans[0])[vertices])
+
+
+def periodic_pairs(triangulation: Triangulation) -> tuple[Indices, Indices]:
+    """Return the vertices (m,) along the first stretch of a periodic domain, and their copies on the second.
+
+    Raises SolverError: there is not one for the other.
+    """
+    periodic = triangulation.domain.periodic
+    if periodic is None:
+        raise ValueError("a domain without periodic stretches")
+    outer = np.flatnonzero(triangulation.loop == 0)
+    length = triangulation.domain.loops[0].length
+    (start, stop), (_, end) = periodic.first, periodic.second
+    span, near = (stop - start) % length, 1e-9 * length
+    along = np.mod(triangulation.arc[outer] - start + near, length) - near
+    back = np.mod(end - triangulation.arc[outer] + near, length) - near
+    first, second = outer[along <= span + near], outer[back <= span + near]
+    first = first[np.argsort(along[along <= span + near])]
+    second = second[np.argsort(back[back <= span + near])]
+    points = triangulation.points
+    if len(first) == len(second):
+        apart = np.abs(points[first] + periodic.shift - points[second]).max()
+        if apart <= 1e-6 * triangulation.domain.extent:
+            return first, second
+    raise SolverError("vertices on periodic sides do not correspond")

@@ -1,4 +1,4 @@
-"""Directions of the cross field along walls, turned near corners so that a whole number of cells meets there."""
+"""Directions of the cross field along walls, turned near corners to have a whole number of cells there."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.loop import CORNER_DEG, Loop
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.surface import NEXT, Surface
 
@@ -36,19 +36,19 @@ def wall_directions(surface: Surface) -> WallDirections:
     """Return directions along the walls of a surface.
 
     At a corner of angle alpha where k cells are to meet, either wall is taken to be turned by half of
-    k 90 degrees - alpha, less and less away from it: the cross at the corner is then the same for both, and the
-    valence there is a boundary condition. Elsewhere the direction is the mean of both edges.
+    k 90 degrees - alpha, less and less away from it: the cross at the corner is then the same for both, and
+    the valence there is a boundary condition. Elsewhere the direction is the mean of both edges.
     """
     triangle, edge = surface.walls
-    start, stop = surface.vertices[triangle, edge], surface.vertices[triangle, NEXT[edge]]
+    start = surface.vertices[triangle, edge]
     own = np.angle(surface.edges[triangle, edge])
     inside = surface.gather(surface.angles)
-    cells, after, before = _corner_offsets(surface, inside)
+    cells, after, before = _corner_offsets(surface, np.where(surface.on_wall, inside, 0.0))
     places = surface.triangulation.triangles
     leaving, arriving = after[places[triangle, edge]], before[places[triangle, NEXT[edge]]]
     angle = np.zeros(surface.size)
     angle[start] = own - 0.5 * (np.pi - inside[start])
-    here = cells[places[triangle, edge]] > 0
+    here = cells[start] > 0
     angle[start[here]] = own[here]
     angle[start] += leaving
     offsets = 0.5 * (leaving + arriving)
@@ -67,8 +67,10 @@ def _corner_offsets(surface: Surface, inside: Floats) -> tuple[Indices, Floats, 
         mine = np.flatnonzero(triangulation.loop == number)
         away = _around(triangulation.arc[mine][:, None] - loop.corner_arcs, loop.length)
         at = mine[np.argmin(np.abs(away), axis=0)]
-        cells[at] = loop.corner_cells
-        half = 0.5 * (loop.corner_cells * QUARTER - inside[at])
+        vertex = surface.vertex_of[at]
+        wanted = _wanted_cells(surface, loop.corner_cells, vertex, inside[vertex])
+        cells[vertex] = wanted
+        half = np.where(wanted > 0, 0.5 * (wanted * QUARTER - inside[vertex]), 0.0)
         nearest = np.argmin(np.abs(away), axis=1)
         reach = _reaches(loop)[nearest]
         distance = np.take_along_axis(away, nearest[:, None], axis=1)[:, 0]
@@ -76,6 +78,17 @@ def _corner_offsets(surface: Surface, inside: Floats) -> tuple[Indices, Floats, 
         after[mine] = before[mine] = np.where(distance > 0, -offset, offset)
         after[at], before[at] = -half, half
     return cells, after, before
+
+
+def _wanted_cells(surface: Surface, own: Indices, vertices: Indices, inside: Floats) -> Indices:
+    """Return the cells (c,) wanted at corners: where a periodic side ends two of them are one, if any."""
+    if surface.triangulation.domain.periodic is None:
+        return own
+    wall = surface.on_wall[vertices]
+    glued = np.bincount(surface.vertex_of, minlength=surface.size)[vertices] > 1
+    smooth = np.abs(inside - np.pi) < np.radians(CORNER_DEG)
+    whole = np.where(smooth, 0, np.clip(np.round(inside / QUARTER), 1, 4)).astype(np.intp)
+    return np.asarray(np.where(~wall, 0, np.where(glued, whole, own)))
 
 
 def _reaches(loop: Loop) -> Floats:
