@@ -1,8 +1,8 @@
 """Whole numbers nearest to wanted ones under sums that must be equal: cells of arcs and of chords.
 
-The integers are those of arcs of a T-mesh rather than of coordinates of the map (Campen, Bommes, Kobbelt, ACM
-Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32). The programme
-is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
+The integers are those of arcs of a T-mesh rather than of coordinates of the map (Campen, Bommes, Kobbelt,
+ACM Trans. Graph. 34 (2015) 192; Lyon, Campen, Bommes, Kobbelt, Comput. Graph. Forum 38 (2019) 21-32). The
+programme is solved by HiGHS (Huangfu, Hall, Math. Program. Comput. 10 (2018) 119-142).
 """
 
 from __future__ import annotations
@@ -17,11 +17,18 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.t_mesh import TMesh
 
-GAP = 0.02
-"""A solution is good enough when it is known to be so close to the best, as a part of its cost."""
-NODES, SECONDS = 2000, 10.0
-STEPS = (1.0, 1.0, 2.0, 4.0, 8.0, 16.0)
-"""Lengths of the steps by which a number goes up or down; the last is as long as need be."""
+OPTIONS = {
+    "output_flag": False,
+    "threads": 1,
+    "random_seed": 0,
+    "presolve": "off",
+    "mip_rel_gap": 0.02,
+    "mip_max_nodes": 2000,
+    "time_limit": 10.0,
+}
+"""Of HiGHS. One thread and a fixed seed: the same numbers always."""
+STEPS = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4)
+"""Steps by which a number goes up or down, as parts of it but at least 1; the last goes on to the end."""
 LOOP = 4
 """Cells along a closed wall, at least."""
 
@@ -29,7 +36,9 @@ Row = tuple[Mapping[int, float], float, float]
 """Coefficients of some numbers, and the least and greatest that their sum may be."""
 
 
-def arc_counts(mesh: TMesh, wanted: Floats, equal: Sequence[tuple[Sequence[int], Sequence[int]]] = ()) -> Indices:
+def arc_counts(
+    mesh: TMesh, wanted: Floats, equal: Sequence[tuple[Sequence[int], Sequence[int]]] = ()
+) -> Indices:
     """Return cells (a,) along each arc, at least 1, near the `wanted` (a,), alike on opposite sides of faces.
 
     Parameters
@@ -59,20 +68,17 @@ def _balance(first: Sequence[int], second: Sequence[int]) -> Row:
 
 
 def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
-    """Return whole numbers n (k,) at least `least` (k,) that keep the rows, sum n / wanted + wanted / n smallest.
+    """Return whole numbers n (k,) of at least `least` (k,) that keep the rows.
+
+    Of these, the sum of n / wanted + wanted / n is smallest: of squared logarithms, where they are small.
 
     Raises BlockingError: there are none, or none was found in time.
     """
     if not len(wanted):
         return np.zeros(0, dtype=np.intp)
-    solver = _solver()
     steps = _steps(wanted, least)
-    solver.passModel(_model(steps, rows))
-    solver.run()
-    found = np.array(solver.getSolution().col_value)
-    if len(found) != steps[2].size or solver.getInfo().primal_solution_status != 2:
-        raise BlockingError("no whole numbers of cells keep opposite sides alike")
-    moved = steps[1] @ np.round(found).reshape(steps[2].shape)
+    found = _solved(_model(steps, rows), steps[2])
+    moved = steps[1] @ found
     whole = np.round(steps[0] + moved).astype(np.intp)
     for row, low, high in rows:
         total = sum(value * whole[k] for k, value in row.items())
@@ -81,21 +87,23 @@ def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices
     return whole
 
 
-def _solver() -> Any:
-    from highspy import Highs
+def _solved(programme: Any, lengths: Floats) -> Floats:
+    """Return the steps (b, k) taken, whole ones: mostly those of the relaxed programme are already."""
+    from highspy import Highs, HighsVarType
 
     solver = Highs()
-    options = {
-        "output_flag": False,
-        "threads": 1,
-        "random_seed": 0,
-        "mip_rel_gap": GAP,
-        "mip_max_nodes": NODES,
-        "time_limit": SECONDS,
-    }
-    for name, value in options.items():
+    for name, value in OPTIONS.items():
         solver.setOptionValue(name, value)
-    return solver
+    for whole in (False, True):
+        programme.integrality_ = [HighsVarType.kInteger] * lengths.size if whole else []
+        solver.passModel(programme)
+        solver.run()
+        found = np.array(solver.getSolution().col_value)
+        if len(found) != lengths.size or solver.getInfo().primal_solution_status != 2:
+            break
+        if np.abs(found - np.round(found)).max() < 1e-6:
+            return np.round(found).reshape(lengths.shape)
+    raise BlockingError("no whole numbers of cells keep opposite sides alike")
 
 
 def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Floats]:
@@ -109,14 +117,14 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
     signs, lengths, costs = [], [], []
     for sign in (1.0, -1.0):
         at = base
-        for step in STEPS:
-            to = np.maximum(at + sign * step, least)
-            if step == STEPS[-1] and sign < 0:
+        for part in STEPS:
+            to = np.maximum(at + sign * np.maximum(np.round(part * base), 1.0), least)
+            if part == STEPS[-1] and sign < 0:
                 to = least
             far = np.abs(to - at)
             rise = np.divide(cost(to) - cost(at), far, out=np.zeros(len(base)), where=far > 0)
             signs.append(sign)
-            lengths.append(far if step != STEPS[-1] or sign < 0 else np.full(len(base), np.inf))
+            lengths.append(np.full(len(base), np.inf) if part == STEPS[-1] and sign > 0 else far)
             costs.append(rise)
             at = to
     return base, np.array(signs), np.array(lengths), np.array(costs)
@@ -125,10 +133,10 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
 def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) -> Any:
     """Return the programme in steps: n = base + those up - those down, each step dearer than the one before.
 
-    The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or nearly:
-    each arc is in two rows with coefficients +-1 (a bidirected network, whose corners are half-integral).
+    The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or
+    nearly so: each arc is in two rows with coefficients +-1 (a bidirected network, whose corners are half-integral).
     """
-    from highspy import HighsLp, HighsVarType, MatrixFormat
+    from highspy import HighsLp, MatrixFormat
 
     base, signs, lengths, costs = steps
     blocks, count = lengths.shape
@@ -148,5 +156,4 @@ def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) ->
     # a row has all blocks of its first number, then of its second
     matrix.index_ = (index[:, None] + count * np.arange(blocks)).ravel().astype(np.int32)
     matrix.value_ = (value[:, None] * signs).ravel()
-    lp.integrality_ = [HighsVarType.kInteger] * lengths.size
     return lp

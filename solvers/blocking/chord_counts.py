@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -121,7 +122,7 @@ def _with_total(wishes: ChordWishes, mean: Floats, least: Floats, cells: int, mu
 def turning_least(loop: Loop, start: float, stop: float, turn_deg: float = TURN_DEG) -> int:
     """Return the cells that a stretch of a loop needs so that none turns by more than `turn_deg`.
 
-    `start` and `stop` are arc lengths, `stop` further along the loop. Corners do not count: nodes stand there.
+    `start` and `stop` are arc lengths, `stop` further along. Corners do not count: nodes stand there.
     """
     steps = 8 * max(4, int(np.ceil(len(loop.curve.points) * (stop - start) / loop.length)))
     arcs = np.linspace(start, stop, min(steps, 4000) + 1)
@@ -129,7 +130,7 @@ def turning_least(loop: Loop, start: float, stop: float, turn_deg: float = TURN_
     ends = [0.0, *sorted(inner[(inner > 0) & (inner < stop - start)].tolist()), stop - start]
     turned = 0.0
     tiny = 1e-7 * loop.length
-    for a, b in zip(ends[:-1], ends[1:], strict=True):
+    for a, b in pairwise(ends):
         own = arcs[(arcs - start > a + tiny) & (arcs - start < b - tiny)]
         tangent = loop.tangent(np.concatenate([[start + a + tiny], own, [start + b - tiny]]))
         z = tangent[:, 0] + 1j * tangent[:, 1]

@@ -27,7 +27,7 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
     Nodes lie where the inverse of the map puts them, so cells are nowhere folded but where they are too large
     to follow it.
 
-    Raises BlockingError: the map's lines make no T-mesh of rectangles, or no conforming mesh has so few cells.
+    Raises BlockingError: the map's lines make no T-mesh of rectangles, or so few cells cannot conform.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     size = np.sqrt(seamless.triangulation.domain.area / cells)
@@ -205,7 +205,9 @@ class _Walks:
         direction = np.array([1, 1j, -1, -1j])
         origin = trails.origin[piece] + part * step * direction[trails.axis[piece]]
         east = direction[(trails.axis[piece] + np.concatenate(self._turn)) % 4]
-        sizes = np.repeat([block.shape[1] for block in self._targets], [len(block) for block in self._targets])
+        sizes = np.repeat(
+            [block.shape[1] for block in self._targets], [len(block) for block in self._targets]
+        )
         flat = np.concatenate([block.ravel() for block in self._targets])
         targets = np.repeat(origin, sizes) + flat * np.repeat(east, sizes)
         reached = walk_map(
@@ -222,7 +224,7 @@ class _Walks:
 
 
 def _checked(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh if it is conforming, has the domain's topology and a wall edge wherever places say so."""
+    """Return the mesh if it conforms and has the domain's topology, with walls where places say so."""
     shared = np.bincount(mesh.edge_of.ravel(), minlength=len(mesh.edges))
     ordered = np.sort(mesh.quads, axis=1)
     whole = not np.any(ordered[:, 1:] == ordered[:, :-1]) and int(shared.max()) <= 2
