@@ -134,7 +134,7 @@ def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) ->
     """Return the programme in steps: n = base + those up - those down, each step dearer than the one before.
 
     The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or
-    nearly so: each arc is in two rows with coefficients +-1 (a bidirected network, whose corners are half-integral).
+    nearly so: each arc is in two rows with coefficients +-1 (a bidirected network: corners are half-integral).
     """
     from highspy import HighsLp, MatrixFormat
 
