@@ -1,9 +1,9 @@
 """The motorcycle graph of a seamless map: rays from its singular vertices and corners along coordinate lines.
 
-Each ray runs at unit speed until it meets the trace of another, a wall or a node. In a seamless map every ray is
-a straight line, crossings are comparisons of numbers, and as each ray ends at the first crossing the graph is
-finite even where coordinate lines are not (Eppstein, Goodrich, Kim, Tamstorf, Comput. Graph. Forum 27 (2008)
-1477-1486; on seamless maps Myles, Pietroni, Zorin, ACM Trans. Graph. 33 (2014) 135).
+Each ray runs at unit speed until it meets the trace of another, a wall or a node. In a seamless map every ray
+is a straight line, crossings are comparisons of numbers, and as each ray ends at the first crossing the graph
+is finite even where coordinate lines are not (Eppstein, Goodrich, Kim, Tamstorf, Comput. Graph. Forum 27
+(2008) 1477-1486; on seamless maps Myles, Pietroni, Zorin, ACM Trans. Graph. 33 (2014) 135).
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class MotorcycleGraph:
     trails: Trails
     """The rays, then the walls."""
     stations: tuple[tuple[tuple[float, int, int, int], ...], ...]
-    """By trail, in its direction, the nodes on it: length, node, the way by which the trail arrives and the one
-    by which it leaves, -1 where it does not. A trail of a wall is closed."""
+    """By trail, in its direction, the nodes on it: length, node, the way by which the trail arrives and the
+    one by which it leaves, -1 where it does not. A trail of a wall is closed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +103,7 @@ def _trace(seamless: SeamlessMap, joined: Indices) -> _Traced:
 
 
 def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleGraph:
-    """Number the nodes where rays ended after those where they start, and put all on their trails."""
+    """Return the graph: nodes where rays ended are numbered after those where they start."""
     ports, kinds = traced.ports, traced.ends[:, 0]
     rays = len(kinds)
     old = len(ports.vertex)

@@ -31,8 +31,8 @@ class Ports:
     """(t, 3, 4) number of the way out of that node through the triangle along each axis, or -1. At walls 1 is
     the first way inside; inside 0 is the first axis counter-clockwise of the fan's first edge."""
     starts: Indices
-    """(r, 6) rays: node, port, triangle, corner, axis, and a column that is left to the caller. Nodes where the
-    wall is straight in the map, though it has a corner, have none."""
+    """(r, 6) rays: node, port, triangle, corner, axis, and a column left to the caller. Nodes where the wall
+    is straight in the map, though it has a corner, have none."""
 
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
@@ -77,7 +77,7 @@ def _directions(
     quarters: Indices,
     on_wall: NDArray[np.bool_],
 ) -> tuple[Indices, NDArray[np.float64]]:
-    """Return the port (e, 4) of each axis at each corner, -1 for walls, and how far inside the corner it is."""
+    """Return the port (e, 4) of each axis at each corner, -1 for walls, and how far inside it is."""
     w = seamless.corner_coords
     here = w[face, corner]
     right, left = w[face, (corner + 1) % 3] - here, w[face, (corner + 2) % 3] - here

@@ -27,7 +27,7 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
     Nodes lie where the inverse of the map puts them, so cells are nowhere folded but where they are too large
     to follow it.
 
-    Raises BlockingError: the map's lines make no T-mesh of rectangles, or no conforming mesh has so few cells.
+    Raises BlockingError: the map's lines make no T-mesh of rectangles, or so few cells cannot conform.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
     size = np.sqrt(seamless.triangulation.domain.area / cells)
@@ -224,7 +224,7 @@ class _Walks:
 
 
 def _checked(mesh: QuadMesh) -> QuadMesh:
-    """Return the mesh if it is conforming, has the domain's topology and a wall edge wherever places say so."""
+    """Return the mesh if it conforms and has the domain's topology, with walls where places say so."""
     shared = np.bincount(mesh.edge_of.ravel(), minlength=len(mesh.edges))
     ordered = np.sort(mesh.quads, axis=1)
     whole = not np.any(ordered[:, 1:] == ordered[:, :-1]) and int(shared.max()) <= 2

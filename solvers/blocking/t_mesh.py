@@ -1,13 +1,14 @@
 """The faces of a motorcycle graph: rectangles in the map, whose sides may be of several arcs.
 
-Where the graph has only corners of one and of two right angles, and four of the first kind a face, each face is a
-rectangle of the map, and its opposite sides are equally long: a T-mesh (Myles, Pietroni, Zorin, ACM Trans.
-Graph. 33 (2014) 135; Campen, Bommes, Kobbelt, ACM Trans. Graph. 34 (2015) 192).
+Where the graph has only corners of one and of two right angles, and four of the first kind a face, each face
+is a rectangle of the map, and its opposite sides are equally long: a T-mesh (Myles, Pietroni, Zorin, ACM
+Trans. Graph. 33 (2014) 135; Campen, Bommes, Kobbelt, ACM Trans. Graph. 34 (2015) 192).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -33,7 +34,7 @@ class TMesh:
     trail: Indices
     """(a,) trail that the arc is a part of."""
     span: Floats
-    """(a, 2) lengths of that trail at the arc's ends; past the total of a closed trail where it comes round."""
+    """(a, 2) lengths of that trail at the ends; past the total of a closed trail where it comes round."""
     faces: tuple[Face, ...]
     """The half-edges of the four sides of each face, counter-clockwise, the face on their left."""
 
@@ -46,7 +47,7 @@ class TMesh:
 def t_mesh(graph: MotorcycleGraph) -> TMesh:
     """Return the faces of a motorcycle graph.
 
-    Raises BlockingError: a face that is no rectangle of the map, since rays that meet were told apart wrongly.
+    Raises BlockingError: a face that is no rectangle of the map.
     """
     nodes, trail, span, ways = _arcs(graph)
     follow = _successors(graph, ways)
@@ -66,7 +67,11 @@ _Ways = list[list[tuple[int, int]]]
 def _arcs(
     graph: MotorcycleGraph,
 ) -> tuple[list[tuple[int, int]], list[int], list[tuple[float, float]], _Ways]:
+<<<<<<< HEAD
     """Return nodes, trail and lengths of each arc, and the half-edges that leave each node with their ways."""
+=======
+    """Return nodes, trail and lengths of each arc, and the half-edges at each node with their ways."""
+>>>>>>> mot
     nodes: list[tuple[int, int]] = []
     trail: list[int] = []
     span: list[tuple[float, float]] = []
@@ -79,7 +84,7 @@ def _arcs(
         total = graph.trails.total(number) if closed else 0.0
         last = [(first[0] + total, *first[1:])] if closed else []
         run = [*stations, *last]
-        for (start, a, _, leave), (stop, b, arrive, _) in zip(run[:-1], run[1:], strict=True):
+        for (start, a, _, leave), (stop, b, arrive, _) in pairwise(run):
             arc = len(nodes)
             nodes.append((a, b))
             trail.append(number)

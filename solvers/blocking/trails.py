@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -152,7 +153,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
     there = triangulation.triangles[face, (edge + 1) % 3]
     origin = seamless.corner_coords[face, edge]
     step = np.abs(seamless.corner_coords[face, (edge + 1) % 3] - origin)
-    runs = [np.append(0.0, np.cumsum(step[a:b])) for a, b in zip(first[:-1], first[1:], strict=True)]
+    runs = [np.append(0.0, np.cumsum(step[a:b])) for a, b in pairwise(first)]
     loops = triangulation.loop[here[first[:-1]]]
     whole = np.array([loop.length for loop in triangulation.domain.loops])[triangulation.loop[here]]
     arc = triangulation.arc[here]
