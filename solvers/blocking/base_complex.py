@@ -9,11 +9,13 @@ Trans. Graph. 30 (2011), section 3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -39,6 +41,35 @@ class BaseComplex:
     def layout(self) -> Layout:
         """The blocks as a layout."""
         return Layout(self.mesh, self.blocks)
+
+    @cached_property
+    def sides(self) -> tuple[Indices, Indices, Indices]:
+        """Sides of the blocks: south, north, west and east of each, one after another.
+
+        Their nodes (k,), where in these each side begins (4 b,), and its chord (4 b,).
+        """
+        lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
+        nodes = np.concatenate(lines)
+        first = np.cumsum([0] + [len(line) for line in lines[:-1]])
+        a, b = nodes[first], nodes[first + 1]
+        keys = self.mesh.edges[:, 0] * len(self.mesh.nodes) + self.mesh.edges[:, 1]
+        edge = np.searchsorted(keys, np.minimum(a, b) * len(self.mesh.nodes) + np.maximum(a, b))
+        return nodes, first, self.chord[edge]
+
+    def moved(self, mesh: QuadMesh) -> BaseComplex:
+        """Return the blocks of the same quads with other nodes."""
+        moved = replace(self, mesh=mesh)
+        if "sides" in self.__dict__:
+            moved.__dict__["sides"] = self.sides
+        return moved
+
+    def side_lengths(self) -> Floats:
+        """Return the lengths (b, 4) of south, north, west and east of each block."""
+        nodes, first, _ = self.sides
+        points = self.mesh.nodes[nodes]
+        step = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+        step[first] = 0.0  # from one side to the next
+        return np.asarray(np.add.reduceat(step, first).reshape(-1, 4))
 
 
 def base_complex(mesh: QuadMesh) -> BaseComplex:

@@ -10,8 +10,6 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -37,7 +35,7 @@ def simplify(
     `price` is what a block costs, in degrees of mean deviation from 90.
     """
     current = base_complex(mesh)
-    best = score(mesh, len(current.blocks), price)
+    best = score(current, price)
     while True:
         better = _first_gain(current, best, price, iterations)
         if better is None:
@@ -60,9 +58,10 @@ def _first_gain(
             if not optimum.valid:
                 break
             mesh = optimum.mesh
-            value = score(mesh, len(trial.blocks), price)
+            judged = trial.moved(mesh)
+            value = score(judged, price)
             if value < best:
-                return replace(trial, mesh=mesh), value
+                return judged, value
         failures += 1
         if failures >= FAILURES:
             return None
@@ -88,15 +87,7 @@ def _irregular_inside(mesh: QuadMesh) -> int:
 
 
 def widths(current: BaseComplex) -> Floats:
-    """Return how wide each chord (chords,) is: the mean length of edges across it, all rows added up."""
-    mesh = current.mesh
-    step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
-    edges = np.bincount(current.chord, minlength=current.chords)
-    mean = np.bincount(current.chord, np.hypot(*step.T), minlength=current.chords) / edges
-    sides = [line for block in current.blocks for line in (block[:, 0], block[0])]
-    ends = np.array([line[:2] for line in sides])
-    keys = mesh.edges[:, 0] * len(mesh.nodes) + mesh.edges[:, 1]
-    first = np.searchsorted(keys, ends.min(axis=1) * len(mesh.nodes) + ends.max(axis=1))
-    rows = np.zeros(current.chords)
-    rows[current.chord[first]] = [len(line) - 1 for line in sides]
-    return np.asarray(mean * rows)
+    """Return how wide each chord (chords,) is: the mean length of sides of blocks across it."""
+    chord = current.sides[2]
+    edges = np.bincount(chord, minlength=current.chords)
+    return np.bincount(chord, current.side_lengths().ravel(), current.chords) / edges
