@@ -30,6 +30,7 @@ SHAPE = 0.9  # w of the functional
 SMOOTHNESS = 2e-3  # its β
 ALLOWED = np.radians(30.0)  # that a wall turns by within an edge
 BENT = 5.0  # weight of the squares of what it turns by beyond that, over the number of cells
+MANY = 1000  # cells: with more, what a tip cut off wins grows with their number, and so does that weight
 
 UNFOLDING = 0.0, 0.3  # w, and the weight of areas, while folded: angles would hold on to folds
 ROUNDS = 14  # regularisations at the most
@@ -145,7 +146,7 @@ class _Problem:
             (walls.nodes, of_wall, self.arc),
             (walls.edges, walls.round / self.unit),
             tuple(self._loop(number) for number in range(len(self.mesh.domain.loops))),
-            BENT / max(len(quads), 1),
+            BENT / min(max(len(quads), 1), MANY),
             ALLOWED,
         )
 
