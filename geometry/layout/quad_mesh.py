@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import quad_edges
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,11 +61,7 @@ class QuadMesh:
 
     @cached_property
     def _sides(self) -> tuple[Indices, Indices]:
-        first, second = self.quads.ravel(), np.roll(self.quads, -1, axis=1).ravel()
-        low, high = np.minimum(first, second), np.maximum(first, second)
-        keys, inverse = np.unique(low * len(self.nodes) + high, return_inverse=True)
-        edges = np.stack(np.divmod(keys, len(self.nodes)), axis=1)
-        return edges, inverse.reshape(self.quads.shape)
+        return quad_edges(np.ascontiguousarray(self.quads, dtype=np.intp), len(self.nodes))
 
     @property
     def edges(self) -> Indices:

@@ -1,4 +1,4 @@
-"""Wall nodes of a quad mesh as unknowns: which slide on which loop, in which order, how far the loop turns."""
+"""Wall nodes of a quad mesh as unknowns: on which loop they are, in which order, how far the loop turns."""
 
 from __future__ import annotations
 
@@ -41,10 +41,11 @@ class Walls:
         return n[0], n[1], e[0], e[1]
 
 
-def walls_of(mesh: QuadMesh, edges: Indices, edge_of: Indices, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, nodes that overtook others put back; None where nodes that stay are out of order.
+def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
+    """Return the walls of a mesh, nodes that overtook others put back.
 
-    `fixed` (n,) are nodes that stay, `tied` (n,) those of periodic sides, which are no walls.
+    `fixed` (n,) are nodes that stay, `tied` (n,) those of periodic sides, which are no walls. None where
+    nodes that stay are out of order.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied
@@ -55,8 +56,7 @@ def walls_of(mesh: QuadMesh, edges: Indices, edge_of: Indices, fixed: Bools, tie
     arc = np.mod(places.arc[nodes], lengths[loop])
     number = np.full(len(mesh.nodes), -1, dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
-    once = np.bincount(edge_of.ravel(), minlength=len(edges))[edge_of] == 1
-    cell, side = np.nonzero(once)
+    cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ends = np.stack([mesh.quads[cell, side], mesh.quads[cell, (side + 1) % 4]], axis=1)
     first, second = number[ends[:, 0]], number[ends[:, 1]]
     both = (first >= 0) & (second >= 0)
