@@ -120,14 +120,17 @@ def passage(n: int = 12, m: int = 8) -> QuadMesh:
 
 
 def sagitta(mesh: QuadMesh) -> float:
-    """Return the largest distance of a curve from an edge between two of its nodes, in mean cells."""
+    """Return the largest distance of a curve from an edge between two of its nodes, in roots of cells."""
     cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     worst = 0.0
-    for a, b in zip(mesh.quads[cell, side], mesh.quads[cell, (side + 1) % 4], strict=True):
+    for q, k in zip(cell, side, strict=True):
+        a, b = mesh.quads[q, k], mesh.quads[q, (k + 1) % 4]
         loop = mesh.domain.loops[mesh.places.loop[a]]
         along = (mesh.places.arc[b] - mesh.places.arc[a]) % loop.length
         points = loop.at(mesh.places.arc[a] + along * np.linspace(0.0, 1.0, 33))
         chord = points[-1] - points[0]
         away = (points - points[0]) @ np.array([-chord[1], chord[0]]) / np.hypot(*chord)
-        worst = max(worst, float(np.abs(away).max()))
-    return worst / float(np.sqrt(mesh.domain.area / len(mesh.quads)))
+        z = mesh.nodes[mesh.quads[q]] @ np.array([1.0, 1j])
+        area = 0.5 * abs((np.conj(z[2] - z[0]) * (z[3] - z[1])).imag)
+        worst = max(worst, float(np.abs(away).max() / np.sqrt(area)))
+    return worst
