@@ -190,10 +190,11 @@ def line_neighbours(
 
 class QuadDescent:
     def __init__(
-        self, nodes: Floats, cells: tuple[Indices, Floats, Floats], lines: tuple[Indices, Indices, int, Floats],
-        eased: tuple[Indices, Floats], inner: Indices, tied: tuple[Indices, tuple[float, float]],
-        unknown: Indices, wall: Indices, wall_nodes: tuple[Indices, Indices, Floats],
-        wall_edges: tuple[Indices, Floats], loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
+        self, nodes: Floats, cells: tuple[Indices, Floats, Floats],
+        lines: tuple[Indices, Indices, int, Floats], eased: tuple[Indices, Floats], inner: Indices,
+        tied: tuple[Indices, tuple[float, float]], unknown: Indices, wall: Indices,
+        wall_nodes: tuple[Indices, Indices, Floats], wall_edges: tuple[Indices, Floats],
+        loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
     ) -> None: ...  # fmt: skip
     def run(
         self,
@@ -265,3 +266,6 @@ class DelaunayMesh:
     def shake(self, first: int, part: float, seed: int) -> None: ...
     def nodes(self) -> tuple[Whole, Floats]: ...
     def triangles(self) -> tuple[Indices, Indices, Indices]: ...
+    def evaluate(
+        self, shape: float, smoothness: float, epsilon: float, size: float, gradient: Floats
+    ) -> float: ...

@@ -211,6 +211,8 @@ static void precondition(void *problem, const double *gradient, float *result)
     QuadDescent *d = problem;
     Stiffness *s = &d->stiffness;
     const ptrdiff_t n = d->steps.n;
+    if (n == 0)
+        return;
     memcpy(s->right, gradient, (size_t)n * sizeof *gradient);
     sparse_solve(&s->pattern, s->lower_row, s->lower, s->pivots, 1, s->right, s->scratch);
     for (ptrdiff_t k = 0; k < n; k++)
@@ -255,7 +257,7 @@ int quad_descent_start(QuadDescent *d, int renew)
     set_sizes(d);
     get_unknowns(d, d->here);
     set_nodes(d, d->here);
-    if ((renew || !d->stiffness.values) && make_stiffness(d) < 0)
+    if (s->n > 0 && (renew || !d->stiffness.values) && make_stiffness(d) < 0)
         return -1;
     steps_start(s);
     return 0;
