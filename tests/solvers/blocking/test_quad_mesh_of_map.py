@@ -60,7 +60,9 @@ def checked(mesh: QuadMesh) -> QuadMesh:
         nodes = nodes[np.argsort(mesh.places.arc[nodes])]
         assert np.abs(loop.at(mesh.places.arc[nodes]) - mesh.nodes[nodes]).max() < 1e-9 * loop.length
         assert np.diff(mesh.places.arc[nodes]).min() > 0
-        around = {tuple(sorted(pair)) for pair in zip(nodes.tolist(), np.roll(nodes, -1).tolist(), strict=True)}
+        around = {
+            tuple(sorted(pair)) for pair in zip(nodes.tolist(), np.roll(nodes, -1).tolist(), strict=True)
+        }
         assert around <= pairs
         pairs -= around
         fixed = nodes[mesh.places.cells[nodes] > 0]
@@ -154,9 +156,18 @@ def test_annulus_is_cut_once() -> None:
 @pytest.mark.parametrize("valence", [3, 5])
 def test_squares_around_a_singular_vertex(valence: int) -> None:
     domain = star_of_squares(valence)
-    seamless = seamless_of(domain, cone(valence), count=800)
-    at = np.argmin(np.hypot(*seamless.triangulation.points.T))
-    assert (seamless.valence[at] == valence) == (np.abs(seamless.triangulation.points[at]).max() < 1e-9)
+    seamless = seamless_of(domain, cone(valence), count=800, centre=True)
+    assert seamless.valence[seamless.singular].tolist() == [valence]
+    mesh = t_mesh(motorcycle_graph(seamless))
+    assert len(mesh.faces) == valence
+    fine = checked(quad_mesh(seamless, 300))
+    inner = np.flatnonzero(fine.irregular & ~fine.wall_nodes)
+    assert fine.valence[inner].tolist() == [valence]
+    assert np.abs(fine.nodes[inner]).max() < 1e-12
+    # the inverse map: unit squares of the map have equal steps there
+    w = np.abs(fine.nodes @ np.array([1, 1j])) ** (valence / 4)
+    assert w.max() == pytest.approx(np.sqrt(2), rel=1e-3)
+    assert jacobians(fine).min() > 0
 
 
 def test_same_input_same_bits() -> None:
