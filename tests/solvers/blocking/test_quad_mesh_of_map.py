@@ -29,7 +29,7 @@ def room_with_pillars(seed: int) -> Domain:
     for i, j in np.ndindex(3, 3):
         if rng.random() < 0.7:
             size = rng.uniform(0.15, 0.5, 2)
-            low = (i, j) + rng.uniform(0.15, 0.3, 2)
+            low = np.array([i, j]) + rng.uniform(0.15, 0.3, 2)
             pillars.append(box(*low, *size))
     return Domain.of_polygons([box(0, 0, 3.0, 3.0), *pillars])
 
@@ -47,7 +47,7 @@ def star_of_squares(valence: int) -> Domain:
 
 
 def checked(mesh: QuadMesh) -> QuadMesh:
-    """Assert what every mesh must be: conforming, of the domain's topology, wall nodes on their loops in order."""
+    """Assert what every mesh must be: conforming, of the domain's topology, wall nodes in order on loops."""
     loops = mesh.domain.loops
     quads_of = np.bincount(mesh.edge_of.ravel(), minlength=len(mesh.edges))
     assert set(quads_of) <= {1, 2}
