@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.t_mesh import TMesh
 
-OPTIONS = {
+OPTIONS: dict[str, bool | int | float | str] = {
     "output_flag": False,
     "threads": 1,
     "random_seed": 0,
@@ -91,7 +91,7 @@ def _solved(programme: Any, lengths: Floats) -> Floats:
     """Return the steps (b, k) taken, whole ones: mostly those of the relaxed programme are already."""
     from highspy import Highs, HighsVarType
 
-    solver = Highs()
+    solver: Any = Highs()  # type: ignore[no-untyped-call]
     for name, value in OPTIONS.items():
         solver.setOptionValue(name, value)
     for whole in (False, True):

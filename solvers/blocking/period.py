@@ -1,13 +1,14 @@
 """A quad mesh that closes on itself across a period, cut open along its lines.
 
-Across a period there is no wall, so lines of the map run through, and the mesh covers the domain's quotient by
-the shift. Where it is cut open is free: along a line of the mesh from one end of the given stretch to the other.
+Across a period there is no wall, so lines of the map run through, and the mesh covers the domain's quotient
+by the shift. Where it is cut open is free: along a line of the mesh between the ends of the given stretch.
 """
 
 from __future__ import annotations
 
 import heapq
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -66,13 +67,12 @@ def _places(mesh: QuadMesh, periodic: Periodic, ends: tuple[int, int], double: I
     cells = np.append(places.cells, places.cells[double])
     partner = np.append(np.full(len(places.loop), -1, dtype=np.intp), double)
     length = mesh.domain.loops[0].length
-    corners = {
-        float(a % length): int(c)
-        for a, c in zip(mesh.domain.loops[0].corner_arcs, mesh.domain.loops[0].corner_cells, strict=True)
-    }
+    corners, wanted = mesh.domain.loops[0].corner_arcs, mesh.domain.loops[0].corner_cells
     for end, first, second in zip(ends, periodic.first, periodic.second[::-1], strict=True):
         for node, at in ((end, first), (len(places.loop) + int(np.flatnonzero(double == end)[0]), second)):
-            near = min(corners, key=lambda a, at=at: abs((a - at + length / 2) % length - length / 2), default=at)
+            near = min(
+                corners, key=lambda a, at=at: abs((a - at + length / 2) % length - length / 2), default=at
+            )
             loop[node], arc[node], cells[node] = 0, at % length, corners.get(near, 1)
     return Places(loop, arc, cells, partner)
 
@@ -120,14 +120,16 @@ def _distance(domain: Domain, z: Complexes, shift: complex) -> Floats:
     if domain.periodic is None:
         raise ValueError("a domain without periodic stretches")
     a, b = domain.periodic.first
-    line = domain.loops[0].at(np.linspace(a, b if b > a else b + domain.loops[0].length, 200)) @ np.array([1, 1j])
+    line = domain.loops[0].at(np.linspace(a, b if b > a else b + domain.loops[0].length, 200)) @ np.array(
+        [1, 1j]
+    )
     copies = np.concatenate([line - shift, line, line + shift])
     return np.asarray(np.abs(z[:, None] - copies).min(axis=1))
 
 
 def _copies(quads: Indices, off: Indices, path: list[int], loop: Indices, ends: tuple[int, int]) -> Indices:
     """Return by how many shifts each quad is moved, so that all hang together but across the path."""
-    shut = {frozenset(pair) for pair in zip(path[:-1], path[1:], strict=True)}
+    shut = {frozenset(pair) for pair in pairwise(path)}
     sides: dict[frozenset[int], list[tuple[int, int]]] = {}
     rows, offs = quads.tolist(), off.tolist()
     for q, row in enumerate(rows):

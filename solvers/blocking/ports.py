@@ -36,7 +36,7 @@ class Ports:
 
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
-    """Return the ports of corners, ends of stretches, singular vertices, then of `joined`, vertices of walls."""
+    """Return the ports of corners, ends of stretches and singular vertices, then of `joined` on walls."""
     cells = seamless.boundary_cells
     count = len(seamless.on_wall)
     around = np.zeros(count, dtype=np.intp)

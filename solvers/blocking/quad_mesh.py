@@ -186,7 +186,9 @@ class _Walks:
 
     def _start(self, west: Side, count: int) -> None:
         """Start a walk at each inner node of the west side, from the south on."""
-        trail, length, turn = [], [], []
+        trail: list[Indices] = []
+        length: list[Floats] = []
+        turn: list[Indices] = []
         for half in west:
             run = self.nodes.lengths[half // 2]
             run = run if half % 2 == 0 else run[::-1]
