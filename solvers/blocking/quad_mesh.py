@@ -13,6 +13,8 @@ from meshonet.kernels._native import walk_map
 from meshonet.solvers.blocking.arc_counts import arc_counts
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.motorcycle import motorcycle_graph
+from meshonet.solvers.blocking.period import as_first, cut_open
+from meshonet.solvers.blocking.ports import stretch_ends
 from meshonet.solvers.blocking.seamless_map import SeamlessMap
 from meshonet.solvers.blocking.t_mesh import Face, Side, TMesh, t_mesh
 from meshonet.solvers.blocking.trails import map_tables
@@ -32,7 +34,12 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
     mesh = t_mesh(motorcycle_graph(seamless))
     size = np.sqrt(seamless.triangulation.domain.area / cells)
     counts = arc_counts(mesh, np.maximum(_plane_lengths(mesh) / size, SHORTEST))
-    return _checked(_fine(mesh, counts))
+    fine = _fine(mesh, counts)
+    if fine.domain.periodic is None:
+        return _checked(fine)
+    first, last = (int(np.flatnonzero(mesh.graph.vertex == end)[0]) for end in stretch_ends(seamless))
+    ends = (first, last)
+    return _checked(cut_open(as_first(fine, ends), ends))
 
 
 def _plane_lengths(mesh: TMesh) -> Floats:
@@ -179,7 +186,9 @@ class _Walks:
 
     def _start(self, west: Side, count: int) -> None:
         """Start a walk at each inner node of the west side, from the south on."""
-        trail, length, turn = [], [], []
+        trail: list[Indices] = []
+        length: list[Floats] = []
+        turn: list[Indices] = []
         for half in west:
             run = self.nodes.lengths[half // 2]
             run = run if half % 2 == 0 else run[::-1]
@@ -229,7 +238,9 @@ def _checked(mesh: QuadMesh) -> QuadMesh:
     ordered = np.sort(mesh.quads, axis=1)
     whole = not np.any(ordered[:, 1:] == ordered[:, :-1]) and int(shared.max()) <= 2
     euler = len(mesh.nodes) - len(mesh.edges) + len(mesh.quads)
-    wall = np.array_equal(mesh.wall_nodes, mesh.places.loop >= 0)
+    tied = mesh.places.partner >= 0
+    tied[mesh.places.partner[tied]] = True
+    wall = np.array_equal(mesh.wall_nodes, (mesh.places.loop >= 0) | tied)
     twice = np.bincount(mesh.edges[mesh.on_wall].ravel(), minlength=len(mesh.nodes)) <= 2
     if not (whole and wall and bool(twice.all()) and euler == 2 - len(mesh.domain.loops)):
         raise BlockingError("the quads do not conform: too few cells for the narrow parts of the domain")
