@@ -14,11 +14,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
-<<<<<<< HEAD
 from meshonet.kernels._native import connect_quads
-=======
-from meshonet.kernels._native import quad_edges
->>>>>>> opt
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,13 +60,8 @@ class QuadMesh:
     places: Places = field(repr=False)
 
     @cached_property
-<<<<<<< HEAD
     def _sides(self) -> tuple[Indices, Indices, Indices, bool]:
         return connect_quads(np.ascontiguousarray(self.quads, dtype=np.intp), len(self.nodes))
-=======
-    def _sides(self) -> tuple[Indices, Indices]:
-        return quad_edges(np.ascontiguousarray(self.quads, dtype=np.intp), len(self.nodes))
->>>>>>> opt
 
     @property
     def edges(self) -> Indices:
