@@ -19,7 +19,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.kernels._native import connect_quads, split_quads
+from meshonet.kernels._native import split_quads
 from meshonet.solvers.blocking.errors import BlockingError
 
 
@@ -79,44 +79,18 @@ def base_complex(mesh: QuadMesh) -> BaseComplex:
 
     Raises BlockingError: the mesh is not manifold, or what its lines bound are no lattices.
     """
-    quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
-    n = len(mesh.nodes)
-    if not (mesh.places.partner >= 0).any():
-        edge, twin, irregular = mesh.edge_of, mesh.twin, mesh.irregular
-        bounds = np.zeros(len(mesh.edges), dtype=bool)
-        found = split_quads(quads, quads, edge, twin, irregular, bounds) if mesh.manifold else None
-    else:
-        glued = glued_quads(mesh)
-        edge, twin, ends, manifold = connect_quads(glued, n)
-        glued_bounds = np.zeros(len(ends), dtype=bool)
-        glued_bounds[edge[(mesh.twin < 0)]] = True
-        found = (
-            split_quads(glued, quads, edge, twin, _irregular(glued, twin, n), glued_bounds)
-            if manifold
-            else None
-        )
-        # edges of the mesh, two for one along periodic sides
-        bounds = np.zeros(len(mesh.edges), dtype=bool)
-        bounds[mesh.edge_of.ravel()] = glued_bounds[edge.ravel()]
+    closed = mesh.closed
+    quads, named = (np.ascontiguousarray(of.quads, dtype=np.intp) for of in (closed, mesh))
+    bounds = np.zeros(len(closed.edges), dtype=bool)
+    bounds[closed.edge_of[mesh.twin < 0]] = True
+    found = None
+    if closed.manifold:
+        found = split_quads(quads, named, closed.edge_of, closed.twin, closed.irregular, bounds)
     if found is None:
         raise BlockingError("the lines of the quad mesh do not bound lattices")
     _, blocks, chord, chords = found
-    if edge is not mesh.edge_of:
-        own = np.zeros(len(mesh.edges), dtype=np.intp)
-        own[mesh.edge_of.ravel()] = chord[edge.ravel()]
-        chord = own
+    if closed is not mesh:  # an edge along periodic sides is two of the mesh
+        edge = np.empty(len(mesh.edges), dtype=np.intp)
+        edge[mesh.edge_of] = closed.edge_of
+        bounds, chord = bounds[edge], chord[edge]
     return BaseComplex(mesh, tuple(blocks), bounds, chord, chords)
-
-
-def glued_quads(mesh: QuadMesh) -> Indices:
-    """Return the quads (m, 4) with every node that has a partner replaced by it."""
-    partner = mesh.places.partner
-    return np.ascontiguousarray(np.where(partner >= 0, partner, np.arange(len(partner)))[mesh.quads])
-
-
-def _irregular(quads: Indices, twin: Indices, n: int) -> NDArray[np.bool_]:
-    wall = np.zeros(n, dtype=bool)
-    wall[quads[twin < 0]] = True
-    wall[np.roll(quads, -1, axis=1)[twin < 0]] = True
-    valence = np.bincount(quads.ravel(), minlength=n)
-    return (valence != np.where(wall, 2, 4)) & (valence > 0)

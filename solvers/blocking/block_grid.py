@@ -14,6 +14,7 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.chords import Chords
+from meshonet.solvers.blocking.collapse import irregular_inside
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
@@ -65,9 +66,8 @@ def block_grid(
     folded = sum(count_folded(block.nodes) for block in grid.blocks)
     if folded:
         raise NoValidGridError(f"{folded} cells of the blocks stay folded")
-    mesh = fine.mesh
-    irregular = int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
-    return grid, fine, BlockFacts(len(fine.blocks), fine.cells, irregular, timings)
+    facts = BlockFacts(len(fine.blocks), fine.cells, irregular_inside(fine.mesh), timings)
+    return grid, fine, facts
 
 
 def fine_layout(

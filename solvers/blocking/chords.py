@@ -29,7 +29,7 @@ class Chords:
     """The edges of a layout's blocks, each once.
 
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
-    the block runs the other way along one, `wall` (e,) which have one block only; the `partner` (e,) of an
+    the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
     """
 
@@ -56,9 +56,10 @@ class Chords:
                     numbers[key] = len(edges)
                     edges.append(line[::-1] if turned[b, k] else line)
                 sides[b, k] = numbers[key]
-        wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         partner = _partners(layout, edges, numbers)
         has = np.flatnonzero(partner >= 0)
+        wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
+        wall[has], wall[partner[has]] = False, False
         pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
         chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)

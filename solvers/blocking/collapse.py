@@ -78,12 +78,14 @@ def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
         blocks = base_complex(trial)
     except BlockingError:
         return None
-    fewer = _irregular_inside(trial) < _irregular_inside(mesh)
+    fewer = irregular_inside(trial) < irregular_inside(mesh)
     return blocks if fewer or len(blocks.blocks) < len(current.blocks) else None
 
 
-def _irregular_inside(mesh: QuadMesh) -> int:
-    return int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
+def irregular_inside(mesh: QuadMesh) -> int:
+    """Return how many nodes inside have other than four quads, those on periodic sides once."""
+    closed = mesh.closed
+    return int(np.count_nonzero(closed.irregular & ~closed.wall_nodes & (closed.valence > 0)))
 
 
 def widths(current: BaseComplex) -> Floats:

@@ -70,7 +70,8 @@ def deviations(mesh: QuadMesh) -> Floats:
 
 def largest_turning(mesh: QuadMesh) -> float:
     """Return the most degrees by which a wall turns along one edge of the mesh."""
-    on = mesh.on_wall[mesh.edge_of]
+    closed = mesh.closed
+    on = closed.on_wall[closed.edge_of]
     first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
     loops, arcs = mesh.places.loop, mesh.places.arc
     most = 0.0
