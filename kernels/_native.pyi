@@ -154,7 +154,10 @@ FLOAT_BYTES: int
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
 
 # triangulation
-def wall_gaps(points: Floats, normals: Floats, part: float, cone: float, size: Floats) -> None: ...
+def wall_gaps(
+    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float, cone: float,
+    size: Floats,
+) -> None: ...  # fmt: skip
 def wall_growth(points: Floats, growth: float, size: Floats) -> None: ...
 
 class DelaunayMesh:
