@@ -81,11 +81,10 @@ def pieces(loop: Loop) -> tuple[Floats, Floats]:
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
     """Return sizes along the walls for about `count` nodes, in the domain's unit.
 
-    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``
-    nor 1/400 of the loop, where h0 is `usual_size` and the
-    gap is the distance to the nearest wall in front, within 53 degrees of the normal and not merely the other
-    side of a wide corner. `finer` points (m, 2)
-    have sizes (m,) of their own. Sizes change by at most .35 a length.
+    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``, or 1/400 of the loop where that
+    is less. h0 is `usual_size`, the gap the distance to the nearest wall in front, within 53 degrees of the
+    normal and not merely the other side of a wide corner. `finer` points (m, 2) have sizes (m,) of their own.
+    Sizes change by at most .35 a length.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
@@ -126,8 +125,9 @@ def _affordable(length: Floats, size: Floats, most: float) -> float:
 def _sample(loop: Loop, largest: float) -> _Samples:
     start, stop = pieces(loop)
     long = stop - start
-    least = np.where(long < 4.0 * FLOOR * largest, 4.0, 12.0)
-    n = np.clip(5.0 * long / largest, least, 2000.0).astype(np.intp)
+    usual = min(largest, OF_LOOP * loop.length)
+    least = np.where(long < 4.0 * FLOOR * usual, 4.0, 12.0)
+    n = np.clip(5.0 * long / usual, least, 2000.0).astype(np.intp)
     piece = np.repeat(np.arange(len(n)), n)
     k = np.arange(len(piece)) - np.repeat(np.cumsum(n) - n, n)
     length = (long / n)[piece]
