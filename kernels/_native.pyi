@@ -171,7 +171,10 @@ def surface_prune(
 ) -> None: ...
 
 # triangulation
-def wall_gaps(points: Floats, normals: Floats, part: float, cone: float, size: Floats) -> None: ...
+def wall_gaps(
+    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float,
+    cone: float, size: Floats,
+) -> None: ...  # fmt: skip
 def wall_growth(points: Floats, growth: float, size: Floats) -> None: ...
 
 class DelaunayMesh:

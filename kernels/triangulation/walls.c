@@ -44,8 +44,19 @@ static int fill(Buckets *b, const double *p, ptrdiff_t n)
     return 0;
 }
 
-int wall_gaps(const double *points, const double *normals, ptrdiff_t n, double part, double cone, double *size)
+/* Whether point `other`, at a distance from point k, is only the wall behind a corner. */
+static int round_corner(const WallPoints *wall, ptrdiff_t k, ptrdiff_t other, double distance)
 {
+    for (int i = 0; i < 2; i++)
+        if (wall->piece[other] == wall->beside[2 * k + i] && distance > wall->corner[2 * k + i])
+            return 1;
+    return 0;
+}
+
+int wall_gaps(const WallPoints *wall, double part, double cone, double *size)
+{
+    const double *points = wall->points, *normals = wall->normals;
+    const ptrdiff_t n = wall->n;
     Buckets b = {0};
     if (n == 0)
         return 0;
@@ -59,7 +70,8 @@ int wall_gaps(const double *points, const double *normals, ptrdiff_t n, double p
                 const ptrdiff_t other = b.point[i];
                 const double dx = points[2 * other] - x, dy = points[2 * other + 1] - y, d2 = dx * dx + dy * dy;
                 const double ahead = dx * nx + dy * ny;
-                if (d2 < reach * reach && ahead > 0 && ahead * ahead > cone * cone * d2)
+                if (d2 < reach * reach && ahead > 0 && ahead * ahead > cone * cone * d2 &&
+                    !round_corner(wall, k, other, sqrt(d2)))
                     reach = sqrt(d2);
             }
         size[k] = part * reach < size[k] ? part * reach : size[k];
