@@ -214,8 +214,8 @@ def surface_prune(
 
 # triangulation
 def wall_gaps(
-    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float, cone: float,
-    size: Floats,
+    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float,
+    cone: float, size: Floats,
 ) -> None: ...  # fmt: skip
 def wall_growth(points: Floats, growth: float, size: Floats) -> None: ...
 
