@@ -70,10 +70,9 @@ def _places(mesh: QuadMesh, periodic: Periodic, ends: tuple[int, int], double: I
     corners, wanted = mesh.domain.loops[0].corner_arcs, mesh.domain.loops[0].corner_cells
     for end, first, second in zip(ends, periodic.first, periodic.second[::-1], strict=True):
         for node, at in ((end, first), (len(places.loop) + int(np.flatnonzero(double == end)[0]), second)):
-            near = min(
-                corners, key=lambda a, at=at: abs((a - at + length / 2) % length - length / 2), default=at
-            )
-            loop[node], arc[node], cells[node] = 0, at % length, corners.get(near, 1)
+            apart = np.abs(np.mod(corners - at + length / 2, length) - length / 2)
+            loop[node], arc[node] = 0, at % length
+            cells[node] = wanted[np.argmin(apart)] if len(corners) else 1
     return Places(loop, arc, cells, partner)
 
 
