@@ -60,6 +60,11 @@ class NearField:
         circle = Loop(curve, (), outer.names[:1])
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
+    def cells(self, first: float, growth: float = MOST_GROWTH) -> int:
+        """Return the cells of a row from a first one to the outer loop."""
+        distance = float(self.radii.mean()) - self.radius
+        return max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
+
     def rows(self, mesh: QuadMesh, heights: Floats, growth: float = MOST_GROWTH) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
@@ -77,8 +82,7 @@ class NearField:
         length = np.hypot(*(end - start).T)
         first = float(np.exp(np.log(heights).mean())) * growth**0.5
         mean = float(length.mean())
-        cells = max(2, math.ceil(math.log1p(mean / first * (growth - 1.0)) / math.log(growth)))
-        share = _shares(first / mean, cells)
+        share = _shares(first / mean, self.cells(first, growth))
         nodes = start[:, None] + share[None, :, None] * (end - start)[:, None]
         nodes[:, -1] = end
         return Rows(0, nodes, np.mod(arcs, self.outer.length), False)
