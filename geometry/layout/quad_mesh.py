@@ -75,7 +75,7 @@ class QuadMesh:
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) four times the quad across each of these edges, and which of its edges it is; -1 at a wall."""
+        """(m, 4) for each of these edges 4 times the quad across it, plus which of its edges; -1 at walls."""
         return self._sides[1]
 
     @property

@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
+from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.layout import Layout
@@ -23,7 +24,6 @@ from meshonet.solvers.blocking.collapse import simplify
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import loops_to_pad, pad
 from meshonet.solvers.blocking.score import PRICE
-from meshonet.solvers.energy.quads import optimise
 
 ATTEMPTS = 5
 FIRST_ITERATIONS, BEFORE_PADDING = 60, 25
@@ -53,7 +53,7 @@ class Timings:
 
 
 Mesher = Callable[[Domain, int, int, int], QuadMesh]
-"""Makes a quad mesh of a domain for about so many cells, from a triangulation of so many points and a seed."""
+"""Makes a quad mesh of a domain: of about so many cells, from so many points, with a seed."""
 
 
 def decompose(

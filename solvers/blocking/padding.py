@@ -1,7 +1,7 @@
 """A ring of quads along smooth loops where the field put singularities on the wall.
 
-A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a ring
-of quads along the loop they become irregular nodes inside, and every node on the wall regular.
+A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a
+ring of quads along the loop they become irregular nodes inside, and every node on the wall regular.
 
 Mitchell, Tautges, "Pillowing doublets: refining a mesh to ensure that faces share at most one edge", 4th
 International Meshing Roundtable (1995).
