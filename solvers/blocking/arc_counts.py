@@ -20,6 +20,8 @@ from meshonet.solvers.blocking.t_mesh import TMesh
 GAP = 0.02
 """A solution is good enough when it is known to be so close to the best, as a part of its cost."""
 NODES, SECONDS = 2000, 10.0
+STEPS = (1.0, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""Lengths of the steps by which a number goes up or down; the last is as long as need be."""
 LOOP = 4
 """Cells along a closed wall, at least."""
 
@@ -57,21 +59,21 @@ def _balance(first: Sequence[int], second: Sequence[int]) -> Row:
 
 
 def nearest_whole(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Indices:
-    """Return whole numbers n (k,) at least `least` (k,) that keep the rows, sum |n - wanted| / wanted smallest.
+    """Return whole numbers n (k,) at least `least` (k,) that keep the rows, sum n / wanted + wanted / n smallest.
 
     Raises BlockingError: there are none, or none was found in time.
     """
-    solver = _solver()
-    count = len(wanted)
-    if not count:
+    if not len(wanted):
         return np.zeros(0, dtype=np.intp)
-    solver.passModel(_model(wanted, least, rows))
+    solver = _solver()
+    steps = _steps(wanted, least)
+    solver.passModel(_model(steps, rows))
     solver.run()
-    steps = np.array(solver.getSolution().col_value[: 3 * count])
-    if len(steps) != 3 * count or solver.getInfo().primal_solution_status != 2:
+    found = np.array(solver.getSolution().col_value)
+    if len(found) != steps[2].size or solver.getInfo().primal_solution_status != 2:
         raise BlockingError("no whole numbers of cells keep opposite sides alike")
-    up, beyond, below = np.round(steps).astype(np.intp).reshape(3, count)
-    whole = np.maximum(least, np.floor(wanted)).astype(np.intp) + up + beyond - below
+    moved = steps[1] @ np.round(found).reshape(steps[2].shape)
+    whole = np.round(steps[0] + moved).astype(np.intp)
     for row, low, high in rows:
         total = sum(value * whole[k] for k, value in row.items())
         if not low - 1e-6 <= total <= high + 1e-6:
@@ -96,33 +98,55 @@ def _solver() -> Any:
     return solver
 
 
-def _model(wanted: Floats, least: Floats, rows: Sequence[Row]) -> Any:
-    """Return the programme in steps from base = max(least, whole part of wanted): n = base + s + p - m.
+def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return where steps start from (k,), and signs (b,), lengths (b, k) and costs (b, k) of the steps."""
+    size = np.maximum(wanted, 0.5)
 
-    s, at most 1, is the step over the wanted number, p and m are those beyond and below. The cost is then linear
-    between whole numbers and not below them, and relaxed solutions are whole, or nearly: each arc is in two
-    rows with coefficients +-1 (a bidirected network, whose corners are half-integral).
+    def cost(n: Floats) -> Floats:
+        return np.asarray(n / size + size / np.maximum(n, 0.5))
+
+    base = np.maximum(least, np.round(wanted))
+    signs, lengths, costs = [], [], []
+    for sign in (1.0, -1.0):
+        at = base
+        for step in STEPS:
+            to = np.maximum(at + sign * step, least)
+            if step == STEPS[-1] and sign < 0:
+                to = least
+            far = np.abs(to - at)
+            rise = np.divide(cost(to) - cost(at), far, out=np.zeros(len(base)), where=far > 0)
+            signs.append(sign)
+            lengths.append(far if step != STEPS[-1] or sign < 0 else np.full(len(base), np.inf))
+            costs.append(rise)
+            at = to
+    return base, np.array(signs), np.array(lengths), np.array(costs)
+
+
+def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) -> Any:
+    """Return the programme in steps: n = base + those up - those down, each step dearer than the one before.
+
+    The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or nearly:
+    each arc is in two rows with coefficients +-1 (a bidirected network, whose corners are half-integral).
     """
     from highspy import HighsLp, HighsVarType, MatrixFormat
 
-    count, inf = len(wanted), float("inf")
-    base = np.maximum(least, np.floor(wanted))
-    over = np.clip(wanted - base, 0.0, 1.0)
-    weight = 1.0 / np.maximum(wanted, 0.5)
+    base, signs, lengths, costs = steps
+    blocks, count = lengths.shape
     lp = HighsLp()
-    lp.num_col_, lp.num_row_ = 3 * count, len(rows)
-    lp.col_cost_ = np.concatenate([weight * (1.0 - 2.0 * over), weight, weight])
-    lp.col_lower_ = np.zeros(3 * count)
-    lp.col_upper_ = np.concatenate([np.ones(count), np.full(count, inf), base - least])
-    index = [k + block * count for row, _, _ in rows for block in range(3) for k in row]
-    value = [sign * v for row, _, _ in rows for sign in (1.0, 1.0, -1.0) for v in row.values()]
-    shift = np.array([sum(v * base[k] for k, v in row.items()) for row, _, _ in rows])
+    lp.num_col_, lp.num_row_ = lengths.size, len(rows)
+    lp.col_cost_, lp.col_lower_, lp.col_upper_ = costs.ravel(), np.zeros(lengths.size), lengths.ravel()
+    sizes = np.array([len(row) for row, _, _ in rows], dtype=np.intp)
+    index = np.array([k for row, _, _ in rows for k in row], dtype=np.intp)
+    value = np.array([v for row, _, _ in rows for v in row.values()])
+    line = np.repeat(np.arange(len(rows)), sizes)
+    shift = np.bincount(line, value * base[index], minlength=len(rows))
     lp.row_lower_ = np.array([row[1] for row in rows]) - shift
     lp.row_upper_ = np.array([row[2] for row in rows]) - shift
     matrix = lp.a_matrix_
     matrix.format_ = MatrixFormat.kRowwise
-    matrix.start_ = np.append(0, np.cumsum([3 * len(row) for row, _, _ in rows])).astype(np.int32)
-    matrix.index_ = np.array(index, dtype=np.int32)
-    matrix.value_ = np.array(value, dtype=np.float64)
-    lp.integrality_ = [HighsVarType.kInteger] * (3 * count)
+    matrix.start_ = np.append(0, np.cumsum(blocks * sizes)).astype(np.int32)
+    # a row has all blocks of its first number, then of its second
+    matrix.index_ = (index[:, None] + count * np.arange(blocks)).ravel().astype(np.int32)
+    matrix.value_ = (value[:, None] * signs).ravel()
+    lp.integrality_ = [HighsVarType.kInteger] * lengths.size
     return lp
