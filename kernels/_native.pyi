@@ -182,6 +182,8 @@ def walk_map(
     targets: Floats, limit: int,
 ) -> Floats: ...  # fmt: skip
 
+def nearest_points(places: Floats, points: Floats) -> tuple[Indices, Floats]: ...
+
 # quads
 def quad_edges(quads: Indices, nodes: int) -> tuple[Indices, Indices]: ...
 def line_neighbours(

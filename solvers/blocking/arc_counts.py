@@ -29,7 +29,9 @@ Row = tuple[Mapping[int, float], float, float]
 """Coefficients of some numbers, and the least and greatest that their sum may be."""
 
 
-def arc_counts(mesh: TMesh, wanted: Floats, equal: Sequence[tuple[Sequence[int], Sequence[int]]] = ()) -> Indices:
+def arc_counts(
+    mesh: TMesh, wanted: Floats, equal: Sequence[tuple[Sequence[int], Sequence[int]]] = ()
+) -> Indices:
     """Return cells (a,) along each arc, at least 1, near the `wanted` (a,), alike on opposite sides of faces.
 
     Parameters

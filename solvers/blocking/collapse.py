@@ -11,7 +11,6 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 from __future__ import annotations
 
 import numpy as np
-from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -20,6 +19,8 @@ from meshonet.solvers.blocking.contract import contract
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import wrong_count
 from meshonet.solvers.blocking.score import PRICE, score
+from meshonet.solvers.blocking.size_metric import SizeMetric
+from meshonet.solvers.energy.quads import optimise
 
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""
@@ -28,32 +29,35 @@ ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
 
-def simplify(mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS) -> BaseComplex:
+def simplify(
+    mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS,
+    sizes: SizeMetric | None = None,
+) -> BaseComplex:  # fmt: skip
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    `price` is what a block costs, in degrees of mean deviation from 90.
+    `price` is what a block costs, in degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
     """
     current = base_complex(mesh)
     best = score(mesh, len(current.blocks), price)
     while True:
-        better = _first_gain(current, best, price, iterations)
+        better = _first_gain(current, best, price, iterations, sizes)
         if better is None:
             return current
         current, best = better
 
 
 def _first_gain(
-    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...]
+    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...], sizes: SizeMetric | None
 ) -> tuple[BaseComplex, float] | None:
     """Return the first collapse, and its score, that lowers `best`; None after `FAILURES`."""
     failures = 0
-    for chord in np.argsort(widths(current), kind="stable").tolist():
+    for chord in np.argsort(widths(current, sizes), kind="stable").tolist():
         trial = _collapsed(current, chord)
         if trial is None:
             continue
         mesh = trial.mesh
         for more in iterations:
-            optimum = optimise(mesh, iterations=more)
+            optimum = optimise(mesh, iterations=more, targets=sizes.edges(mesh) if sizes else None)
             if not optimum.valid:
                 break
             mesh = optimum.mesh
@@ -84,12 +88,16 @@ def _irregular_inside(mesh: QuadMesh) -> int:
     return int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
 
 
-def widths(current: BaseComplex) -> Floats:
-    """Return how wide each chord (chords,) is: the mean length of edges across it, all rows added up."""
+def widths(current: BaseComplex, sizes: SizeMetric | None = None) -> Floats:
+    """Return how wide each chord (chords,) is: the mean length of edges across it, all rows added up.
+
+    With `sizes` lengths are in parts of what these want.
+    """
     mesh = current.mesh
     step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
     edges = np.bincount(current.chord, minlength=current.chords)
-    mean = np.bincount(current.chord, np.hypot(*step.T), minlength=current.chords) / edges
+    length = np.hypot(*step.T) if sizes is None else np.hypot(*step.T) / sizes.edges(mesh)
+    mean = np.bincount(current.chord, length, minlength=current.chords) / edges
     rows = np.zeros(current.chords)
     seen = np.zeros(current.chords, dtype=bool)
     for block in current.blocks:

@@ -12,9 +12,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
-from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.layout import Layout
@@ -24,6 +24,8 @@ from meshonet.solvers.blocking.collapse import simplify
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import loops_to_pad, pad
 from meshonet.solvers.blocking.score import PRICE
+from meshonet.solvers.blocking.size_metric import SizeMetric
+from meshonet.solvers.energy.quads import optimise
 
 ATTEMPTS = 5
 FIRST_ITERATIONS, BEFORE_PADDING = 60, 25
@@ -65,6 +67,7 @@ def decompose(
     attempts: int = ATTEMPTS,
     timings: Timings | None = None,
     mesher: Mesher | None = None,
+    sizes: SizeMetric | None = None,
 ) -> Layout:
     """Return a layout of the blocks of a domain, its quad mesh optimised.
 
@@ -76,6 +79,7 @@ def decompose(
     attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
     mesher : makes the quad mesh; by default from a cross field.
+    sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
 
     Raises BlockingError: no attempt came to a valid layout.
     """
@@ -86,35 +90,38 @@ def decompose(
         finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
             with timings.stage("quad mesh"):
-                mesh = (mesher or _quad_mesh)(domain, finer[1], finer[0], attempt)
-            return _blocks(mesh, price, timings)
+                make = mesher or partial(_quad_mesh, sizes=sizes)
+                mesh = make(domain, finer[1], finer[0], attempt)
+            return _blocks(mesh, price, timings, sizes)
         except BlockingError as error:
             problem = error
     raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
 
 
-def _blocks(mesh: QuadMesh, price: float, timings: Timings) -> Layout:
+def _blocks(mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None) -> Layout:
     """Return the layout of a quad mesh as it comes, its nodes anywhere."""
     loops = loops_to_pad(mesh)
     with timings.stage("first optimum"):
-        mesh = _optimised(mesh, BEFORE_PADDING if loops else FIRST_ITERATIONS)
+        mesh = _optimised(mesh, BEFORE_PADDING if loops else FIRST_ITERATIONS, sizes)
         if loops:
-            mesh = _optimised(pad(mesh, loops), FIRST_ITERATIONS)
+            mesh = _optimised(pad(mesh, loops), FIRST_ITERATIONS, sizes)
     timings.blocks_found = len(base_complex(mesh).blocks)
     with timings.stage("collapse"):
-        return simplify(mesh, price=price).layout
+        return simplify(mesh, price=price, sizes=sizes).layout
 
 
-def _optimised(mesh: QuadMesh, iterations: int) -> QuadMesh:
-    optimum = optimise(mesh, iterations=iterations)
+def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> QuadMesh:
+    optimum = optimise(mesh, iterations=iterations, targets=sizes.edges(mesh) if sizes else None)
     if not optimum.valid or not np.isfinite(optimum.value):
         raise BlockingError("the quad mesh stays folded")
     return optimum.mesh
 
 
-def _quad_mesh(domain: Domain, cells: int, count: int, seed: int) -> QuadMesh:
+def _quad_mesh(
+    domain: Domain, cells: int, count: int, seed: int, *, sizes: SizeMetric | None = None
+) -> QuadMesh:
     """Return a quad mesh along a cross field."""
     from meshonet.solvers.blocking.quad_mesh import quad_mesh
     from meshonet.solvers.blocking.seamless_map import seamless_map
 
-    return quad_mesh(seamless_map(domain, count=count, seed=seed), cells=cells)
+    return quad_mesh(seamless_map(domain, count=count, seed=seed), cells=cells, sizes=sizes)

@@ -120,7 +120,9 @@ def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleG
         wall[node] = rays + trail
         stations[rays + trail].append((length, node, int(quarters[node]), 0))
     sides = traced.ends[at_wall, 1:]
-    for node, place, part in zip(number[at_wall].tolist(), sides.tolist(), traced.at[at_wall, 0], strict=True):
+    for node, place, part in zip(
+        number[at_wall].tolist(), sides.tolist(), traced.at[at_wall, 0], strict=True
+    ):
         trail, length = walls.at_edge(place[0], place[1], float(part))
         wall[node] = rays + trail
         stations[rays + trail].append((length, node, 2, 0))

@@ -14,6 +14,7 @@ from meshonet.solvers.blocking.arc_counts import arc_counts
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.motorcycle import motorcycle_graph
 from meshonet.solvers.blocking.seamless_map import SeamlessMap
+from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.blocking.t_mesh import Face, Side, TMesh, t_mesh
 from meshonet.solvers.blocking.trails import map_tables
 
@@ -21,8 +22,10 @@ SHORTEST = 0.05
 """An arc counts as at least so many cells long."""
 
 
-def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
+def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
     """Return a conforming mesh of about so many quads, whose irregular nodes are those of the map.
+
+    With `sizes` its edges are as long as these say, whatever `cells`.
 
     Nodes lie where the inverse of the map puts them, so cells are nowhere folded but where they are too large
     to follow it.
@@ -30,15 +33,21 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
     Raises BlockingError: the map's lines make no T-mesh of rectangles, or no conforming mesh has so few cells.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
-    size = np.sqrt(seamless.triangulation.domain.area / cells)
-    counts = arc_counts(mesh, np.maximum(_plane_lengths(mesh) / size, SHORTEST))
+    if sizes is None:
+        wanted = _plane_lengths(mesh) / np.sqrt(seamless.triangulation.domain.area / cells)
+    else:
+        wanted = _plane_lengths(mesh, sizes)
+    counts = arc_counts(mesh, np.maximum(wanted, SHORTEST))
     return _checked(_fine(mesh, counts))
 
 
-def _plane_lengths(mesh: TMesh) -> Floats:
-    """Return the lengths (a,) of arcs in the plane."""
+def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
+    """Return the lengths (a,) of arcs in the plane, in edges of `sizes` if given."""
     trails = mesh.graph.trails
     steps = np.abs(trails.end - trails.begin)
+    if sizes is not None:
+        middle, step = 0.5 * (trails.end + trails.begin), trails.end - trails.begin
+        steps = steps / sizes.length(_pairs(middle), _pairs(step))
     before = np.append(0.0, np.cumsum(steps))
 
     def upto(length: Floats) -> Floats:
@@ -48,6 +57,10 @@ def _plane_lengths(mesh: TMesh) -> Floats:
         return np.asarray(before[piece] + part * steps[piece] + rounds * whole)
 
     return upto(mesh.span[:, 1]) - upto(mesh.span[:, 0])
+
+
+def _pairs(points: Complexes) -> Floats:
+    return np.stack([points.real, points.imag], axis=1)
 
 
 def _within(mesh: TMesh, trail: Indices, length: Floats) -> tuple[Floats, Floats]:
@@ -205,7 +218,9 @@ class _Walks:
         direction = np.array([1, 1j, -1, -1j])
         origin = trails.origin[piece] + part * step * direction[trails.axis[piece]]
         east = direction[(trails.axis[piece] + np.concatenate(self._turn)) % 4]
-        sizes = np.repeat([block.shape[1] for block in self._targets], [len(block) for block in self._targets])
+        sizes = np.repeat(
+            [block.shape[1] for block in self._targets], [len(block) for block in self._targets]
+        )
         flat = np.concatenate([block.ravel() for block in self._targets])
         targets = np.repeat(origin, sizes) + flat * np.repeat(east, sizes)
         reached = walk_map(

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.polygon.corners import Indices
-
 from meshonet.solvers.blocking.cross_field import CrossField, cross_field
 from meshonet.solvers.blocking.frames import cut_frames, frame_sizes
 from meshonet.solvers.blocking.parametrisation import Parametrisation

@@ -63,7 +63,9 @@ def t_mesh(graph: MotorcycleGraph) -> TMesh:
 _Ways = list[list[tuple[int, int]]]
 
 
-def _arcs(graph: MotorcycleGraph) -> tuple[list[tuple[int, int]], list[int], list[tuple[float, float]], _Ways]:
+def _arcs(
+    graph: MotorcycleGraph,
+) -> tuple[list[tuple[int, int]], list[int], list[tuple[float, float]], _Ways]:
     """Return nodes, trail and lengths of each arc, and the half-edges that leave each node with their ways."""
     nodes: list[tuple[int, int]] = []
     trail: list[int] = []

@@ -92,7 +92,7 @@ def _cut(layout: Layout, passage: PassageMap) -> Indices:
         links.setdefault(a, []).append((length, b, k))
         links.setdefault(b, []).append((length, a, k))
     starts = [v for v in links if loop[v] == INLET]
-    best = {v: 0.0 for v in starts}
+    best = dict.fromkeys(starts, 0.0)
     before: dict[int, tuple[int, int]] = {}
     heap = [(0.0, v) for v in starts]
     while heap:
