@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from known_meshes import circle
+
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
@@ -9,7 +11,6 @@ from meshonet.solvers.blocking import decompose as decomposition
 from meshonet.solvers.blocking.block_grid import block_grid, fine_layout
 from meshonet.solvers.blocking.decompose import decompose
 from meshonet.solvers.blocking.errors import BlockingError
-from known_meshes import circle
 
 STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
 
