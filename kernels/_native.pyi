@@ -155,8 +155,8 @@ def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> in
 
 # triangulation
 def wall_gaps(
-    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float, cone: float,
-    size: Floats,
+    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float,
+    cone: float, size: Floats,
 ) -> None: ...  # fmt: skip
 def wall_growth(points: Floats, growth: float, size: Floats) -> None: ...
 
