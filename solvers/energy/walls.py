@@ -1,0 +1,143 @@
+"""Wall nodes of a quad mesh as unknowns: on which loop they are, in which order, how far the loop turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+
+LEAST_GAP = 0.05
+"""Of the mean distance of wall nodes between two that stay: nodes out of order are put that far apart."""
+_SAMPLES = np.linspace(0.0, 1.0, 9)
+
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """The nodes on loops, by loop, and the edges between them in the direction of the loop."""
+
+    nodes: Indices
+    loop: Indices
+    arc: Floats
+    """Arc lengths (w,), those of a loop not beyond its length."""
+    edges: Indices
+    """(e, 2), numbers of wall nodes."""
+    round: Floats
+    """(e,) what the second's arc length lacks: 0 or the length of the loop."""
+
+    def range_of(self, loop: int) -> tuple[int, int, int, int]:
+        """Return the first and last (not included) node and edge of a loop."""
+        of_edge = self.loop[self.edges[:, 0]]
+        n = [int(k) for k in np.searchsorted(self.loop, [loop, loop + 1])]
+        e = [int(k) for k in np.searchsorted(of_edge, [loop, loop + 1])]
+        return n[0], n[1], e[0], e[1]
+
+
+def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
+    """Return the walls of a mesh, nodes that overtook others put back.
+
+    `fixed` (n,) are nodes that stay, `tied` (n,) those of periodic sides, which are no walls. None where
+    nodes that stay are out of order.
+    """
+    places = mesh.places
+    on = (places.loop >= 0) & ~tied
+    nodes = np.flatnonzero(on)
+    nodes = nodes[np.argsort(places.loop[nodes], kind="stable")]
+    loop = places.loop[nodes]
+    lengths = np.array([each.length for each in mesh.domain.loops])
+    arc = np.mod(places.arc[nodes], lengths[loop])
+    number = np.full(len(mesh.nodes), -1, dtype=np.intp)
+    number[nodes] = np.arange(len(nodes))
+    cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
+    ends = np.stack([mesh.quads[cell, side], mesh.quads[cell, (side + 1) % 4]], axis=1)
+    first, second = number[ends[:, 0]], number[ends[:, 1]]
+    both = (first >= 0) & (second >= 0)
+    first, second = first[both], second[both]
+    same = loop[first] == loop[second]
+    first, second = first[same], second[same]
+    order = np.argsort(loop[first], kind="stable")
+    pairs = np.stack([first[order], second[order]], axis=1)
+    length = lengths[loop[pairs[:, 0]]]
+    arc, ok = _in_order(arc, pairs, length, fixed[nodes])
+    if not ok:
+        return None
+    lacks = np.where(arc[pairs[:, 1]] <= arc[pairs[:, 0]], length, 0.0)
+    return Walls(nodes, loop, arc, pairs, lacks)
+
+
+def _in_order(arc: Floats, edges: Indices, length: Floats, fixed: Bools) -> tuple[Floats, bool]:
+    """Return arc lengths (w,) that rise along the `edges` (e, 2) of each loop, and whether there are such."""
+    following = np.full(len(arc), -1, dtype=np.intp)
+    following[edges[:, 0]] = np.arange(len(edges))
+    if _once_around(arc, edges, length, following):
+        return arc, True
+    arc = arc.copy()
+    for chain in _chains(edges, following, np.flatnonzero(fixed & (following >= 0)), fixed):
+        _spread(arc, edges[chain], float(length[chain[0]]), bool(fixed[edges[chain[-1], 1]]))
+    return arc, _once_around(arc, edges, length, following)
+
+
+def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices) -> bool:
+    """Return whether the way along each ring of edges is not more than its loop's length."""
+    gap = arc[edges[:, 1]] - arc[edges[:, 0]]
+    gap = np.where(gap <= 0, gap + length, gap)
+    nowhere = np.zeros(len(arc), dtype=bool)
+    rings = _chains(edges, following, np.empty(0, dtype=np.intp), nowhere)
+    return all(gap[ring].sum() <= length[ring[0]] * (1 + 1e-9) for ring in rings)
+
+
+def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) -> list[list[int]]:
+    """Return the edges in chains, from nodes `starts` and then from others, up to those that are `ends`."""
+    seen, found = np.zeros(len(edges), dtype=bool), []
+    for start in [*starts.tolist(), *edges[:, 0].tolist()]:
+        k, chain = int(following[start]), []
+        while k >= 0 and not seen[k]:
+            seen[k] = True
+            chain.append(k)
+            k = -1 if ends[edges[k, 1]] else int(following[edges[k, 1]])
+        if chain:
+            found.append(chain)
+    return found
+
+
+def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
+    """Give the edges of a chain (k, 2) gaps above zero, in place; `ends`: at a node that stays."""
+    gap = arc[chain[:, 1]] - arc[chain[:, 0]]
+    gap = gap - length * np.round(gap / length)
+    whole = ends or chain[-1, 1] == chain[0, 0]
+    total = (arc[chain[-1, 1]] - arc[chain[0, 0]]) % length if whole else gap.sum()
+    total = total if total > 0 else length
+    gap = np.maximum(gap, LEAST_GAP * total / len(gap))
+    gap *= total / gap.sum()
+    inner = chain[:-1, 1] if whole else chain[:, 1]
+    arc[inner] = np.mod(arc[chain[0, 0]] + np.cumsum(gap)[: len(inner)], length)
+
+
+@lru_cache(maxsize=256)
+def turned(loop: Loop) -> Floats:
+    """Return how far a loop has turned (n + 1,) at each of its points, in absolute radians, corners left out.
+
+    What the tangent jumps by at points that are no corners is spread over both intervals there.
+    """
+    curve = loop.curve
+    _, first, second, third = (part[:, None] for part in curve.tables[0])
+    t = _SAMPLES[:, None]
+    inside = first + t * (2.0 * second + 3.0 * t * third)
+    angle = np.arctan2(inside[..., 1], inside[..., 0])
+    bend = np.abs(_wrapped(np.diff(angle, axis=1))).sum(axis=1)
+    jump = np.abs(_wrapped(angle[:, 0] - np.roll(angle[:, -1], 1)))
+    jump[list(loop.corners)] = 0.0
+    bend += 0.5 * (jump + np.roll(jump, -1))
+    return np.concatenate([[0.0], np.cumsum(bend)])
+
+
+def _wrapped(angle: Floats) -> Floats:
+    return np.asarray(angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi)))
