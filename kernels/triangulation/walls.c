@@ -32,7 +32,8 @@ static int fill(Buckets *b, const double *p, ptrdiff_t n)
     b->width = larger > 0 ? larger / (1.0 + sqrt((double)n)) : 1.0;
     b->left = left, b->bottom = bottom;
     b->across = 1 + (ptrdiff_t)(wide / b->width), b->up = 1 + (ptrdiff_t)(high / b->width);
-    b->first = calloc((size_t)(b->across * b->up + 2), sizeof(ptrdiff_t)), b->point = malloc((size_t)n * sizeof(ptrdiff_t));
+    b->first = calloc((size_t)(b->across * b->up + 2), sizeof(ptrdiff_t));
+    b->point = malloc((size_t)n * sizeof(ptrdiff_t));
     if (!b->first || !b->point)
         return -1;
     for (ptrdiff_t k = 0; k < n; k++)
