@@ -32,7 +32,7 @@ DOMAINS = {
     "pipe": ([circle(1.0, 120)], 5, 4),
     "ring": ([circle(2.0, 120), circle(0.8, 60, (0.3, 0.1))], 1, 0),
     "cylinder in a channel": ([rectangle(2.2, 0.41), circle(0.05, 80, (0.2, 0.2))], 12, 4),
-    "wing in a tunnel": ([rectangle(6, 3), wing() + [2.0, 1.5]], 6, 0),
+    "wing in a tunnel": ([rectangle(6, 3), wing() + np.array([2.0, 1.5])], 6, 0),
     "plate": ([rectangle(4, 2), circle(0.4, 80, (1, 1)), circle(0.4, 80, (3, 1))], 40, 8),
 }
 """Loops, and the most blocks and irregular nodes that an engineer would want."""
