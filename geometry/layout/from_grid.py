@@ -147,7 +147,9 @@ def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, I
     def face(block: int, side: Side) -> Indices:
         return np.asarray(face_of(numbers[block], side)[..., None])
 
-    shift, first, second = np.zeros(2), [], []
+    shift = np.zeros(2)
+    first: list[Indices] = []
+    second: list[Indices] = []
     for each in grid.connections:
         if each.transform is None:
             continue
