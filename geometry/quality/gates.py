@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.metrics import NAMES
 
 COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}

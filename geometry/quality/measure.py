@@ -3,8 +3,7 @@
 A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,43 +12,12 @@ from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
 from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
-from meshonet.geometry.quality.percentiles import no_run, prepared
+from meshonet.geometry.quality.percentiles import PERCENTS, no_run, prepared
+from meshonet.geometry.quality.summary import Quality, Summary
 from meshonet.kernels import _native
 
-PERCENTS = (1.0, 99.0)
 FEW = 1 << 18
 """Cells up to which percentiles come from the values of all cells."""
-
-
-@dataclass(frozen=True)
-class Summary:
-    """One metric over all cells; its percentiles, when they were asked for."""
-
-    min: float
-    mean: float
-    max: float
-    worst: tuple[int, int]
-    """The cell (i, j) with the worst value, the first of them."""
-    p01: float | None = None
-    p99: float | None = None
-
-
-@dataclass(frozen=True)
-class Quality:
-    """Quality of a grid: how many cells it has, how many are folded, and every metric by name."""
-
-    cells: int
-    folded: int
-    metrics: Mapping[str, Summary]
-
-    def __getitem__(self, name: str) -> Summary:
-        """Return the summary of one metric."""
-        return self.metrics[name]
-
-    def __str__(self) -> str:
-        head = f"{self.cells} cells, {self.folded} folded\n{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"
-        rows = [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
-        return "\n".join([head, *rows])
 
 
 def count_folded(nodes: Floats) -> int:
@@ -86,8 +54,15 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
 
     The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take about a third
-    of the time of the rest (`meshonet.geometry.quality.percentiles`).
+    of the time of the rest (`meshonet.geometry.quality.percentiles`). Of several blocks all cells count as one
+    grid's (`meshonet.geometry.quality.measure_blocks`).
+
+    Raises InputError: a block that is not in the plane.
     """
+    if grid.topology == "blocks":
+        from meshonet.geometry.quality.measure_blocks import measure_blocks
+
+        return measure_blocks(grid, percentiles=percentiles)
     x, y = grid.x, grid.y
     cells = (grid.ni - 1) * (grid.nj - 1)
     run = prepared(x, y, PERCENTS) if percentiles and cells > FEW else no_run()

@@ -28,7 +28,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.quality.checkmesh import Faces, faces
 from meshonet.geometry.quality.gates import COMPARE
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
-from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.metrics import NAMES
 from meshonet.geometry.quality.walls import WallRow, wall_row
 

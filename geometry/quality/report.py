@@ -9,8 +9,9 @@ from meshonet.geometry.errors import BadCell
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.gates import Gate
 from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.measure import Quality, measure, worst_cells
+from meshonet.geometry.quality.measure import measure, worst_cells
 from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
+from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.walls import WallRow
 
 COMPARED = (

@@ -10,7 +10,7 @@ from meshonet_cli.errors import with_options
 from meshonet_cli.text import span
 
 if TYPE_CHECKING:
-    from meshonet.geometry.quality.measure import Quality
+    from meshonet.geometry.quality.summary import Quality
     from meshonet.solvers.progress import Row
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from meshonet.geometry.quality.measure import Quality
+from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.quality.metrics import METRICS
 from meshonet.geometry.quality.profiles import CheckResult, Figures, Limit, ProfileReport
 from meshonet.geometry.quality.report import Comparison, QualityReport
