@@ -69,7 +69,9 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
     return Format(name, tuple(endings.split()), description, **more)
 
 
-def _write(write: Callable[..., None], name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any) -> None:
+def _write(
+    write: Callable[..., None], name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any
+) -> None:
     """Write grids by `write`, of the format `name`, once each of them is one that the format can hold."""
     write(path, (_held(grid, name) for grid in grids), *rest, **more)
 

@@ -61,11 +61,11 @@ def periodic_pairs(grid: Grid, numbers: Sequence[Indices], taken: Iterable[str])
             edges, names = edges[::-1], names[::-1]
         found.setdefault((number, *names), []).append(edges)
     pairs, used = [], set(taken)
-    for count, ((number, *names), edges_of) in enumerate(found.items()):
+    for count, ((number, *both), edges_of) in enumerate(found.items()):
         own, partner = (np.concatenate(rows) for rows in zip(*edges_of, strict=True))
         titles = []
-        for k, name in enumerate(names, start=1):
-            plain = f"{name}{k}" if names[0] == names[1] and name else name
+        for k, name in enumerate(both, start=1):
+            plain = f"{name}{k}" if both[0] == both[1] and name else name
             titles.append(unused(plain or f"periodic{2 * count + k}", used))
             used.add(titles[-1])
         pairs.append(PeriodicPair(titles[0], titles[1], motions[number], own, partner))

@@ -79,6 +79,11 @@ def extruded(mesh: Unstructured, heights: Sequence[float]) -> tuple[Floats, dict
     return layer_points(mesh, heights), faces, _repeated(columns, layers, count)
 
 
+def periodic_nodes(pair: PeriodicPair, mesh: Unstructured, planes: int) -> Indices:
+    """Return (n, 2) the nodes of a periodic side and their partners, on all planes of an extruded `mesh`."""
+    return _repeated(pair.nodes, max(planes, 1), len(mesh.points))
+
+
 def in_space(points: Floats) -> Floats:
     """Return points (n, 2) in the plane z = 0, those of (n, 3) as they are."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])

@@ -133,12 +133,8 @@ def _edges(blocks: Sequence[Block], without: Iterable[Stretch]) -> _Edges:
     line = line[keep]
     about = np.abs(line).max(axis=(1, 2))
     digits = rounding(line.reshape(-1))
-    return _Edges(
-        line[:, 0],
-        line[:, 1],
-        *(np.concatenate(parts)[keep] for parts in (blocks_of, sides, cells)),
-        2.0 * digits(about),
-    )
+    block_of, side, cell = (np.concatenate(parts)[keep] for parts in (blocks_of, sides, cells))
+    return _Edges(line[:, 0], line[:, 1], block_of, side, cell, 2.0 * digits(about))
 
 
 def _pairs(edges: _Edges, tolerance: float) -> tuple[Indices, Indices]:

@@ -31,7 +31,8 @@ def shared_nodes(
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     numbers = [
-        np.arange(first, last).reshape(count) for first, last, count in zip(ends, ends[1:], counts, strict=False)
+        np.arange(first, last).reshape(count)
+        for first, last, count in zip(ends, ends[1:], counts, strict=False)
     ]
 
     def face(block: int, side: Side) -> Indices:

@@ -33,7 +33,9 @@ def _passage(motion: Motion, name: str) -> Grid:
         patches.append(Patch("lower side", joint.side, 0, 4, block=joint.block))
         patches.append(Patch("upper side", joint.donor_side, 0, 4, block=joint.donor))
     connections = tuple(sorted((*seams, *joints), key=order))
-    return Grid(with_equal_nodes(blocks, connections), tuple(patches), connections, name, {"method": "formula"})
+    return Grid(
+        with_equal_nodes(blocks, connections), tuple(patches), connections, name, {"method": "formula"}
+    )
 
 
 def passage() -> Grid:

@@ -1,4 +1,4 @@
-"""Interfaces of planar blocks found by position: whole sides, parts, folded sides, rounded and copied nodes."""
+"""Interfaces of planar blocks found by position: whole sides, parts, folds, rounded nodes and copies."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ def test_whole_sides_are_found_as_comparing_all_of_them_does(make: Callable[[], 
 
 @pytest.mark.parametrize("quarters", range(4))
 def test_a_part_of_a_side_is_joined_whatever_way_the_neighbour_runs(quarters: int) -> None:
-    blocks = [Block(lattice((0, 4, 41), (0, 1, 11))), Block(turned(lattice((1, 2, 11), (-1, 0, 9)), quarters))]
+    blocks = [
+        Block(lattice((0, 4, 41), (0, 1, 11))),
+        Block(turned(lattice((1, 2, 11), (-1, 0, 9)), quarters)),
+    ]
     (joint,) = find_connections(blocks)
     assert (joint.block, joint.side, joint.range, joint.donor) == (0, "south", ((10, 20),), 1)
     Grid(with_equal_nodes(blocks, [joint]), (), (joint,))  # checks that they are, in the order that it says
@@ -43,7 +46,11 @@ def test_a_part_of_a_side_is_joined_whatever_way_the_neighbour_runs(quarters: in
 def test_a_side_may_be_joined_to_several_blocks_and_to_itself() -> None:
     low = [Block(lattice((a, a + 1, 5), (-1, 0, 4))) for a in (0, 1, 3)]
     found = find_connections([Block(lattice((0, 4, 17), (0, 1, 4))), *low])
-    assert [(c.range, c.donor) for c in found if c.block == 0] == [(((0, 4),), 1), (((4, 8),), 2), (((12, 16),), 3)]
+    assert [(c.range, c.donor) for c in found if c.block == 0] == [
+        (((0, 4),), 1),
+        (((4, 8),), 2),
+        (((12, 16),), 3),
+    ]
     angle = -np.linspace(0, 2 * np.pi, 13)
     ring = np.stack([np.outer(np.cos(angle), [1, 2, 3]), np.outer(np.sin(angle), [1, 2, 3])], axis=-1)
     assert find_connections([Block(ring)]) == (o_seam(3),)  # its ends differ in the last bits
