@@ -30,7 +30,7 @@ from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
-AnyOutline = TypeVar("AnyOutline", Boundary, Outline, Airfoil)
+AnyOutline = TypeVar("AnyOutline", bound=Boundary | Outline | Airfoil)
 MOST_POINTS = 100_000
 _JOIN = 1e-6
 """How far apart, in extents, the ends of two edges may lie and still meet."""
@@ -60,8 +60,7 @@ def parse(text: str, source: str, stem: str = "") -> list[Shape]:
         notes = left_out(lines)
         rings = [ring for block in blocks for ring in _rings(block)]
         if len(blocks) == 4 == len(rings) and min(map(len, blocks)) >= 2 and not all(map(_closed, rings)):
-            edges = _four_edges(blocks, name)
-            return [_with_notes(edges, notes) if isinstance(edges, Boundary) else _with_notes(edges, notes)]
+            return [_with_notes(_four_edges(blocks, name), notes)]
         if not rings:
             raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
         if len(rings) == 1:
@@ -82,7 +81,7 @@ def sniff(head: bytes) -> bool:
 
 def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:
     if isinstance(shape, Boundary):
-        return replace(shape, notes=(*notes, *shape.notes))
+        return replace(shape, notes=(*notes, *shape.notes))  # type: ignore[return-value]
     shape.notes = (*notes, *shape.notes)
     return shape
 
@@ -108,10 +107,8 @@ def _domains(rings: list[list[Line]], name: str, notes: tuple[str, ...]) -> list
     """Return the domain of each ring that lies in no other; the rings in it are its holes."""
     few = next((ring for ring in rings if len(ring) < 3), None)
     if few is not None:
-        remedy = "give closed curves, or four edges divided by blank lines"
-        raise InputError(
-            f"{len(rings)} blocks of points, one of {len(few)}", remedy, place=f"line {few[0].number}"
-        )
+        problem, place = f"{len(rings)} blocks of points, one of {len(few)}", f"line {few[0].number}"
+        raise InputError(problem, "give closed curves, or four edges divided by blank lines", place=place)
     drawn = [
         Ring(np.array([line.values[:2] for line in ring]), places=[f"line {line.number}" for line in ring])
         for ring in rings

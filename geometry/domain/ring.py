@@ -1,4 +1,4 @@
-"""Loops out of rings of points as files have them: either way round, neighbours repeated, the first at the end."""
+"""Loops out of rings of points as files have them: either way round, some points repeated."""
 
 from __future__ import annotations
 

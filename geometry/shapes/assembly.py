@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 
@@ -40,9 +41,9 @@ def assembled(
 
     Raises InputError: shapes that are no closed curves; a far field that has no use.
     """
-    bodies = [
-        body for shape, label in zip(shapes, names, strict=True) for body in _bodies(shape, label, sampling)
-    ]
+    bodies = list(
+        chain(*(_bodies(shape, label, sampling) for shape, label in zip(shapes, names, strict=True)))
+    )
     groups = nested([body.curve.points for body in bodies])
     notes = tuple(dict.fromkeys(note for shape in shapes for note in getattr(shape, "notes", ())))
     if len(groups) == 1 and len(bodies) > 1:
@@ -98,22 +99,17 @@ def _outer_first(bodies: list[Loop], outer: int) -> list[tuple[int, Loop]]:
 
 
 def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
-    """Return the loops of a shape, whichever side the domain is on, called by `name` where it has no names."""
+    """Return the loops of a shape, the domain on either side, called by `name` where it has no names."""
     if isinstance(shape, Airfoil):
         return [_section_loop(shape, name, sampling)]
     if isinstance(shape, Outline):
         return [ring_loop(shape.curve.points, hole=True, corners=shape.corners, names=(name,))]
     if isinstance(shape, DomainShape):
         loops = list(shape.domain.loops)
-        return (
-            [replace(loops[0], names=(name,))] if len(loops) == 1 and loops[0].names == ("outer",) else loops
-        )
+        unnamed = len(loops) == 1 and loops[0].names == ("outer",)
+        return [replace(loops[0], names=(name,))] if unnamed else loops
     if isinstance(shape, Annulus):
-        rings = (shape.outer.points, shape.body.curve.points)
-        return [
-            ring_loop(ring, hole=True, names=(label,))
-            for ring, label in zip(rings, ("outer", name), strict=True)
-        ]
+        return [ring_loop(shape.outer.points, hole=False), *_bodies(shape.body, name, sampling)]
     if isinstance(shape, Labelled):
         return _bodies(shape.shape, name, sampling)
     if isinstance(shape, Boundary) and shape.topology == "quad":
@@ -127,13 +123,9 @@ def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
 
 
 def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
-    """Return the loop along the smooth curve of an airfoil, with its corners; the edge is as `sampling` says."""
+    """Return the loop along the smooth curve of an airfoil, its edge as `sampling` has it."""
     body = airfoil.normalised() if sampling.normalise else airfoil
-    body = (
-        {"round": body.rounded, "wedge": body.wedged}[sampling.te]()
-        if sampling.te in ("round", "wedge")
-        else body
-    )
+    body = body.rounded() if sampling.te == "round" else body.wedged() if sampling.te == "wedge" else body
     curve = body.curve
     turn = np.abs(np.degrees(turning(curve.points, closed=True)))[curve.corner_index]
     corners = curve.corner_index[turn > CORNER_DEG]
@@ -143,16 +135,16 @@ def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
 def _edges_loop(boundary: Boundary) -> Loop:
     """Return the loop of the nodes of a four-sided boundary, its corners those of the block and of names."""
     ni, nj = boundary.ni - 1, boundary.nj - 1
-    begin = {"south": 0, "east": ni, "north": ni + nj, "west": 2 * ni + nj}
     names: list[str] = []
     for side in SIDES:
         cells = ni if side in ("south", "north") else nj
-        own = [side] * cells
+        own: list[str] = [side] * cells
         for patch in boundary.patches:
             if patch.side == side:
                 own[patch.start : patch.stop] = [patch.name] * (patch.stop - patch.start)
         names += own if side in ("south", "east") else own[::-1]
-    corners = sorted({*begin.values(), *(k for k in range(len(names)) if names[k] != names[k - 1])})
+    begin = (0, ni, ni + nj, 2 * ni + nj)
+    corners = sorted({*begin, *(k for k in range(len(names)) if names[k] != names[k - 1])})
     return ring_loop(boundary.outline(), hole=False, corners=corners, names=[names[k] for k in corners])
 
 

@@ -23,7 +23,7 @@ from meshonet.geometry.shapes.shape import Shape
 
 @dataclass(frozen=True)
 class Ring:
-    """A closed line of a file: points (n, 2), corners (None: found), names (none: by its place) and places."""
+    """A closed line of a file: points (n, 2), corners (None: found), names (none: default) and places."""
 
     points: Floats
     corners: Sequence[int] | None = None
@@ -97,8 +97,6 @@ def _labelled(shape: Shape, loops: Sequence[Loop]) -> Shape:
     for loop in loops:
         points = loop.curve.points
         ends.append(np.stack([points, np.roll(points, -1, axis=0)], axis=1))
-        names += [
-            loop.name_at(0.5 * (a + b))
-            for a, b in zip(loop.curve.knots, [*loop.curve.knots[1:], loop.length])
-        ]
+        knots = np.append(loop.curve.knots, loop.length)
+        names += [loop.name_at(float(middle)) for middle in 0.5 * (knots[1:] + knots[:-1])]
     return Labelled(shape, np.concatenate(ends), names)
