@@ -81,7 +81,7 @@ def sniff(head: bytes) -> bool:
 
 def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:
     if isinstance(shape, Boundary):
-        return replace(shape, notes=(*notes, *shape.notes))  # type: ignore[return-value]
+        return replace(shape, notes=(*notes, *shape.notes))
     shape.notes = (*notes, *shape.notes)
     return shape
 
