@@ -152,3 +152,11 @@ INTEGER_BYTES: int
 FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
+
+# collapse
+def connect_quads(quads: Indices, n: int) -> tuple[Indices, Indices, Indices, bool]: ...
+def joined_classes(pairs: Indices, n: int) -> tuple[Indices, int]: ...
+def split_quads(
+    quads: Indices, named: Indices, edge: Indices, twin: Indices, irregular: NDArray[np.bool_],
+    marked: NDArray[np.bool_],
+) -> tuple[Indices, list[Indices], Indices, int] | None: ...  # fmt: skip
