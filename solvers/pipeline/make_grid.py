@@ -9,7 +9,8 @@ from itertools import islice
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.measure import Quality, measure
+from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.method import Method
