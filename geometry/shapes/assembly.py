@@ -61,7 +61,7 @@ def assembled(
     points = np.concatenate([loop.curve.points for loop in loops])
     middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
     circle = far_loop(middle, sampling.radius * extent_of(loops))
-    return DomainShape(Domain((circle, *loops), name, notes), unit=unit)
+    return DomainShape(Domain((circle, *loops), name, notes), unit=unit, far_field=True)
 
 
 def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:

@@ -21,6 +21,7 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 
@@ -39,12 +40,16 @@ class DomainShape:
     many : whether blocks are made of it unless one is asked for.
     one : makes the shape that it is as one block; None where it cannot be one.
     unit : length that Reynolds numbers are based on: the extent of its bodies, or an airfoil's chord.
+    far_field : whether a far field was put around bodies.
+    layout : its blocks, where the input has them.
     """
 
     domain: Domain
     many: bool = True
     one: Callable[[], Shape] | None = field(default=None, repr=False)
     unit: float = 0.0
+    far_field: bool = False
+    layout: Layout | None = None
 
     def __post_init__(self) -> None:
         if not self.unit:

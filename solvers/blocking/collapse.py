@@ -11,6 +11,7 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 from __future__ import annotations
 
 import numpy as np
+from meshonet.solvers.energy.quads import optimise
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
@@ -21,7 +22,6 @@ from meshonet.solvers.blocking.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import wrong_count
 from meshonet.solvers.blocking.score import PRICE, score
-from meshonet.solvers.energy.quads import optimise
 
 FAILURES = 8
 """Trials without gain, one after another, after which the mesh stays as it is."""

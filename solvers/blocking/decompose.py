@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
+from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.layout import Layout
@@ -23,7 +24,6 @@ from meshonet.solvers.blocking.collapse import simplify
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import loops_to_pad, pad
 from meshonet.solvers.blocking.score import PRICE
-from meshonet.solvers.energy.quads import optimise
 
 ATTEMPTS = 5
 FIRST_ITERATIONS, BEFORE_PADDING = 60, 25
