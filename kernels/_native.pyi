@@ -11,6 +11,7 @@ Indices: TypeAlias = NDArray[np.intp]
 Reals: TypeAlias = NDArray[Any]
 Edges: TypeAlias = tuple[Floats, ...]
 Placed: TypeAlias = tuple[Indices, Floats]
+TriangleMap: TypeAlias = tuple[Floats, Indices, Indices, Indices]
 
 # geometry
 def count_folded(x: Floats, y: Floats) -> int: ...
@@ -160,3 +161,36 @@ def split_quads(
     quads: Indices, named: Indices, edge: Indices, twin: Indices, irregular: NDArray[np.bool_],
     marked: NDArray[np.bool_],
 ) -> tuple[Indices, list[Indices], Indices, int] | None: ...  # fmt: skip
+
+# motorcycle
+def probe_rays(
+    tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
+    limit: int,
+) -> Indices: ...  # fmt: skip
+def trace_rays(
+    tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
+    limit: int, room: int,
+) -> tuple[Indices, Floats, Indices, Floats] | None: ...  # fmt: skip
+def walk_map(
+    tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
+    targets: Floats, limit: int,
+) -> Floats: ...  # fmt: skip
+
+# sparse: `pattern` is order, parent, start, row, fill
+SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
+
+def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePattern, Indices]: ...
+def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
+def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
+def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
+
+# blocking: a surface is vertices, neighbours and the edge's number in these, (t, 3) each
+Surface: TypeAlias = tuple[Indices, Indices, Indices]
+
+def surface_fans(surface: Surface, vertices: int) -> tuple[Indices, Indices, int]: ...
+def surface_comb(
+    surface: Surface, vertices: int, quarters: Indices
+) -> tuple[Indices, NDArray[np.uint8]]: ...
+def surface_prune(
+    surface: Surface, start: Indices, fan: Indices, keep: NDArray[np.uint8], cut: NDArray[np.uint8]
+) -> None: ...

@@ -1,7 +1,7 @@
-"""What goes wrong in decomposing a domain."""
+"""What a stage of the decomposition says when it cannot go on."""
 
 from meshonet.geometry.errors import SolverError
 
 
 class BlockingError(SolverError):
-    """A stage of the decomposition did not come to an end that is of use; another triangulation may help."""
+    """A stage failed for one triangulation of a domain; another triangulation may do."""
