@@ -194,3 +194,27 @@ def surface_comb(
 def surface_prune(
     surface: Surface, start: Indices, fan: Indices, keep: NDArray[np.uint8], cut: NDArray[np.uint8]
 ) -> None: ...
+
+# quads
+def quad_edges(quads: Indices, nodes: int) -> tuple[Indices, Indices]: ...
+def line_neighbours(
+    quads: Indices, edge_of: Indices, node: Indices, edge: Indices
+) -> tuple[Indices, int]: ...
+
+class QuadDescent:
+    def __init__(
+        self, nodes: Floats, cells: tuple[Indices, Floats, Floats], lines: tuple[Indices, Indices, int, Floats],
+        eased: tuple[Indices, Floats], inner: Indices, tied: tuple[Indices, tuple[float, float]],
+        unknown: Indices, wall: Indices, wall_nodes: tuple[Indices, Indices, Floats],
+        wall_edges: tuple[Indices, Floats], loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
+    ) -> None: ...  # fmt: skip
+    def run(
+        self,
+        shape: float,
+        smoothness: float,
+        epsilon: float,
+        size: float,
+        gain: float,
+        most: int,
+        renew: bool,
+    ) -> tuple[float, float, int]: ...
