@@ -75,7 +75,7 @@ class QuadMesh:
 
     @property
     def twin(self) -> Indices:
-        """(m, 4) four times the quad across each of these edges, and which of its edges it is; -1 at a wall."""
+        """(m, 4) for each of these edges 4 times the quad across it, plus which of its edges; -1 at walls."""
         return self._sides[1]
 
     @property
@@ -108,4 +108,11 @@ class QuadMesh:
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
         places = self.places if arc is None else replace(self.places, arc=arc)
-        return replace(self, nodes=nodes, places=places)
+        return self.with_places(nodes, places)
+
+    def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
+        """Return the same quads with other nodes (n, 2) and places on the boundary."""
+        moved = replace(self, nodes=nodes, places=places)
+        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # quads alone say these
+        moved.__dict__.update({name: self.__dict__[name] for name in known if name in self.__dict__})
+        return moved

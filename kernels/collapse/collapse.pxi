@@ -17,10 +17,6 @@ cdef extern from "collapse/topology.h":
     ptrdiff_t mesh_chords(const HalfEdges *mesh, const unsigned char *marked, ptrdiff_t *label, ptrdiff_t *room) nogil
 
 
-cdef ptrdiff_t *fills_indices(array, tuple shape) except NULL:
-    return <ptrdiff_t *>numbers(array, b"i", sizeof(ptrdiff_t), shape, True)
-
-
 def connect_quads(quads, ptrdiff_t n):
     """Return the edge and the twin (m, 4) of each half-edge of quads over n nodes, the ends (e, 2) of each edge, and
     whether the mesh is manifold; see ``collapse/topology.h``."""

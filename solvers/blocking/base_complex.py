@@ -1,7 +1,7 @@
 """The blocks that a quad mesh consists of: what its lines through irregular nodes cut it into.
 
-From every irregular node all edges are followed straight on, through regular nodes, to the boundary or another
-irregular node. What lies between these lines are lattices, or rings: these get one more line.
+From every irregular node all edges are followed straight on, through regular nodes, to the boundary or
+another irregular node. Between these lines lie lattices, or rings: these get one more line.
 
 Tarini, Puppo, Panozzo, Pietroni, Cignoni, "Simple quad domains for field aligned mesh parametrization", ACM
 Trans. Graph. 30 (2011), section 3.

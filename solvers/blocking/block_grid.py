@@ -14,7 +14,7 @@ from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.decompose import Mesher, Timings, decompose
+from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.refine import multiplied, refine
 
 CELLS = 2500
@@ -41,7 +41,6 @@ def block_grid(
     cells: int | None = None,
     cell_size: float | None = None,
     layout: Layout | None = None,
-    mesher: Mesher | None = None,
 ) -> tuple[Grid, Layout, BlockFacts]:
     """Return a grid of blocks of a domain, the layout whose nodes it has, and what it was made of.
 
@@ -54,7 +53,7 @@ def block_grid(
     Raises BlockingError: no blocks were found. NoValidGridError: cells stay folded.
     """
     timings = Timings()
-    layout = layout or decompose(domain, timings=timings, mesher=mesher)
+    layout = layout or decompose(domain, timings=timings)
     fine = fine_layout(layout, cells=cells, cell_size=cell_size, timings=timings)
     with timings.stage("grid"):
         grid = to_grid(fine)

@@ -1,7 +1,7 @@
-"""Edges of the blocks of a layout, and the chords that they form: edges that must have equal counts of cells.
+"""Edges of the blocks of a layout, and the chords that they form: edges with equal counts of cells.
 
-Opposite edges of a block have as many cells, and a shared edge has them for both its blocks. So a layout has one
-count a chord. Edges of periodic sides have those of their partners.
+Opposite edges of a block have as many cells, and a shared edge has them for both its blocks. So a layout has
+one count a chord. Edges of periodic sides have those of their partners.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ TURNING_DEG = 25.0
 class Chords:
     """The edges of a layout's blocks, each once.
 
-    `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where the
-    block runs the other way along one, `chord` (e,) numbers the chord of each edge, `wall` (e,) says which
-    have one block only, and the `partner` (e,) of an edge is the one that it is, moved by the period, else -1.
+    `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
+    the block runs the other way along one, `wall` (e,) which have one block only; the `partner` (e,) of an
+    edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
     """
 
     layout: Layout
@@ -89,7 +89,7 @@ class Chords:
 
     @cached_property
     def least(self) -> Indices:
-        """(chords,) fewest cells: `LEAST`, a node at each corner of the domain, `TURNING_DEG` along a wall."""
+        """(chords,) fewest cells: `LEAST`, a node at each corner of the domain, `TURNING_DEG` at walls."""
         least = np.full(self.count, LEAST, dtype=np.intp)
         mesh = self.layout.mesh
         for edge in np.flatnonzero(self.wall):
@@ -129,7 +129,7 @@ class Chords:
 
 
 def _key(line: Indices) -> tuple[tuple[int, ...], bool]:
-    """Return what tells a line of nodes from others, whichever way it is run through, and which way this is."""
+    """Return what tells a line of nodes, run through either way, from others, and which way this is."""
     first, second, last_but_one, last = (int(line[k]) for k in (0, 1, -2, -1))
     if (first, second) <= (last, last_but_one):
         return (first, second, last_but_one, last), False

@@ -9,21 +9,24 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
-from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.base_complex import base_complex
 from meshonet.solvers.blocking.collapse import simplify
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.padding import loops_to_pad, pad
+from meshonet.solvers.blocking.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.score import PRICE
+from meshonet.solvers.blocking.seamless_map import seamless_map
+from meshonet.solvers.energy.quads import optimise
 
 ATTEMPTS = 5
 FIRST_ITERATIONS, BEFORE_PADDING = 60, 25
@@ -52,10 +55,6 @@ class Timings:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - begun
 
 
-Mesher = Callable[[Domain, int, int, int], QuadMesh]
-"""Makes a quad mesh of a domain for about so many cells, from a triangulation of so many points and a seed."""
-
-
 def decompose(
     domain: Domain,
     *,
@@ -64,7 +63,6 @@ def decompose(
     price: float = PRICE,
     attempts: int = ATTEMPTS,
     timings: Timings | None = None,
-    mesher: Mesher | None = None,
 ) -> Layout:
     """Return a layout of the blocks of a domain, its quad mesh optimised.
 
@@ -75,20 +73,17 @@ def decompose(
     price : of a block, in degrees of mean deviation from 90: the higher, the fewer blocks.
     attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
-    mesher : makes the quad mesh; by default from a cross field.
 
     Raises BlockingError: no attempt came to a valid layout.
     """
     timings = timings or Timings()
-    problem: BlockingError | None = None
+    problem: SolverError | None = None
     for attempt in range(attempts):
         timings.attempts = attempt + 1
         finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
-            with timings.stage("quad mesh"):
-                mesh = (mesher or _quad_mesh)(domain, finer[1], finer[0], attempt)
-            return _blocks(mesh, price, timings)
-        except BlockingError as error:
+            return _blocks(_quad_mesh(domain, *finer, attempt, timings), price, timings)
+        except SolverError as error:
             problem = error
     raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
 
@@ -112,9 +107,9 @@ def _optimised(mesh: QuadMesh, iterations: int) -> QuadMesh:
     return optimum.mesh
 
 
-def _quad_mesh(domain: Domain, cells: int, count: int, seed: int) -> QuadMesh:
+def _quad_mesh(domain: Domain, count: int, cells: int, seed: int, timings: Timings) -> QuadMesh:
     """Return a quad mesh along a cross field."""
-    from meshonet.solvers.blocking.quad_mesh import quad_mesh
-    from meshonet.solvers.blocking.seamless_map import seamless_map
-
-    return quad_mesh(seamless_map(domain, count=count, seed=seed), cells=cells)
+    with timings.stage("map"):
+        seamless = seamless_map(domain, count=count, seed=seed)
+    with timings.stage("quad mesh"):
+        return quad_mesh(seamless, cells=cells)

@@ -1,7 +1,7 @@
 """A ring of quads along smooth loops where the field put singularities on the wall.
 
-A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a ring
-of quads along the loop they become irregular nodes inside, and every node on the wall regular.
+A loop without corners, a disc for instance, may carry nodes where more or fewer than two quads meet. With a
+ring of quads along the loop they become irregular nodes inside, and every node on the wall regular.
 
 Mitchell, Tautges, "Pillowing doublets: refining a mesh to ensure that faces share at most one edge", 4th
 International Meshing Roundtable (1995).
@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import distinct
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 
@@ -27,7 +28,7 @@ def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:
     """Return the numbers of loops without corners on which some node has a wrong count of quads."""
-    wrong = np.unique(mesh.places.loop[wrong_count(mesh)])
+    wrong = distinct(mesh.places.loop[wrong_count(mesh)])
     return [int(loop) for loop in wrong if loop >= 0 and not mesh.domain.loops[loop].corners]
 
 

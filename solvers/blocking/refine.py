@@ -2,8 +2,8 @@
 
 Every edge is resampled once, at equal steps of the index of its nodes: along walls by arc length, so that new
 nodes lie on the loop, inside by a spline. Blocks are splines that meet their edges bitwise
-(`meshonet.solvers.algebraic.resample.quad`). Twice the cells, or another whole multiple, keeps every node where
-it is: a family of nested grids.
+(`meshonet.solvers.algebraic.resample.quad`). Twice the cells, or another whole multiple, keeps every node
+where it is: a family of nested grids.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ def _joined(first: Places, second: Places) -> Places:
 
 
 def _wall_arcs(loop: Loop, arcs: Floats, count: int) -> tuple[Floats, Indices]:
-    """Return `count` arc lengths on a loop at equal steps of the index of `arcs` (n,), and the cells at corners.
+    """Return `count` arc lengths at equal steps of the index of `arcs` (n,), and the cells at corners.
 
     Nodes nearest to the corners of the loop are put there.
     """
