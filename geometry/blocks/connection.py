@@ -12,8 +12,10 @@
 As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -38,9 +40,36 @@ class Motion:
     turn: tuple[tuple[float, ...], ...] = ()
 
     def __call__(self, nodes: Floats) -> Floats:
-        """Return `nodes` (..., d) moved."""
-        moved = nodes @ np.array(self.turn).T if self.turn else nodes
+        """Return `nodes` (..., d) moved; a node comes out the same to the last bit, alone or with others."""
+        moved = nodes
+        if self.turn:  # written out: what a matrix product rounds to depends on the count of rows
+            terms = [np.array(row) * nodes for row in self.turn]
+            moved = np.stack([sum(term[..., k] for k in range(term.shape[-1])) for term in terms], axis=-1)
         return np.asarray(moved + np.array(self.shift) if self.shift else moved)
+
+    @property
+    def translation(self) -> Floats:
+        """The shift (2 or 3,), zero where there is none."""
+        return np.array(self.shift or (0.0,) * (len(self.turn) or 2))
+
+    @property
+    def rotation(self) -> tuple[float, Floats]:
+        """Angle in radians, counter-clockwise, and centre (2,) of a motion in the plane.
+
+        Without a turn the angle is 0 and the centre the origin, and the shift is all there is.
+        """
+        if not self.turn:
+            return 0.0, np.zeros(2)
+        turn = np.array(self.turn)
+        angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+        return angle, np.linalg.solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
+
+    def inverse(self) -> Motion:
+        """Return the motion back, to rounding."""
+        turn = np.array(self.turn).T
+        back = Motion(turn=tuple(map(tuple, turn.tolist())) if self.turn else ())
+        shift = back(-np.array(self.shift)) if self.shift else np.empty(0)
+        return replace(back, shift=tuple(float(x) + 0.0 for x in shift))
 
 
 @dataclass(frozen=True)
@@ -83,6 +112,14 @@ class Connection:
             f"{self} is open: its nodes differ, first at node {at} of {self.side}",
             "make the nodes of both sides the same, or leave the connection out",
         )
+
+    def reversed(self) -> Connection:
+        """Return it as seen from the donor; its transform is the inverse one, to rounding."""
+        ways = [0] * len(self.orientation)
+        for k, way in enumerate(self.orientation, start=1):
+            ways[abs(way) - 1] = k if way > 0 else -k
+        ends = self.donor, self.donor_side, self.donor_range, self.block, self.side, self.range
+        return Connection(*ends, tuple(ways), self.transform.inverse() if self.transform else None)
 
     def __str__(self) -> str:
         ends = f"{self.side} of block {self.block} to {self.donor_side} of block {self.donor}"
