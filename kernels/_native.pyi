@@ -163,13 +163,6 @@ def split_quads(
 ) -> tuple[Indices, list[Indices], Indices, int] | None: ...  # fmt: skip
 
 
-# sparse: `pattern` is order, parent, start, row, fill
-SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
-
-def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePattern, Indices]: ...
-def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
-def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
-def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
 # motorcycle
 def probe_rays(
     tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
@@ -202,7 +195,6 @@ def surface_comb(
 def surface_prune(
     surface: Surface, start: Indices, fan: Indices, keep: NDArray[np.uint8], cut: NDArray[np.uint8]
 ) -> None: ...
-
 
 # quads
 def quad_edges(quads: Indices, nodes: int) -> tuple[Indices, Indices]: ...

@@ -10,14 +10,14 @@ import numpy as np
 
 from meshonet.formats.layout.values import Values
 from meshonet.formats.layout.write import NAME, VERSION
-from meshonet.formats.source import Source, printable
+from meshonet.formats.source import Source, open_source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.places import arc_at, cells_at
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import in_source
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
@@ -50,6 +50,13 @@ def read_layout(source: Source) -> Layout:
     periodic = _periodic(file) if "periodic" in data else None
     domain = Domain(loops, printable(file.text("name")), periodic=periodic)
     return _Nodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
+
+
+def layout_of(text: str) -> Layout:
+    """Return the layout of the file `text`, or of standard input for ``-``; InputError as `read_layout`."""
+    source = open_source(text)
+    with in_source(source.name):
+        return read_layout(source)
 
 
 def read_shapes(source: Source) -> Iterator[DomainShape]:

@@ -180,7 +180,7 @@ def _streamed(
     done: Iterator[Done[S, R]], destination: Destination, session: Session, written: Callable[[R, str], None]
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
-    size: tuple[int, int, str] | None = None
+    size: str | None = None
     for item, _, outcome in done:
         what: S | None = None
         with session.member(item.label, item.source):
@@ -195,11 +195,11 @@ def _streamed(
         written(report, destination.text)
 
 
-def _same_size(what: Grid | Boundary, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
-    own = (what.ni, what.nj, what.topology)
+def _same_size(what: Grid | Boundary, size: str | None) -> str:
+    counts = [block.counts for block in what.blocks] if isinstance(what, Grid) else [(what.ni, what.nj)]
+    own = f"{', '.join('x'.join(map(str, count)) for count in counts)} {what.topology}"
     if size is not None and own != size:
-        raise InputError(
-            "{}x{} {} does not fit a dataset of {}x{} {}".format(*own, *size),
-            "set {res} and {topology}, or write one file each",
-        )
+        short, other = (text if len(text) < 60 else f"{len(counts)} blocks" for text in (own, size))
+        problem = f"{short} does not fit a dataset of {other}"
+        raise InputError(problem, "set {res} and {topology}, or write one file each")
     return own

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from meshonet.solvers.energy.quads import optimise
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
@@ -16,6 +15,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.refine import multiplied, refine
+from meshonet.solvers.energy.quads import optimise
 
 CELLS = 2500
 """Cells where nobody asked for a count."""

@@ -32,6 +32,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     grid, _, facts = block_grid(domain, cells=cells, cell_size=size, layout=layout)
     note = request.note(shape.unit)
     notes = (*domain.notes, *([note] if note else []))
+    grid = grid.with_provenance(method=METHOD, cells=facts.cells, irregular=facts.irregular)
     return Solution(grid, METHOD, seconds=_stages(facts, perf_counter() - begun), notes=notes)
 
 
@@ -72,5 +73,5 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
 def _stages(facts: BlockFacts, spent: float) -> dict[str, float]:
     """Return seconds for finding blocks, and for the grid."""
     stages = facts.timings.seconds
-    found = sum(stages.get(stage, 0.0) for stage in ("quad mesh", "first optimum", "collapse"))
+    found = sum(seconds for stage, seconds in stages.items() if stage not in ("refine", "optimum", "grid"))
     return {"layout": found, "grid": max(spent - found, 0.0)}

@@ -59,7 +59,7 @@ def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:
     for k, other in pairs.items():
         own, others = len(old[k].corners), len(new[other].corners)
         if own != others:
-            what = f"loop {other + 1} ({', '.join(dict.fromkeys(new[other].names))})"
+            what = f"loop {other} ({', '.join(dict.fromkeys(new[other].names))})"
             problem = f"{what} has {others} corner{'' if others == 1 else 's'}, in the layout it has {own}"
             raise InputError(problem, "give a layout of the same kind", parameter="layout")
     return pairs

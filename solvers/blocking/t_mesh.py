@@ -67,11 +67,7 @@ _Ways = list[list[tuple[int, int]]]
 def _arcs(
     graph: MotorcycleGraph,
 ) -> tuple[list[tuple[int, int]], list[int], list[tuple[float, float]], _Ways]:
-<<<<<<< HEAD
-    """Return nodes, trail and lengths of each arc, and the half-edges that leave each node with their ways."""
-=======
     """Return nodes, trail and lengths of each arc, and the half-edges at each node with their ways."""
->>>>>>> mot
     nodes: list[tuple[int, int]] = []
     trail: list[int] = []
     span: list[tuple[float, float]] = []

@@ -1,5 +1,7 @@
 """Shapes in, valid grids out: sample, solve, check, measure; many at a time where that is faster."""
 
+from __future__ import annotations
+
 import contextlib
 import time
 from collections import deque
