@@ -155,8 +155,8 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "layout", ".json", "layout of blocks as JSON; read as its coarse grid or its domain",
-        "layout.read:read_shapes layout.read:read_grids", sniff=partial(holds, (b'"meshonet-layout"',)),
-        names_patches=True,
+        "layout.read:read_shapes layout.read:read_grids layout.write:write_layouts",
+        sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
     ),
     _format(
         "geojson", ".geojson .json", "outlines as GeoJSON", "",

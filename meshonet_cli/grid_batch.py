@@ -8,18 +8,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
-from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
-from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import Row, listening
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, prepare
-from meshonet_cli.batch.sources import assembly, items
+from meshonet_cli.batch.sources import shape_items
 from meshonet_cli.convergence import Live, check_file, write
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report.grid import Report
@@ -93,8 +92,8 @@ def write_grids(
 ) -> int:  # fmt: skip
     """Turn every boundary of `sources` into a grid in `output` and return the exit code.
 
-    With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the file
-    `history`.
+    With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the
+    file `history`.
     """
     destination = Destination(output, files.to_format, "grids")
     prepare(sources[:1] if assemble else sources, destination, session)
@@ -121,17 +120,6 @@ def write_grids(
         with whole_file(history) as file:
             write(file, cycles)
     return session.finish()
-
-
-def shape_items(
-    sources: Sequence[str], fmt: str | None, session: Session, assembled: Sampling | None = None
-) -> Iterator[Item[Shape]]:
-    """Yield every shape of every source, or the one domain of them all, as `assembled` says."""
-
-    def read(source: str) -> Iterator[Shape]:
-        return read_shapes(source, fmt)
-
-    return items(sources, read, session) if assembled is None else assembly(sources, read, assembled, session)
 
 
 def _together(request: GridRequest) -> int:

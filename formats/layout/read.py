@@ -17,7 +17,7 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.domain.places import arc_at, cells_at
-from meshonet.geometry.errors import in_source
+from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh

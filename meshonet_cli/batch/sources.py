@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from meshonet.formats.registry import read_shapes
 from meshonet.geometry.errors import InputError
 from meshonet_cli.batch.item import Item, T
 from meshonet_cli.session import Session
@@ -50,7 +51,20 @@ def items(sources: Sequence[str], read: Callable[[str], Iterator[T]], session: S
                 item = following
 
 
-def assembly(
+def shape_items(
+    sources: Sequence[str], fmt: str | None, session: Session, assembled: Sampling | None = None
+) -> Iterator[Item[Shape]]:
+    """Yield every shape of every source, or the one domain of them all, as `assembled` says."""
+
+    def read(source: str) -> Iterator[Shape]:
+        return read_shapes(source, fmt)
+
+    return (
+        items(sources, read, session) if assembled is None else _assembly(sources, read, assembled, session)
+    )
+
+
+def _assembly(
     sources: Sequence[str], read: Callable[[str], Iterator[Shape]], sampling: Sampling, session: Session
 ) -> Iterator[Item[Shape]]:
     """Yield the one domain that the shapes of all sources make; an error is reported, and nothing is left."""

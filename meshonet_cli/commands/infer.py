@@ -59,6 +59,4 @@ def infer(
         "best", sampling, checks, first, settings=settings, blocks=blocks, **domain.parameters(walls)
     )
     session = printing.session()
-    return write_grids(
-        boundary, output, request, checks, files, session, assemble=domain.assemble, jobs=jobs
-    )
+    return write_grids(boundary, output, request, checks, files, session, assemble=domain.assemble, jobs=jobs)

@@ -73,7 +73,8 @@ History = Annotated[str | None, o.option_of(o.IO)(
 def solve_pde(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
     sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
-    printing: o.PrintOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None, method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
+    printing: o.PrintOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None,
+    method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
     refine: Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
     wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None, jobs: o.Jobs = 1,
 ) -> int:  # fmt: skip

@@ -73,7 +73,6 @@ class Report(Timed):
             f"{self.method}{_after(self.path)}, {span(self.seconds['total'])}"
         )
 
-
     def _size(self, *, short: bool = False) -> str:
         """Return how large the grid is."""
         if self.blocks is None:

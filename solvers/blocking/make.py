@@ -10,8 +10,8 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.domain_shape import DomainShape
-from meshonet.solvers.blocking.block_grid import BlockFacts, block_grid
-from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.block_grid import BlockFacts, block_grid, fine_layout
+from meshonet.solvers.blocking.decompose import decompose
 from meshonet.solvers.blocking.request import CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
 from meshonet.solvers.solution import Solution
@@ -36,13 +36,17 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     return Solution(grid, METHOD, seconds=_stages(facts, perf_counter() - begun), notes=notes)
 
 
-def make_layout(shape: DomainShape, request: BlockRequest) -> tuple[Layout, Timings]:
-    """Return the blocks of a domain, coarse, and what finding them took.
+def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
+    """Return the blocks of a domain, with as many cells as are asked for, else those they were found with.
 
     Raises InputError: as `make_blocks`; SolverError: no blocks are found.
     """
-    domain, timings = _checked(shape.domain, request), Timings()
-    return _given(shape, domain, request) or decompose(domain, timings=timings), timings
+    domain = _checked(shape.domain, request)
+    layout = _given(shape, domain, request) or decompose(domain)
+    if request.cells is None and request.cell_size is None and request.res is None:
+        return layout
+    cells, size = _wanted(domain, request)
+    return fine_layout(layout, cells=cells, cell_size=size)
 
 
 def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout | None:

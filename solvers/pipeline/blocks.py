@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields
+from time import perf_counter
 from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError
@@ -13,6 +15,7 @@ from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
 
 if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.request import GridRequest
 
 METHODS = ("best", "auto", "variational")
@@ -35,10 +38,7 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
     if not (request.asks_for_blocks or getattr(shape, "many", False)):
         return None
     _check_use(request)
-    domain = domain_of(shape, sampling)
-    if sampling.far_field is not None and domain is shape and not domain.far_field:
-        raise InputError("a domain with a boundary of its own has no far field", "leave {far_field} out")
-    return domain
+    return _domain(shape, request)
 
 
 def check_asked(request: GridRequest) -> None:
@@ -48,6 +48,21 @@ def check_asked(request: GridRequest) -> None:
         if given:
             problem = f"{{{request.asks_for_blocks[0]}}} asks for many blocks and {{{name}}} for one"
             raise InputError(problem, "give one of them")
+
+
+def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
+    """Return the blocks that `request` makes of a shape, and seconds by stage.
+
+    They have as many cells as are asked for, or those that they were found with. Raises InputError: as
+    `as_blocks`; SolverError: no blocks are found.
+    """
+    begun = perf_counter()
+    from meshonet.solvers.blocking.make import find_layout
+
+    loaded = perf_counter()
+    _check_use(request)
+    layout = find_layout(_domain(shape, request), block_request(request))
+    return layout, {"load": loaded - begun, "layout": perf_counter() - loaded}
 
 
 def block_request(request: GridRequest) -> BlockRequest:
@@ -62,6 +77,13 @@ def block_request(request: GridRequest) -> BlockRequest:
         problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"
         raise InputError(problem, "give one number: cells along the longest extent", parameter="res")
     return BlockRequest(res=sampling.ni, **values)
+
+
+def _domain(shape: Shape, request: GridRequest) -> DomainShape:
+    domain = domain_of(shape, request.sampling)
+    if request.sampling.far_field is not None and not domain.far_field:
+        raise InputError("a domain with a boundary of its own has no far field", "leave {far_field} out")
+    return domain
 
 
 def _for_one(request: GridRequest) -> dict[str, bool]:
