@@ -32,7 +32,6 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
 
     Raises InputError: a shape that is no domain; parameters that many blocks have no use for.
     """
-    sampling = request.sampling
     if any(_for_one(request).values()):
         return None
     if not (request.asks_for_blocks or getattr(shape, "many", False)):
