@@ -5,6 +5,8 @@
 
 #define RADIUS 0.75 /* of the size, largest of a circle that stays empty */
 
+#define ENOUGH 0.5   /* sine of an angle that is not a small one */
+
 static const int NEXT[3] = {1, 2, 0}, AFTER[3] = {2, 0, 1};
 
 typedef struct {
@@ -194,19 +196,41 @@ int refine(Mesh *mesh, const Sizes *sizes, ptrdiff_t most)
     return status;
 }
 
-/* Move node v unless that would turn a triangle over. */
-static void move(Mesh *mesh, int32_t v, Node to)
+/* Sine of the smallest angle around node v, were it at `place`; 0 where a triangle would turn over. */
+static double smallest_sine(const Mesh *mesh, int32_t v, Node place)
 {
     const int32_t start = mesh->at[v];
     int32_t t = start;
+    double least = 1.0;
     do {
         const Triangle *here = &mesh->triangle[t];
         const int k = here->corner[0] == v ? 0 : here->corner[1] == v ? 1 : 2;
-        if (turn(to, mesh->node[here->corner[NEXT[k]]], mesh->node[here->corner[AFTER[k]]]) <= 0)
-            return;
+        const Node a = mesh->node[here->corner[NEXT[k]]], b = mesh->node[here->corner[AFTER[k]]];
+        const int64_t area = turn(place, a, b);
+        if (area <= 0)
+            return 0.0;
+        const double pa = distance(place, a), pb = distance(place, b), ab = distance(a, b);
+        const double shortest = pa < pb ? (pa < ab ? pa : ab) : (pb < ab ? pb : ab);
+        const double sine = (double)area * shortest / (pa * pb * ab);
+        least = sine < least ? sine : least;
         t = here->beside[NEXT[k]];
     } while (t != start);
-    mesh->node[v] = to;
+    return least;
+}
+
+/* Move node v by dx, dy, or half or a quarter as far, where no angle falls below ENOUGH or what is there now. */
+static void move(Mesh *mesh, int32_t v, double dx, double dy)
+{
+    const Node old = mesh->node[v];
+    const double now = smallest_sine(mesh, v, old), least = now < ENOUGH ? now : ENOUGH;
+    for (int k = 0; k < 3; k++, dx *= 0.5, dy *= 0.5) {
+        const Node to = {old.x + llrint(dx), old.y + llrint(dy)};
+        const double then = smallest_sine(mesh, v, to);
+        if (then > 0 && then >= least) {
+            mesh->node[v] = to;
+            return;
+        }
+    }
 }
 
 int smooth(Mesh *mesh, ptrdiff_t first, double part)
@@ -224,7 +248,7 @@ int smooth(Mesh *mesh, ptrdiff_t first, double part)
         } while (t != start);
         const Node old = mesh->node[v];
         const double dx = (double)(x - count * old.x) / (double)count, dy = (double)(y - count * old.y) / (double)count;
-        move(mesh, v, (Node){old.x + llrint(part * dx), old.y + llrint(part * dy)});
+        move(mesh, v, part * dx, part * dy);
     }
     return mesh_flip_all(mesh);
 }
@@ -242,7 +266,7 @@ int shake(Mesh *mesh, ptrdiff_t first, double part, uint64_t seed)
 {
     for (int32_t v = (int32_t)first; v < mesh->n; v++) {
         const double x = random_number(&seed), y = random_number(&seed), reach = part * mesh->size[v];
-        move(mesh, v, (Node){mesh->node[v].x + llrint(x * reach), mesh->node[v].y + llrint(y * reach)});
+        move(mesh, v, x * reach, y * reach);
     }
     return mesh_flip_all(mesh);
 }

@@ -21,7 +21,10 @@ PER_RADIUS = 0.45
 PER_PIECE = 4.0
 """Edges between two corners, at the least."""
 FLOOR = 1.0 / 25.0
-"""The smallest size by the largest, whatever the wall does."""
+"""The smallest size, whatever the wall does, by the largest or by `OF_LOOP` of the loop."""
+OF_LOOP = 1.0 / 16.0
+MOST = 2.0
+"""Nodes on walls by the nodes asked for, at the most: long narrow gaps are resolved by fewer, then."""
 CONE = 0.6
 """Cosine of the angle to the normal within which a wall counts as being in front."""
 
@@ -32,6 +35,8 @@ class WallSizes:
 
     largest: float
     """Size where nothing asks for a smaller one."""
+    smallest: Floats
+    """(loops,) no wall of the loop asks for a smaller one; `finer` points may."""
     loop: Indices
     """(n,) number of the loop."""
     piece: Indices
@@ -69,7 +74,8 @@ def pieces(loop: Loop) -> tuple[Floats, Floats]:
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
     """Return sizes along the walls for about `count` nodes, in the domain's unit.
 
-    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``, where h0 is `usual_size` and the
+    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``
+    nor 1/400 of the loop, where h0 is `usual_size` and the
     gap is the distance to the nearest wall in front, within 53 degrees of the normal. `finer` points (m, 2)
     have sizes (m,) of their own. Sizes change by at most .35 a length.
     """
@@ -80,20 +86,34 @@ def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None =
     size = np.concatenate([_own_size(t, s, largest) for t, s in _split(tangents, samples)])
     normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
     wall_gaps(points, normals, 1.0 / PER_GAP, CONE, size)
-    np.maximum(size, FLOOR * largest, out=size)
+    length = np.concatenate([s.length for s in samples])
+    number = np.repeat(np.arange(len(samples)), [len(s.arc) for s in samples])
+    smallest = FLOOR * np.minimum(largest, OF_LOOP * np.array([loop.length for loop in domain.loops]))
+    np.maximum(size, smallest[number], out=size)
+    affordable = _affordable(length, size, MOST * count)
+    np.maximum(size, affordable, out=size)
     if finer is not None:
         for point, wanted in zip(*finer, strict=True):
             np.minimum(size, wanted + GROWTH * np.hypot(*(points - point).T), out=size)
     wall_growth(points, GROWTH, size)
     before = np.cumsum([0] + [s.piece[-1] + 1 for s in samples])
     return WallSizes(
-        largest,
-        np.repeat(np.arange(len(samples)), [len(s.arc) for s in samples]),
+        max(largest, affordable),
+        np.maximum(smallest, affordable),
+        number,
         np.concatenate([s.piece + b for s, b in zip(samples, before, strict=False)]),
         np.concatenate([s.arc for s in samples]),
-        np.concatenate([s.length for s in samples]),
+        length,
         size,
     )
+
+
+def _affordable(length: Floats, size: Floats, most: float) -> float:
+    """Return the smallest size for which ∫ ds / h stays below a number of edges; 0 where it does anyway."""
+    floor = 0.0
+    while (length / np.maximum(size, floor)).sum() > most:
+        floor = 1.1 * max(floor, float(size.min()))
+    return floor
 
 
 def _split(values: Floats, samples: list[_Samples]) -> list[tuple[Floats, _Samples]]:

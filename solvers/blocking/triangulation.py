@@ -12,7 +12,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import DelaunayMesh
-from meshonet.solvers.blocking.sizes import FLOOR, GROWTH, WallSizes, place_nodes, wall_sizes
+from meshonet.solvers.blocking.sizes import GROWTH, WallSizes, place_nodes, wall_sizes
 
 _BOX = 4  # nodes that the kernel has before ours
 _SIDE = 2.0**29
@@ -82,14 +82,14 @@ class _Walls:
             )
         new = self.mesh.insert(self.frame.whole(points), size * self.frame.scale, _spread(len(arc)))
         if not new.all():
-            self._refuse(loop, points, int(np.flatnonzero(~new)[0]))
+            self.refuse(loop, points, int(np.flatnonzero(~new)[0]))
         self.loop, self.arc = np.append(self.loop, loop), np.append(self.arc, arc)
         self.points = np.concatenate([self.points, points])
 
-    def _refuse(self, loop: Indices, points: Floats, node: int) -> None:
+    def refuse(self, loop: Indices, points: Floats, node: int) -> None:
         (x, y), name = points[node], self.domain.loops[int(loop[node])].names[0]
         problem = f"the walls come too close to each other at ({x:.6g}, {y:.6g}), loop {loop[node]} ({name})"
-        raise InputError(problem, "open the gap there, or join the loops", source=self.domain.name)
+        raise InputError(problem, "open the gap there, or join the loops")
 
     def edges(self) -> Indices:
         """Return the pairs (b, 2) of nodes that follow each other along a loop."""
@@ -109,7 +109,7 @@ class _Walls:
             named = (edges + _BOX).astype(np.int32)
             there = self.mesh.are_edges(named)
             span = np.mod(self.arc[edges[:, 1]] - self.arc[edges[:, 0]], lengths[self.loop[edges[:, 0]]])
-            halve = ~there & (span > FLOOR * self.sizes.largest)
+            halve = ~there & (span > self.sizes.smallest[self.loop[edges[:, 0]]])
             if not halve.any():
                 self.mesh.set_walls(named[there], True)
                 way = self.mesh.force(named[~there])
@@ -122,7 +122,7 @@ class _Walls:
                 blocking = {frozenset(pair) for pair in way[stuck].tolist()}
                 halve |= np.array([frozenset(pair) in blocking for pair in named.tolist()])
             if (span[halve] * self.frame.scale < _NEAREST * _SIDE).any() or len(self.arc) > self.most:
-                self._refuse(self.loop, self.points, int(edges[np.flatnonzero(halve)[0], 0]))
+                self.refuse(self.loop, self.points, int(edges[np.flatnonzero(halve)[0], 0]))
             start = edges[halve, 0]
             loop = self.loop[start]
             self.add(loop, np.mod(self.arc[start] + 0.5 * span[halve], lengths[loop]))
@@ -148,7 +148,7 @@ def triangulate(
     """
     sizes = wall_sizes(domain, count, finer)
     frame = _Frame(domain)
-    walls = _Walls(domain, sizes, frame, most=40 * count + 100_000)
+    walls = _Walls(domain, sizes, frame, most=10 * count + 30_000)
     walls.add(*place_nodes(domain, sizes))
     walls.recover()
     mesh, first = walls.mesh, len(walls.arc)
@@ -167,6 +167,11 @@ def triangulate(
     return _result(walls)
 
 
+def _twice_area(a: Floats, b: Floats, c: Floats) -> Floats:
+    (ux, uy), (vx, vy) = (b - a).T, (c - a).T
+    return np.asarray(ux * vy - uy * vx)
+
+
 def _result(walls: _Walls) -> Triangulation:
     order = np.lexsort((walls.arc, walls.loop))
     places, _ = walls.mesh.nodes()
@@ -174,6 +179,10 @@ def _result(walls: _Walls) -> Triangulation:
     number = np.arange(len(places))
     number[order] = np.arange(len(order))
     points = np.concatenate([walls.points[order], walls.frame.real(places[len(order) :])])
+    a, b, c = (points[number[triangles[:, k]]] for k in range(3))
+    flat = np.flatnonzero(_twice_area(a, b, c) <= 0)
+    if flat.size:
+        walls.refuse(walls.loop[order], points, int(number[triangles[flat[0]]].min()))
     return Triangulation(
         walls.domain, points, number[triangles], walls.loop[order], walls.arc[order], neighbours, edge
     )
