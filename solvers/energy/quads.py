@@ -24,7 +24,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import QuadDescent, line_neighbours, quad_edges
-from meshonet.solvers.energy.walls import Walls, turned, walls_of
+from meshonet.solvers.energy.walls import turned, walls_of
 
 SHAPE = 0.9  # w of the functional
 SMOOTHNESS = 2e-3  # its β

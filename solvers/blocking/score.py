@@ -1,0 +1,60 @@
+"""How good a quad mesh is as the start of a layout: its angles after optimisation, and what blocks cost.
+
+::
+
+    mean deviation of corner angles from 90 degrees
+    + 0.05 of the 99th percentile of cells' worst + 0.1 of what the worst exceeds 60 degrees by
+    + 0.15 of what the turning of a wall along one edge exceeds 35 degrees by
+    + 4 for each wall node with a wrong count of quads + `price` for each block
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.padding import wrong_count
+from meshonet.solvers.blocking.wall_turning import turning_between
+
+PRICE = 0.12
+"""Degrees of mean deviation that a block costs."""
+
+
+def score(mesh: QuadMesh, blocks: int, price: float = PRICE) -> float:
+    """Return the score of a quad mesh that has so many blocks; the lower, the better."""
+    off = deviations(mesh)
+    worst = off.max(axis=1)
+    return float(
+        off.mean()
+        + 0.05 * np.quantile(worst, 0.99)
+        + 0.1 * max(0.0, worst.max() - 60.0)
+        + 0.15 * max(0.0, largest_turning(mesh) - 35.0)
+        + 4.0 * np.count_nonzero(wrong_count(mesh))
+        + price * blocks
+    )
+
+
+def deviations(mesh: QuadMesh) -> Floats:
+    """Return |angle - 90| (m, 4), in degrees, at each corner of each quad; folded ones exceed 90."""
+    x, y = mesh.nodes.T
+    sides = np.roll(mesh.quads, -1, axis=1)
+    ux, uy = x[sides] - x[mesh.quads], y[sides] - y[mesh.quads]
+    vx, vy = -np.roll(ux, 1, axis=1), -np.roll(uy, 1, axis=1)
+    angle = np.degrees(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy)) % 360.0
+    return np.abs(angle - 90.0)
+
+
+def largest_turning(mesh: QuadMesh) -> float:
+    """Return the most degrees by which a wall turns along one edge of the mesh."""
+    on = mesh.on_wall[mesh.edge_of]
+    first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
+    loops, arcs = mesh.places.loop, mesh.places.arc
+    most = 0.0
+    for number, loop in enumerate(mesh.domain.loops):
+        here = loops[first] == number
+        if here.any():
+            start = arcs[first[here]]
+            length = np.mod(arcs[second[here]] - start, loop.length)
+            most = max(most, float(turning_between(loop, start, start + length).max()))
+    return most

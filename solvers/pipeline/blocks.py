@@ -1,0 +1,108 @@
+"""Which shapes are made as many blocks, and what of a request is of use to these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.assembly import domain_of
+from meshonet.geometry.shapes.domain_shape import DomainShape
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.blocking.request import BlockRequest
+
+if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
+    from meshonet.solvers.pipeline.request import GridRequest
+
+METHODS = ("best", "auto", "variational")
+"""Methods under whose names blocks are made: their nodes come from one optimum of the variational energy."""
+_OF_ONE = ("spacing", "le_spacing", "te_spacing", "wake", "wake_nodes")
+_OF_GRIDS = (
+    "spacing_south", "spacing_north", "spacing_west", "spacing_east", "slide", "wall_angle", "initial",
+    "refine", "repair_margin",
+)  # fmt: skip
+
+
+def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
+    """Return the domain whose blocks `request` makes of a shape, None where it makes a single block.
+
+    Raises InputError: a shape that is no domain; parameters that many blocks have no use for.
+    """
+    if any(_for_one(request).values()):
+        return None
+    if not (request.asks_for_blocks or getattr(shape, "many", False)):
+        return None
+    _check_use(request)
+    return _domain(shape, request)
+
+
+def check_asked(request: GridRequest) -> None:
+    """Raise InputError when a request asks for many blocks in a way that cannot be, or for one as well."""
+    block_request(request)
+    for name, given in _for_one(request).items():
+        if given:
+            problem = f"{{{request.asks_for_blocks[0]}}} asks for many blocks and {{{name}}} for one"
+            raise InputError(problem, "give one of them")
+
+
+def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
+    """Return the blocks that `request` makes of a shape, and seconds by stage.
+
+    They have as many cells as are asked for, or those that they were found with. Raises InputError: as
+    `as_blocks`; SolverError: no blocks are found.
+    """
+    begun = perf_counter()
+    from meshonet.solvers.blocking.make import find_layout
+
+    loaded = perf_counter()
+    _check_use(request)
+    layout = find_layout(_domain(shape, request), block_request(request))
+    return layout, {"load": loaded - begun, "layout": perf_counter() - loaded}
+
+
+def block_request(request: GridRequest) -> BlockRequest:
+    """Return what is asked of many blocks.
+
+    Raises InputError: as `BlockRequest`.
+    """
+    own = [each.name for each in fields(BlockRequest) if each.name != "res"]
+    values = {name: getattr(request, name) for name in own}
+    sampling = request.sampling
+    if sampling.ni != sampling.nj:
+        problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"
+        raise InputError(problem, "give one number: cells along the longest extent", parameter="res")
+    return BlockRequest(res=sampling.ni, **values)
+
+
+def _domain(shape: Shape, request: GridRequest) -> DomainShape:
+    domain = domain_of(shape, request.sampling)
+    if request.sampling.far_field is not None and not domain.far_field:
+        raise InputError("a domain with a boundary of its own has no far field", "leave {far_field} out")
+    return domain
+
+
+def _for_one(request: GridRequest) -> dict[str, bool]:
+    """Return by name whether parameters are given that ask for one block."""
+    sampling = request.sampling
+    return {
+        "blocks": request.blocks == "single",
+        "topology": sampling.topology != "auto",
+        "corners": sampling.corners is not None,
+    }
+
+
+def _check_use(request: GridRequest) -> None:
+    """Raise InputError for the first parameter that is of no use to many blocks."""
+    if request.method not in METHODS:
+        problem = f"method {request.method} makes single blocks"
+        raise InputError(problem, "drop {method}, or ask for {blocks} single")
+    plain, given = Sampling(), request.sampling
+    useless = [name for name in _OF_ONE if getattr(given, name) != getattr(plain, name)]
+    useless += [name for name in _OF_GRIDS if getattr(request, name)]
+    useless += list(request.chosen)
+    for name in useless:
+        raise InputError(f"{{{name}}} is of no use to a domain of many blocks", f"drop {{{name}}}")
