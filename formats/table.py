@@ -118,7 +118,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
-        "cgns.read:read_grids cgns.write:write_grids",
+        "cgns.read:read_grids cgns.write:write_grids", blocks="kept",
         sniff=is_cgns, extrudes=True, names_patches=True, many=True,
     ),
     _format(

@@ -99,12 +99,13 @@ def turned(grid: Grid) -> Grid:
     """
     if grid.around_body:
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
-    patches = tuple(_turned(patch, grid.ni - 1) for patch in grid.patches)
+    patches = tuple(turned_patch(patch, grid.ni - 1) for patch in grid.patches)
     block = Block(np.swapaxes(grid.nodes, 0, 1)[:, ::-1], finite=True)
     return replace(grid, blocks=(block,), patches=patches)
 
 
-def _turned(patch: Patch, last: int) -> Patch:
+def turned_patch(patch: Patch, last: int) -> Patch:
+    """Return a patch of a block whose last node along xi has the number `last`, turned as `turned` does."""
     side, start, stop = _SIDES[patch.side], patch.start, patch.stop
     if patch.side in ("south", "north"):
         start, stop = last - stop, last - start
