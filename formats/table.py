@@ -131,7 +131,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "nmf", ".nmf", "NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
-        "plot3d.nmf:write_grids", extrudes=True, names_patches=True,
+        "plot3d.nmf:write_grids", extrudes=True, names_patches=True, blocks="kept",
     ),
     _format(
         "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
@@ -142,7 +142,7 @@ _FORMATS: tuple[Format, ...] = (
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
         "Plot3D: text, C binary (.bin) or Fortran records (.ufmt)",
         "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
-        extrudes=True, many=True, choices=CHOICES, reads_options=True,
+        extrudes=True, blocks="kept", many=True, choices=CHOICES, reads_options=True,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
     _format(

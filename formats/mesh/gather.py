@@ -6,9 +6,10 @@ by position. So is the motion of a periodic interface: conventions of files diff
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import NamedTuple, TypeAlias
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -38,17 +39,22 @@ class Joint(NamedTuple):
 
 _FLIPPED: dict[Side, Side] = {"west": "east", "east": "west"}
 _WAYS = dict(AROUND)
+_DIGITS = range(1, 18)
 _LOOSE = 1e-3
 """Joined nodes may differ by this part of the shortest edge along their side."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A block of a file: nodes (ni, nj, 2) as they stand there, what it is called, its named stretches."""
+    """A block of a file: nodes (ni, nj, 2) as they stand there, what it is called, its named stretches.
+
+    `iblank` says how many nodes have which mark, where there are marks.
+    """
 
     nodes: Floats
     name: str = ""
     patches: tuple[Patch, ...] = ()
+    iblank: Mapping[str, int] = field(default_factory=dict)
 
     def right_handed(self) -> Piece:
         """Return it with i reversed where its area is negative."""
@@ -61,7 +67,7 @@ class Piece:
             else replace(patch, start=last - patch.stop, stop=last - patch.start)
             for patch in self.patches
         )
-        return Piece(self.nodes[::-1], self.name, patches)
+        return replace(self, nodes=self.nodes[::-1], patches=patches)
 
 
 def grids_of(pieces: Sequence[Piece], joints: Sequence[Joint], name: str) -> Iterator[Grid]:
@@ -176,6 +182,10 @@ def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
     """Yield what may carry nodes (n, 2) to others: nothing, a shift, a rotation."""
     yield Motion()
     x, y = (donor - own).mean(axis=0).tolist()
+    for digits in _DIGITS:  # one that was meant makes the very nodes
+        motion = Motion((float(f"{x:.{digits}g}"), float(f"{y:.{digits}g}")))
+        if np.array_equal(motion(own), donor):
+            yield motion
     yield Motion((x, y))
     here, there = (nodes[-1] - nodes[0] for nodes in (own, donor))
     if not here.any():
@@ -201,7 +211,7 @@ def _alone(grid: Grid, piece: Piece) -> Grid:
     """Return the grid of a block that touches no other, its topology recovered, its patches along."""
     if any(each.transform for each in grid.connections):
         return with_loop_names(grid)
-    found = recovered(grid.blocks[0].nodes, grid.name)
+    found = replace(recovered(grid.blocks[0].nodes, grid.name), provenance=grid.provenance)
     if grid.connections and not found.connections:
         return with_loop_names(grid)
     nodes, patches = grid.blocks[0].nodes, piece.patches
@@ -224,5 +234,10 @@ def _several(
     own = tuple(replace(each, block=number[each.block], donor=number[each.donor]) for each in connections)
     patches = tuple(replace(patch, block=k) for k, piece in enumerate(pieces) for patch in piece.patches)
     titles = [piece.name for piece in pieces]
-    facts = {"zones": titles} if all(titles) and len(titles) > 1 else {}
+    facts: dict[str, Any] = {"zones": titles} if all(titles) and len(titles) > 1 else {}
+    marks: Counter[str] = Counter()
+    for piece in pieces:
+        marks.update(piece.iblank)
+    if marks:
+        facts["iblank"] = dict(marks)
     return Grid(with_equal_nodes(blocks, own), patches, own, name, facts)
