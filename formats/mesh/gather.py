@@ -78,6 +78,8 @@ def grids_of(pieces: Sequence[Piece], joints: Sequence[Joint], name: str) -> Ite
 
     Raises InputError: nodes that are not usable, joints that join nothing.
     """
+    if not pieces:
+        return
     for piece in pieces:
         usable(piece.nodes)
     turned = [piece.right_handed() for piece in pieces]

@@ -42,7 +42,7 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
 
 
 def number_of_grid(facts: Facts) -> int | None:
-    """Return the number in its file of the grid of several blocks that one with `facts` belongs to, if any."""
+    """Return the number, in its file, of the grid of several blocks that one with `facts` belongs to."""
     words = facts["block"][0].split() if facts.get("block") else []
     return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
 
@@ -73,12 +73,16 @@ def _first(row: tuple[int, Floats, Facts]) -> int:
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
     """Return the grid of `nodes` (ni, nj, 2) and the facts of its file; without a topology it is recovered.
 
+    A block of a grid of several is one with four sides by itself.
+
     `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
     """
     name = printable(facts["name"][0]) if facts.get("name") else name
     if not facts.get("topology"):
         return recovered(nodes, name)
     parts = tuple(_part(text) for text in facts.get("parts", ()))
+    if number_of_grid(facts) is not None:  # a block taken out of a grid of several
+        return Grid.from_nodes(usable(nodes), "quad", parts, name)
     topology = known_topology(facts["topology"][0])
     return Grid.from_nodes(usable(nodes), topology, parts, name, _provenance(facts))
 
