@@ -152,3 +152,35 @@ INTEGER_BYTES: int
 FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
+
+# sparse: `pattern` is order, parent, start, row, fill
+SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
+
+def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePattern, Indices]: ...
+def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
+def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
+def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
+
+# quads
+def quad_edges(quads: Indices, nodes: int) -> tuple[Indices, Indices]: ...
+def line_neighbours(
+    quads: Indices, edge_of: Indices, node: Indices, edge: Indices
+) -> tuple[Indices, int]: ...
+
+class QuadDescent:
+    def __init__(
+        self, nodes: Floats, cells: tuple[Indices, Floats, Floats], lines: tuple[Indices, Indices, int, Floats],
+        eased: tuple[Indices, Floats], inner: Indices, tied: tuple[Indices, tuple[float, float]],
+        unknown: Indices, wall: Indices, wall_nodes: tuple[Indices, Indices, Floats],
+        wall_edges: tuple[Indices, Floats], loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
+    ) -> None: ...  # fmt: skip
+    def run(
+        self,
+        shape: float,
+        smoothness: float,
+        epsilon: float,
+        size: float,
+        gain: float,
+        most: int,
+        renew: bool,
+    ) -> tuple[float, float, int]: ...

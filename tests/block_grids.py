@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from itertools import combinations
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
@@ -17,7 +17,7 @@ Namer = Callable[[Floats], str]
 
 
 def joined(lattices: Sequence[Floats], namer: Namer, name: str = "") -> Grid:
-    """The grid of nodes (ni, nj, 2) each, whole sides connected where nodes are the same; others are named."""
+    """The grid of nodes (ni, nj, 2) each, whole sides connected where nodes are the same."""
     blocks = tuple(Block(nodes) for nodes in lattices)
     free = [(number, side) for number in range(len(blocks)) for side in SIDES]
     connections, taken = [], set()
@@ -83,7 +83,9 @@ def o_ring(n: int = 7, m: int = 6, growth: float = 1.2) -> Grid:
     whole = np.stack([np.outer(np.cos(angle), radius), np.outer(np.sin(angle), radius)], axis=-1)
     whole[-1] = whole[0]
     lattices = [whole[k * (n - 1) : (k + 1) * (n - 1) + 1] for k in range(4)]
-    return joined(lattices, lambda side: "wall" if np.hypot(*side.mean(axis=0)) < 1.01 else "farfield", "ring")
+    return joined(
+        lattices, lambda side: "wall" if np.hypot(*side.mean(axis=0)) < 1.01 else "farfield", "ring"
+    )
 
 
 def duct(quarters: int = 1, ni: int = 9, nj: int = 5, bend: float = 0.0) -> Grid:

@@ -26,8 +26,8 @@ def shared_nodes(
     """Return numbers from 0 on for the nodes of blocks with `counts` nodes along their directions.
 
     Nodes that connections join, directly or through others, have one number; numbers ascend in the order in
-    which nodes first appear, block after block, the last index fastest. The two sides of a periodic connection
-    stay apart unless `periodic` says that they are one.
+    which nodes first appear, block after block, the last index fastest. Both sides of a periodic connection
+    have numbers of their own unless `periodic` says that they are one.
     """
     ends = np.cumsum([0, *(int(np.prod(count)) for count in counts)])
     numbers = [

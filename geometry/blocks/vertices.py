@@ -1,11 +1,11 @@
-"""How many cells meet at the nodes of a grid of blocks, and where that is not as inside a block.
+r"""How many cells meet at the nodes of a grid of blocks, and where that is not as inside a block.
 
 ::
 
     +--+--+     four cells around an inner node and two on the boundary are regular;
     |  |  |     an irregular inner node, of three or five cells say, is a vertex of blocks
     +--o--+
-    |   \\  \\
+    |   \  \
     +----+--+
 """
 

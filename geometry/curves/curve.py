@@ -87,6 +87,14 @@ class Curve:
         self.knots = read_only(self._table[::_STEPS][: len(self.points)].copy())
         self.corners = read_only(self.knots[self.corner_index])
 
+    @property
+    def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
+        """Coefficients (4, n, 2) of the cubics; arc lengths, and the slopes of their inverse, of so many pieces each.
+
+        For kernels that follow the curve themselves (``kernels/geometry/curve.h``).
+        """
+        return self._cubic, self._table, self._rate_start, self._rate_stop, _STEPS
+
     def _locate(self, s: Floats) -> tuple[Indices, Floats]:
         """Return the interval and the parameter in it (0 to 1) at arc lengths s (m,)."""
         s = np.ascontiguousarray(s, dtype=np.float64)

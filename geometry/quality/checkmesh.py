@@ -17,8 +17,8 @@ box_ratio            sum of abs(Sx) over the faces of a cell against that of abs
 ===================  =======================================================================================
 
 Faces on the seam of an O grid, on the wake of a C grid and between blocks are inside, as they are in a mesh
-whose nodes were merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/primitiveMeshTools.C and
-primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
+whose nodes were merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/
+primitiveMeshTools.C and primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
 import math
@@ -65,9 +65,8 @@ def faces(grid: Grid) -> Faces:
     Raises InputError: one of many blocks that is not in the plane.
     """
     if grid.topology != "blocks":
-        inside, outside = _inside(grid), _outside(grid)
-        boxes = ((i, 0, _box_ratio(part), None) for i, part in strips(grid.nodes, 1))
-        return _summed(inside, outside, boxes)
+        only: Iterator[Values] = ((i, 0, _box_ratio(part), None) for i, part in strips(grid.nodes, 1))
+        return _summed(_inside(grid), _outside(grid), only)
     planar(grid)
     blocks = list(enumerate(grid.blocks))
     within = (face for number, block in blocks for face in _within(block.nodes, number))
@@ -119,8 +118,8 @@ def _across(grid: Grid) -> Iterator[Inside]:
         axis, end = PLACES[each.side]
         if (axis == 0) == (end == 0):  # the donor is on the right of edges that run the other way
             own, donor = own[:, ::-1], donor[:, ::-1]
-        cells = (centroids(rows.swapaxes(0, 1))[:, 0] for rows in (own, donor))
-        values = _between(*cells, donor[0, :-1], donor[0, 1:])
+        inner, beyond = (centroids(rows.swapaxes(0, 1))[:, 0] for rows in (own, donor))
+        values = _between(inner, beyond, donor[0, :-1], donor[0, 1:])
         if (axis == 0) == (end == 0):
             values = values[0][::-1], values[1][::-1]
         counts = [count - 1 for count in grid.blocks[each.block].counts]

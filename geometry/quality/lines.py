@@ -1,7 +1,7 @@
 """How grid lines run through a grid of many blocks: how they grow and bend, inside blocks and across sides.
 
-The growth at a node is that of `meshonet.geometry.quality.growth`; the bend is the angle in degrees by which a
-line turns there, 0 where it is straight. Across a side both are taken at its nodes, but for irregular ones,
+The growth at a node is that of `meshonet.geometry.quality.growth`; the bend is the angle in degrees by which
+a line turns there, 0 where it is straight. Across a side both are taken at its nodes, but for irregular ones,
 through which no line runs.
 """
 
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.across import across, planar
+from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES, face_of
 from meshonet.geometry.blocks.families import families
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.vertices import Vertices, vertices
+from meshonet.geometry.blocks.vertices import Vertices
 from meshonet.geometry.polygon.corners import angle_between
 from meshonet.geometry.quality.growth import Extreme, Growth, Tally, ratios
 
@@ -38,7 +38,7 @@ class Lines:
 
 @dataclass(frozen=True)
 class _Part:
-    """Lines along a direction of a block, inside it or across one of its sides: (m, n) nodes from (i, j) on."""
+    """Lines along a direction of a block, inside it or across a side: (m, n) nodes from (i, j) on."""
 
     block: int
     axis: int
@@ -49,13 +49,9 @@ class _Part:
     bend: Floats
 
 
-def lines(grid: Grid, nodes: Vertices | None = None) -> Lines:
-    """Return growth and bend of the lines of planar blocks; `nodes` are its `vertices`, if known.
-
-    Raises InputError: a block that is not in the plane.
-    """
-    planar(grid)
-    parts = [*_inside(grid), *_across(grid, nodes or vertices(grid))]
+def lines(grid: Grid, nodes: Vertices) -> Lines:
+    """Return growth and bend of the lines of planar blocks, whose vertices are `nodes`."""
+    parts = [*_inside(grid), *_across(grid, nodes)]
     family = {(m.block, m.axis): k for k, members in enumerate(families(grid)) for m in members}
     walls = {family[patch.block, patch.place[0]] for patch in grid.walls()}
     xi, eta = ([part for part in parts if part.axis == axis] for axis in (0, 1))

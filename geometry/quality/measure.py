@@ -4,6 +4,7 @@ A cell is folded when any of its four corner Jacobians is not positive; a grid i
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,12 +51,21 @@ def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
     return [BadCell(int(i[k]), int(j[k]), float(centre[k, 0]), float(centre[k, 1])) for k in order]
 
 
+def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
+    """Return the folded cells of the blocks of `grid`, `limit` at the most, block after block."""
+    if grid.topology != "blocks":
+        return worst_cells(grid.nodes, limit)
+    blocks = enumerate(grid.blocks)
+    cells = [replace(cell, block=k) for k, block in blocks for cell in worst_cells(block.nodes, limit)]
+    return cells[:limit]
+
+
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
 
     The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take about a third
-    of the time of the rest (`meshonet.geometry.quality.percentiles`). Of several blocks all cells count as one
-    grid's (`meshonet.geometry.quality.measure_blocks`).
+    of the time of the rest (`meshonet.geometry.quality.percentiles`). All cells of several
+    blocks count together (`meshonet.geometry.quality.measure_blocks`).
 
     Raises InputError: a block that is not in the plane.
     """
@@ -114,14 +124,28 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 
 def per_cell(grid: Grid, name: str) -> Floats:
     """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError when there is none."""
-    if name not in NAMES:
-        raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
-    metric = METRICS[NAMES.index(name)]
+    metric = METRICS[_number(name)]
     if metric.cells:
         return metric.cells(grid)
     cells = np.empty((1, grid.ni - 1, grid.nj - 1))
     no_run().over(grid.x, grid.y, cells, grid.periodic, grid.wake, NAMES.index(name))
     return np.asarray(cells[0])
+
+
+def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
+    """Return the metric `name` of every cell, (ni-1, nj-1) for each block; raise InputError as `per_cell`."""
+    if grid.topology != "blocks":
+        return [per_cell(grid, name)]
+    from meshonet.geometry.quality.measure_blocks import metrics_of_blocks
+
+    number = _number(name)
+    return [cells[number] for cells in metrics_of_blocks(grid)]
+
+
+def _number(name: str) -> int:
+    if name not in NAMES:
+        raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
+    return NAMES.index(name)
 
 
 def _planes(nodes: Floats) -> Sequence[Floats]:

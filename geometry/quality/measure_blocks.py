@@ -75,5 +75,9 @@ def _summary(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Sum
     at = int(np.argmin(cells) if metric.worst == "min" else np.argmax(cells))
     every = np.concatenate([cells.ravel() for cells in blocks])
     low, mean, high = float(every.min()), float(every.mean()), float(every.max())
-    part = [float(v) for v in np.percentile(every, PERCENTS, overwrite_input=True)] if percentiles else [None, None]
+    part = (
+        [float(v) for v in np.percentile(every, PERCENTS, overwrite_input=True)]
+        if percentiles
+        else [None, None]
+    )
     return Summary(low, mean, high, (block, *divmod(at, cells.shape[1])), *part)

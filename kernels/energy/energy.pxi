@@ -1,3 +1,10 @@
+cdef extern from "energy/steps.h":
+    ctypedef struct Steps:
+        ptrdiff_t n
+        double value, smallest, reach, farthest, still, gain
+    int GOES_ON
+    int steps_take(Steps *s) nogil
+
 cdef extern from "energy/variational.h":
     ctypedef struct Weights:
         double aspect, shape, smoothness, epsilon
@@ -30,9 +37,8 @@ cdef extern from "energy/variational.h":
         Weights weights
         Spectrum spectrum
         Space space
-        Written z, gradient
-        double value, smallest, reach, still
-    int GOES_ON
+        Written z
+        Steps steps
     size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj) nogil
     double c_variational_energy "variational_energy"(
         const double *x, const double *y, ptrdiff_t ni, ptrdiff_t nj, const Weights *weights, double *gx, double *gy,
@@ -44,7 +50,6 @@ cdef extern from "energy/variational.h":
     void descent_sizes(const Descent *d, size_t *doubles, size_t *floats) nogil
     void descent_place(Descent *d, double *doubles, float *floats) nogil
     void descent_start(Descent *d) nogil
-    int descent_step(Descent *d) nogil
     double descent_slope(const Descent *d) nogil
 
 cdef extern from "Python.h":
@@ -201,19 +206,19 @@ cdef class VariationalDescent:
         self.state.weights = weights_of(aspect, shape, smoothness, epsilon, self.state.weights.periodic)
         if relief is not None:
             self.state.weights.relief = reads(relief, (self.state.ni,))
-        self.state.still, self.state.reach = still, reach
+        self.state.steps.still, self.state.steps.reach = still, reach
         with nogil:
             descent_start(&self.state)
         if told is not None:
-            told(0, self.state.value, descent_slope(&self.state))
+            told(0, self.state.steps.value, descent_slope(&self.state))
         while done < most and state == GOES_ON:
             PyErr_CheckSignals()
             with nogil:
-                state = descent_step(&self.state)
+                state = steps_take(&self.state.steps)
             done += 1
             if told is not None:
-                told(done, self.state.value, descent_slope(&self.state))
-        return self.state.value, self.state.smallest, done
+                told(done, self.state.steps.value, descent_slope(&self.state))
+        return self.state.steps.value, self.state.steps.smallest, done
 
 
 def _padded(matrix, panel=32):

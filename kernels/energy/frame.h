@@ -91,8 +91,9 @@ MESHONET_INLINE void out_of_frame(const Descent *d, const float *restrict x, con
 
 /* result = P gradient. Rows i and mi - 1 - i are folded together. */
 MESHONET_CLONES
-static void precondition(Descent *d, const double *restrict gradient, float *restrict result)
+static void precondition(void *problem, const double *restrict gradient, float *restrict result)
 {
+    const Descent *d = problem;
     const Spectrum *s = &d->spectrum;
     const ptrdiff_t mi = s->mi, mj = s->mj, width = values_of(&s->eta), modes = modes_of(&s->eta);
     float *w = d->transform, *packed = w + 6 * mi * (width > modes ? width : modes);
@@ -161,11 +162,12 @@ static void set_frame(Descent *d)
 
 /* The largest move of `direction`, in cells. */
 MESHONET_CLONES
-static double largest_move(const Descent *d)
+static double largest_move(void *problem)
 {
+    const Descent *d = problem;
     const ptrdiff_t n = d->spectrum.mi * d->spectrum.mj;
     const float *restrict fx = d->frame, *restrict fy = d->frame + n;
-    const float *restrict dx = d->direction, *restrict dy = d->direction + n;
+    const float *restrict dx = d->steps.direction, *restrict dy = dx + n;
     float most = 0.0f;
     for (ptrdiff_t k = 0; k < n; k++) {
         const float move = (dx[k] * dx[k] + dy[k] * dy[k]) / (fx[k] * fx[k] + fy[k] * fy[k] + 1e-36f);

@@ -1,13 +1,11 @@
-/* Descent of the variational functional: L-BFGS (steps.h) with a preconditioner (frame.h); the functional's gradient
+/* Descent of the variational functional: L-BFGS (steps.c) with a preconditioner (frame.h); the functional's gradient
    over a grid from its rows of cells (functional.h), and its Hessian on a coarse one. */
 #include "variational.h"
 #include "frame.h"
 #include "functional.h"
 #include "hessian.h"
-#include "steps.h"
 
-#define TRIES 25  /* lengths of a step that are tried */
-#define IDLE 2    /* small changes in a row that count as standing still; one may come from a short step */
+#define TRIES 25  /* lengths of a step of Newton's method that are tried */
 #define GAIN 1e-4 /* part of the value that such a change wins at the most */
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj)
@@ -57,15 +55,6 @@ double variational_energy(const double *x, const double *y, ptrdiff_t ni, ptrdif
     clear_rim(gx, ni, nj, weights->periodic);
     clear_rim(gy, ni, nj, weights->periodic);
     return isfinite(energy) ? energy : INFINITY;
-}
-
-/* The factor to the minimum of the parabola through both values and the slope, .1 to .5. */
-static double shorter(double rise, double slope)
-{
-    if (!isfinite(rise))
-        return 0.5;
-    const double factor = -0.5 * slope / (rise - slope);
-    return factor < 0.1 ? 0.1 : factor > 0.5 ? 0.5 : factor;
 }
 
 /* Of a number of the unknowns, the place in planes of nodes. */
@@ -143,40 +132,21 @@ int newton_steps(const Band *b, double *z, const Weights *weights, int most, dou
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats)
 {
     const Spectrum *s = &d->spectrum;
-    const ptrdiff_t nodes = values_of(&s->eta), modes = modes_of(&s->eta);
-    const size_t free_nodes = (size_t)(s->mi * s->mj), widest = (size_t)(nodes > modes ? nodes : modes);
-    *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj) + 4 * free_nodes;
-    *floats = (8 + 4 * PAIRS) * free_nodes + 6 * (size_t)s->mi * widest + PANEL * DEPTH + (size_t)(ROWS * s->mj);
+    const ptrdiff_t nodes = values_of(&s->eta), modes = modes_of(&s->eta), free_nodes = s->mi * s->mj;
+    const size_t widest = (size_t)(nodes > modes ? nodes : modes);
+    *doubles = 4 * (size_t)(d->ni * d->nj) + variational_workspace(d->ni, d->nj) + 4 * (size_t)free_nodes;
+    *floats = 2 * (size_t)free_nodes + steps_floats(2 * free_nodes) + 6 * (size_t)s->mi * widest + PANEL * DEPTH +
+              (size_t)(ROWS * s->mj);
 }
 
 void descent_place(Descent *d, double *doubles, float *floats)
 {
     const ptrdiff_t nodes = d->ni * d->nj, n = 2 * d->spectrum.mi * d->spectrum.mj;
     d->full = doubles, d->work = d->full + 4 * nodes;
-    d->gradient = d->work + variational_workspace(d->ni, d->nj), d->fresh = d->gradient + n;
-    d->frame = floats, d->direction = d->frame + n, d->steepest = d->direction + n, d->turned = d->steepest + n;
-    d->table = d->turned + n, d->transform = d->table + 2 * PAIRS * n;
-}
-
-/* Value at the planes `at`, and the gradient of the free nodes in `gradient`. */
-static double evaluate(Descent *d, const double *at, double *gradient, double *smallest)
-{
-    const ptrdiff_t nodes = d->ni * d->nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
-    double *g = d->full + 2 * nodes;
-    const double value =
-        variational_energy(at, at + nodes, d->ni, d->nj, &d->weights, g, g + nodes, smallest, d->work);
-    for (int c = 0; c < 2; c++)
-        for (ptrdiff_t i = 0; i < mi; i++)
-            memcpy(gradient + (c * mi + i) * mj, g + c * nodes + (d->first + i) * d->nj + 1, (size_t)mj * sizeof *g);
-    return value;
-}
-
-void descent_start(Descent *d)
-{
-    set_frame(d);
-    d->count = d->idle = 0;
-    d->value = evaluate(d, d->z, d->gradient, &d->smallest);
-    precondition(d, d->gradient, d->steepest);
+    double *gradient = d->work + variational_workspace(d->ni, d->nj);
+    d->frame = floats;
+    steps_place(&d->steps, n, gradient, gradient + n, floats + n);
+    d->transform = floats + n + steps_floats(n);
 }
 
 /* Planes of z moved by `factor` directions. */
@@ -187,7 +157,7 @@ static void move(const Descent *d, double factor, double *restrict to)
     memcpy(to, d->z, 2 * (size_t)nodes * sizeof *to);
     for (int c = 0; c < 2; c++) {
         for (ptrdiff_t i = 0; i < mi; i++) {
-            const float *restrict step = d->direction + (c * mi + i) * mj;
+            const float *restrict step = d->steps.direction + (c * mi + i) * mj;
             double *restrict row = to + c * nodes + (d->first + i) * nj + 1;
             for (ptrdiff_t j = 0; j < mj; j++)
                 row[j] += factor * (double)step[j];
@@ -197,48 +167,42 @@ static void move(const Descent *d, double factor, double *restrict to)
     }
 }
 
-int descent_step(Descent *d)
+static double attempt(void *problem, double factor, double *smallest)
 {
-    const ptrdiff_t nodes = d->ni * d->nj, n = 2 * d->spectrum.mi * d->spectrum.mj;
-    double slope = choose_direction(d);
-    if (!(slope < 0.0) && d->count > 0) {
-        d->count = 0;
-        slope = choose_direction(d);
-    }
-    if (!(slope < 0.0))
-        return STUCK;
-    const double largest = largest_move(d);
-    double factor = d->count == 0 && largest > d->reach ? d->reach / largest : 1.0, value = 0.0, low = 0.0;
-    int tries = 0;
-    for (; tries < TRIES; tries++) {
+    Descent *d = problem;
+    const ptrdiff_t nodes = d->ni * d->nj, mi = d->spectrum.mi, mj = d->spectrum.mj;
+    const double *at = factor > 0.0 ? d->full : d->z;
+    double *g = d->full + 2 * nodes;
+    if (factor > 0.0)
         move(d, factor, d->full);
-        value = evaluate(d, d->full, d->fresh, &low);
-        if (value <= d->value + 1e-4 * factor * slope)
-            break;
-        factor *= shorter(value - d->value, factor * slope);
-    }
-    if (tries == TRIES) { /* what is remembered misleads, or nothing helps */
-        const int state = d->count > 0 ? GOES_ON : STUCK;
-        d->count = 0;
-        return state;
-    }
-    const double gain = d->value - value;
-    memcpy(d->z, d->full, 2 * (size_t)nodes * sizeof *d->z);
-    d->value = value, d->smallest = low;
-    precondition(d, d->fresh, d->turned);
-    remember(d, factor, slope);
-    memcpy(d->gradient, d->fresh, (size_t)n * sizeof *d->gradient);
-    memcpy(d->steepest, d->turned, (size_t)n * sizeof *d->steepest);
-    /* small steps that still gain, or that were cut short, say nothing of the distance to the minimum */
-    const int small = factor * largest < d->still && (factor > 0.4 || largest < d->still);
-    d->idle = small && gain < GAIN * value ? d->idle + 1 : 0;
-    return d->idle == IDLE ? SETTLED : GOES_ON;
+    const double value =
+        variational_energy(at, at + nodes, d->ni, d->nj, &d->weights, g, g + nodes, smallest, d->work);
+    for (int c = 0; c < 2; c++)
+        for (ptrdiff_t i = 0; i < mi; i++)
+            memcpy(d->steps.fresh + (c * mi + i) * mj, g + c * nodes + (d->first + i) * d->nj + 1,
+                   (size_t)mj * sizeof *g);
+    return value;
+}
+
+static void keep(void *problem)
+{
+    Descent *d = problem;
+    memcpy(d->z, d->full, 2 * (size_t)(d->ni * d->nj) * sizeof *d->z);
+}
+
+void descent_start(Descent *d)
+{
+    Steps *s = &d->steps;
+    s->problem = d, s->attempt = attempt, s->keep = keep, s->precondition = precondition;
+    s->largest_move = largest_move, s->farthest = INFINITY, s->gain = GAIN;
+    set_frame(d);
+    steps_start(s);
 }
 
 double descent_slope(const Descent *d)
 {
     double total = 0.0;
-    for (ptrdiff_t k = 0; k < 2 * d->spectrum.mi * d->spectrum.mj; k++)
-        total += d->gradient[k] * d->gradient[k];
+    for (ptrdiff_t k = 0; k < d->steps.n; k++)
+        total += d->steps.gradient[k] * d->steps.gradient[k];
     return sqrt(total);
 }

@@ -1,5 +1,6 @@
 /* The variational functional of a grid, its gradient, and a descent of it; see variational.c. */
 #pragma once
+#include "steps.h"
 #include <stddef.h>
 
 typedef struct {
@@ -48,22 +49,15 @@ typedef struct {
     const float *along, *across, *across_t; /* splines, (mi or mj fine, SPACE) and (SPACE, mj fine) */
 } Space;
 
-enum { GOES_ON, SETTLED, STUCK };
-#define PAIRS 14 /* steps that are remembered */
-
 /* A descent under way. The free nodes are those of rows `first` to `first` + mi - 1, columns 1 to mj. */
 typedef struct {
     ptrdiff_t ni, nj, first;
     Weights weights;
     Spectrum spectrum;
     Space space;
-    double *z, *full, *work;        /* planes (2, ni, nj); room for two such; for the functional */
-    double *gradient, *fresh;       /* (2, mi, mj), as all below */
-    float *frame, *direction, *steepest, *turned, *table, *transform;
-    double sy[PAIRS][PAIRS], yz[PAIRS][PAIRS];
-    double products[2 * PAIRS];     /* of the rows of the table with the gradient */
-    int order[PAIRS], count, idle;
-    double value, smallest, reach, still;
+    double *z, *full, *work; /* planes (2, ni, nj); room for two such; for the functional */
+    float *frame, *transform; /* (2, mi, mj); room */
+    Steps steps;              /* the unknowns are planes (2, mi, mj) */
 } Descent;
 
 size_t variational_workspace(ptrdiff_t ni, ptrdiff_t nj);
@@ -89,9 +83,8 @@ int newton_steps(const Band *b, double *z, const Weights *weights, int most, dou
 void descent_sizes(const Descent *d, size_t *doubles, size_t *floats);
 void descent_place(Descent *d, double *doubles, float *floats);
 
-/* Frames, value and gradient at z; then one iteration at a time. */
+/* Frames, value and gradient at z; then `steps_take` is one iteration. */
 void descent_start(Descent *d);
-int descent_step(Descent *d);
 
 /* The norm of the gradient. */
 double descent_slope(const Descent *d);

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.errors import with_options
-from meshonet_cli.text import span
+from meshonet_cli.text import named, span
 
 if TYPE_CHECKING:
     from meshonet.geometry.quality.summary import Quality
@@ -48,14 +48,13 @@ class Report(Timed):
     def lines(self) -> str:
         """Return the report of a single grid for people."""
         angle = self.quality["max_angle"]
-        i, j = angle.worst
         rows = {
             "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
             "residual": f"{self.residual:.1e} after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
             if self.residual is not None
             else "",
             "folded": f"{self.quality.folded} of {self.quality.cells} cells",
-            "max angle": f"{angle.max:.1f} degrees at i={i}, j={j}; mean {angle.mean:.1f}",
+            "max angle": f"{angle.max:.1f} degrees at {named(angle.worst)}; mean {angle.mean:.1f}",
             "time": self.times(),
         }
         head = f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"

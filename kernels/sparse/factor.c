@@ -1,0 +1,131 @@
+/* Row by row (Davis, ACM Trans. Math. Softw. 31 (2005) 587-591): row k of L solves L D l = a with the rows above it,
+   and the elimination tree says which of its entries are not zero. */
+#include "factor.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The columns in which row k has entries, each before those that it changes, in list[first] to list[n - 1]. */
+static int reach(const SparsePattern *a, int k, int *seen, int *list, int *path)
+{
+    int first = a->n;
+    seen[k] = k;
+    for (ptrdiff_t e = a->start[k]; e < a->start[k + 1]; e++) {
+        int length = 0;
+        for (int i = a->row[e]; seen[i] != k; i = a->parent[i]) {
+            path[length++] = i;
+            seen[i] = k;
+        }
+        while (length > 0)
+            list[--first] = path[--length];
+    }
+    return first;
+}
+
+ptrdiff_t sparse_factor(const SparsePattern *a, const double *values, int *lower_row, double *lower, double *pivots)
+{
+    const int n = a->n;
+    ptrdiff_t bad = 0;
+    int *scratch = malloc(((size_t)n * 3 + 1) * sizeof *scratch), *seen = scratch, *list = scratch + n, *path = list + n;
+    ptrdiff_t *end = malloc(((size_t)n + 1) * sizeof *end);
+    double *y = calloc((size_t)n + 1, sizeof *y);
+    if (!scratch || !end || !y)
+        bad = -1;
+    for (int k = 0; k < n && !bad; k++)
+        seen[k] = -1;
+    for (int k = 0; k < n && !bad; k++) {
+        const int first = reach(a, k, seen, list, path);
+        for (ptrdiff_t e = a->start[k]; e < a->start[k + 1]; e++)
+            y[a->row[e]] += values[e];
+        double pivot = y[k];
+        y[k] = 0.0;
+        end[k] = a->fill[k];
+        for (int m = first; m < n; m++) {
+            const int i = list[m];
+            const double yi = y[i], entry = yi / pivots[i];
+            y[i] = 0.0;
+            for (ptrdiff_t p = a->fill[i]; p < end[i]; p++)
+                y[lower_row[p]] -= lower[p] * yi;
+            pivot -= entry * yi;
+            lower_row[end[i]] = k;
+            lower[end[i]++] = entry;
+        }
+        pivots[k] = pivot;
+        if (pivot == 0.0 || !isfinite(pivot))
+            bad = k + 1;
+    }
+    free(scratch);
+    free(end);
+    free(y);
+    return bad;
+}
+
+static void solve_one(const SparsePattern *a, const int *lower_row, const double *lower, const double *pivots, double *x)
+{
+    const int n = a->n;
+    for (int k = 0; k < n; k++) {
+        const double xk = x[k];
+        for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++)
+            x[lower_row[p]] -= lower[p] * xk;
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        double xk = x[k] / pivots[k];
+        for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++)
+            xk -= lower[p] * x[lower_row[p]];
+        x[k] = xk;
+    }
+}
+
+static void solve_several(const SparsePattern *a, const int *lower_row, const double *lower, const double *pivots,
+                          ptrdiff_t sides, double *x)
+{
+    const int n = a->n;
+    for (int k = 0; k < n; k++) {
+        const double *restrict xk = x + k * sides;
+        for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++) {
+            double *restrict below = x + lower_row[p] * sides;
+            for (ptrdiff_t c = 0; c < sides; c++)
+                below[c] -= lower[p] * xk[c];
+        }
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        double *restrict xk = x + k * sides;
+        for (ptrdiff_t c = 0; c < sides; c++)
+            xk[c] /= pivots[k];
+        for (ptrdiff_t p = a->fill[k]; p < a->fill[k + 1]; p++) {
+            const double *restrict below = x + lower_row[p] * sides;
+            for (ptrdiff_t c = 0; c < sides; c++)
+                xk[c] -= lower[p] * below[c];
+        }
+    }
+}
+
+void sparse_solve(const SparsePattern *a, const int *lower_row, const double *lower, const double *pivots,
+                  ptrdiff_t sides, double *x, double *scratch)
+{
+    for (int k = 0; k < a->n; k++)
+        for (ptrdiff_t c = 0; c < sides; c++)
+            scratch[k * sides + c] = x[a->order[k] * sides + c];
+    if (sides == 1)
+        solve_one(a, lower_row, lower, pivots, scratch);
+    else
+        solve_several(a, lower_row, lower, pivots, sides, scratch);
+    for (int k = 0; k < a->n; k++)
+        for (ptrdiff_t c = 0; c < sides; c++)
+            x[a->order[k] * sides + c] = scratch[k * sides + c];
+}
+
+void sparse_multiply(const SparsePattern *a, const double *values, ptrdiff_t sides, const double *x, double *product)
+{
+    for (ptrdiff_t k = 0; k < a->n * sides; k++)
+        product[k] = 0.0;
+    for (int k = 0; k < a->n; k++)
+        for (ptrdiff_t e = a->start[k]; e < a->start[k + 1]; e++) {
+            const ptrdiff_t i = a->order[a->row[e]] * sides, j = a->order[k] * sides;
+            for (ptrdiff_t c = 0; c < sides; c++) {
+                product[i + c] += values[e] * x[j + c];
+                if (i != j)
+                    product[j + c] += values[e] * x[i + c];
+            }
+        }
+}

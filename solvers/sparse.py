@@ -1,0 +1,102 @@
+"""Sparse symmetric systems of equations, factored without pivoting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import sparse_analyse, sparse_factor, sparse_multiply, sparse_solve
+
+
+class SparsePattern:
+    """Where a symmetric matrix has entries, and the order in which its unknowns are eliminated.
+
+    It is made once and serves every matrix with these entries. The order is one of approximate minimum degree
+    (Amestoy, Davis, Duff, SIAM J. Matrix Anal. Appl. 17 (1996) 886-905).
+
+    Parameters
+    ----------
+    size : rows, n.
+    rows, columns : (m,) place of each entry, (i, j) standing for (j, i) too: give one of the two. Entries
+        at the same place add up.
+
+    >>> pattern = SparsePattern(2, np.array([0, 0, 1]), np.array([0, 1, 1]))
+    >>> pattern.factor(np.array([2.0, 1.0, 2.0])).solve(np.array([3.0, 3.0])).tolist()
+    [1.0, 1.0]
+    """
+
+    def __init__(self, size: int, rows: Indices, columns: Indices) -> None:
+        self.size = size
+        rows, columns = (np.ascontiguousarray(i, dtype=np.intp) for i in (rows, columns))
+        self._arrays, self._slot = sparse_analyse(size, rows, columns)
+        self._entries = int(self._arrays[2][-1])
+
+    @property
+    def fill(self) -> int:
+        """Entries of the factor below its diagonal."""
+        return int(self._arrays[4][-1])
+
+    def matrix(self, values: Floats) -> SparseMatrix:
+        """Return the matrix whose entries have these values (m,)."""
+        summed = np.bincount(self._slot, np.asarray(values, dtype=np.float64), self._entries)
+        return SparseMatrix(self, np.asarray(summed, dtype=np.float64))
+
+    def factor(self, values: Floats) -> Factor:
+        """Return the factors of the matrix whose entries have these values (m,); see `SparseMatrix`."""
+        return self.matrix(values).factor()
+
+
+@dataclass(frozen=True, eq=False)
+class SparseMatrix:
+    """A symmetric matrix A."""
+
+    pattern: SparsePattern
+    values: Floats
+    """Of the distinct entries, in an order of the pattern's own."""
+
+    def times(self, x: Floats) -> Floats:
+        """Return A x of x (n,) or (n, k)."""
+        columns = np.ascontiguousarray(x, dtype=np.float64).reshape(self.pattern.size, -1)
+        product = np.empty_like(columns)
+        sparse_multiply(self.pattern._arrays, self.values, columns, product)
+        return product.reshape(np.shape(x))
+
+    def factor(self) -> Factor:
+        """Return A = P^T L D L^T P, as positive definite and quasi-definite matrices have it.
+
+        A quasi-definite matrix is ((K, C^T), (C, -E)), K and E positive definite: Vanderbei, SIAM J. Optim. 5
+        (1995) 100-113.
+
+        Raises SolverError: a pivot is zero or not finite.
+        """
+        factor, failed = sparse_factor(self.pattern._arrays, self.values)
+        if failed >= 0:
+            raise SolverError(f"a system of {self.pattern.size} equations is singular in row {failed}")
+        return Factor(self.pattern, factor)
+
+
+@dataclass(frozen=True, eq=False)
+class Factor:
+    """A factored matrix A."""
+
+    pattern: SparsePattern
+    arrays: tuple[NDArray[np.intc], Floats, Floats]
+    """Rows and numbers of L, column by column, without the ones of its diagonal, and pivots (n,)."""
+
+    def solve(self, right: Floats) -> Floats:
+        """Return x of A x = right, both (n,) or (n, k)."""
+        x = np.array(right, dtype=np.float64, order="C").reshape(self.pattern.size, -1)
+        sparse_solve(self.pattern._arrays, self.arrays, x)
+        return x.reshape(np.shape(right))
+
+    def refine(self, matrix: SparseMatrix, right: Floats, steps: int) -> Floats:
+        """Return x of a matrix that differs a little from A, by so many steps of iterative refinement."""
+        x = self.solve(right)
+        for _ in range(steps):
+            x += self.solve(right - matrix.times(x))
+        return x
