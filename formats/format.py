@@ -35,8 +35,8 @@ class Format:
     sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
     extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
-    blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh; not
-        at all if empty.
+    blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh;
+        not at all if empty.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that it cannot be written to a stream.

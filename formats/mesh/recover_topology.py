@@ -66,8 +66,13 @@ def right_handed(nodes: Floats) -> Floats:
 
     The signed areas of the cells add up to that of the outline, so only the outline is looked at.
     """
+    return nodes[::-1] if is_left_handed(nodes) else nodes
+
+
+def is_left_handed(nodes: Floats) -> bool:
+    """Return whether the area of a block of `nodes` (ni, nj, 2) is negative."""
     outline = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]])
-    return nodes[::-1] if polygon_area(outline) < 0 else nodes
+    return polygon_area(outline) < 0
 
 
 def known_topology(text: str) -> Topology:
