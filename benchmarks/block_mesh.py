@@ -20,7 +20,8 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.find_connections import find_connections, with_equal_nodes
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
+from meshonet.geometry.blocks.find_connections import find_connections
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind, Patch
 from meshonet.geometry.curves.curve import Curve

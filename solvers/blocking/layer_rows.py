@@ -18,6 +18,7 @@ from meshonet.solvers.blocking.size_metric import SizeMetric
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
 
+
 @dataclass(frozen=True)
 class LayerSettings:
     """Layers of cells at walls.
@@ -55,7 +56,9 @@ def ring_metric(ring: Ring, settings: LayerSettings, scale: float, largest: floa
     return SizeMetric(points, normal, across, scale * along, largest)
 
 
-def ring_rows(mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats) -> Rows:
+def ring_rows(
+    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats
+) -> Rows:
     """Return the layers under the nodes of a front, `inner` (k,) the heights of the cells beyond it."""
     order = loop_nodes(mesh, loop)
     columns, starts = ring.columns(mesh.places.arc[order])
@@ -79,7 +82,9 @@ def heights_inside(layout: Layout, loop: int) -> Floats:
             (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]), (block[0], block[1]), (block[-1], block[-2]),
         ):  # fmt: skip
             if (mesh.places.loop[side] == loop).all():
-                height[side] = np.maximum(height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T))
+                height[side] = np.maximum(
+                    height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T)
+                )
     return height[loop_nodes(mesh, loop)]
 
 

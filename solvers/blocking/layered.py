@@ -178,7 +178,9 @@ def counts_for_metric(chords: Chords, metric: SizeMetric) -> Indices:
 def _joined(rings: Rings, outside: Layout) -> Layout:
     """Return the layout with the layers, and the rows to a distant outer loop, attached."""
     rows = [
-        ring_rows(outside.mesh, number, ring, rings.rows(ring), rings.settings, heights_inside(outside, number))
+        ring_rows(
+            outside.mesh, number, ring, rings.rows(ring), rings.settings, heights_inside(outside, number)
+        )
         for number, ring in rings.rings.items()
     ]
     if rings.near is not None:
@@ -195,5 +197,3 @@ def smallest_corner(mesh: QuadMesh) -> float:
     edge = np.roll(z, -1, axis=1) - z
     before = np.roll(edge, 1, axis=1)
     return float((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min())
-
-

@@ -84,9 +84,10 @@ class Ring:
                     weight *= np.where(used, (offset - other) / (k - other), 1.0)
             weight[k > width] = 0.0
             nodes += weight[:, None, None] * self.levels[(first + k) % n]
-        starts = monotone_cubic(
-            np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n)
-        ) % self.wall.length
+        starts = (
+            monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n))
+            % self.wall.length
+        )
         exact = index == np.round(index)
         starts[exact] = self.arcs[index[exact].astype(np.intp) % n]
         nodes[:, 0] = self.wall.at(starts)
@@ -145,7 +146,9 @@ def _place(loop: Loop, arcs: Floats, column: int) -> str:
 def _marched(start: Floats, thickness: Floats, first: float) -> tuple[Floats | None, Floats]:
     """Return levels (n, m, 2), and where (n,) they are folded, of the best of several marches."""
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
-    ratios = np.array([growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness])
+    ratios = np.array(
+        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
+    )
     best, where = None, np.ones(len(start), dtype=bool)
     for settings in ATTEMPTS:
         levels = _march(start, cells, first, ratios, settings)
