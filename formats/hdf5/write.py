@@ -5,17 +5,16 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from meshonet.formats.hdf5.file import created
+from meshonet.formats.mesh.connection_text import connections_text
 from meshonet.formats.mesh.metadata import plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -156,11 +155,6 @@ def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
             empty = False
     if empty:
         raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
-
-
-def connections_text(connections: Iterable[Connection]) -> str:
-    """Return connections as JSON: their fields in order, the transform as an object or null."""
-    return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])
 
 
 def _is_of_blocks(sample: Boundary | Grid) -> bool:
