@@ -16,8 +16,8 @@ from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
 
 _KINDS: tuple[tuple[str, Kind], ...] = (
-    ("viscous", "wall"), ("wall", "wall"), ("tangency", "wall"), ("inviscid", "wall"), ("farfield", "farfield"),
-    ("inflow", "inlet"), ("outflow", "outlet"), ("back_pressure", "outlet"), ("sym", "symmetry"),
+    ("viscous", "wall"), ("wall", "wall"), ("tangency", "wall"), ("inviscid", "wall"), ("farfield",
+    "farfield"), ("inflow", "inlet"), ("outflow", "outlet"), ("back_pressure", "outlet"), ("sym", "symmetry"),
 )  # fmt: skip
 _NOTHING = ("unprocessed", "collapsed", "pole", "patched", "overset")
 _MOST_BYTES = 1 << 26
@@ -47,15 +47,15 @@ def read_map(path: Path, dims: Sequence[tuple[int, int, int]], dropped: Sequence
         error.place = error.place or name
         raise
     except (ValueError, IndexError, OSError) as error:
-        raise InputError(f"its map cannot be read ({printable(str(error))[:80]})", _REMEDY, place=name) from None
+        raise InputError(
+            f"its map cannot be read ({printable(str(error))[:80]})", _REMEDY, place=name
+        ) from None
 
 
 _REMEDY = "write the map again, or take it away"
 
 
-def _read(
-    lines: list[tuple[int, str]], dims: Sequence[tuple[int, int, int]], dropped: Sequence[int]
-) -> Map:
+def _read(lines: list[tuple[int, str]], dims: Sequence[tuple[int, int, int]], dropped: Sequence[int]) -> Map:
     plain = [(n, line) for n, line in lines if not line.startswith("#")]
     count = int(plain[0][1].split()[0]) if plain else 0
     said = [tuple(int(word) for word in line.split()[1:4]) for _, line in plain[1 : count + 1]]
@@ -90,7 +90,9 @@ def _row(
     own, *donor = (end for end in ends if end is not None)
     if donor:
         periodic = title.lower().startswith("periodic")
-        for (block, *span), name in zip((own, *donor), names or ([title.lower()] if periodic else []), strict=False):
+        for (block, *span), name in zip(
+            (own, *donor), names or ([title.lower()] if periodic else []), strict=False
+        ):
             found.patches[block].append(Patch(name, *span))  # type: ignore[arg-type]
         found.joints.append(Joint(own, donor[0]))
         return

@@ -22,7 +22,7 @@ from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.find_connections import with_equal_nodes
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError

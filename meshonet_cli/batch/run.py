@@ -9,6 +9,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -180,7 +181,7 @@ def _streamed(
     done: Iterator[Done[S, R]], destination: Destination, session: Session, written: Callable[[R, str], None]
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
-    size: tuple[int, int, str] | None = None
+    size = ""
     for item, _, outcome in done:
         what: S | None = None
         with session.member(item.label, item.source):
@@ -195,11 +196,9 @@ def _streamed(
         written(report, destination.text)
 
 
-def _same_size(what: Grid | Boundary, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
-    own = (what.ni, what.nj, what.topology)
-    if size is not None and own != size:
-        raise InputError(
-            "{}x{} {} does not fit a dataset of {}x{} {}".format(*own, *size),
-            "set {res} and {topology}, or write one file each",
-        )
+def _same_size(what: Grid | Boundary, size: str) -> str:
+    own = size_of(what)
+    if size and own != size:
+        problem = f"{own} does not fit a dataset of {size}"
+        raise InputError(problem, "set {res} and {topology}, or write one file each")
     return own
