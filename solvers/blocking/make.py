@@ -36,8 +36,8 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     cells, size = _wanted(domain, request)
     height = request.height(shape.unit)
     if request.pitch is not None:
-        fine = _cascade(domain, request, request.pitch, height, layout, timings)
-    elif height is None:
+        raise InputError("cascades are not made yet", "leave {pitch} out", parameter="pitch")
+    if height is None:
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, timings=timings)
     else:
@@ -91,14 +91,6 @@ def _with_layers(
         raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
     cells = request.cells or LAYERED_CELLS
     return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
-
-
-def _cascade(
-    domain: Domain, request: BlockRequest, pitch: tuple[float, float], height: float | None,
-    layout: Layout | None, timings: Timings,
-) -> Layout:  # fmt: skip
-    """Return a fine layout of the passage around a blade."""
-    raise InputError("cascades are not made yet", "leave {pitch} out", parameter="pitch")
 
 
 def _checked(domain: Domain, request: BlockRequest) -> Domain:

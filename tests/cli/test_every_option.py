@@ -86,7 +86,7 @@ DOMAINS = {
 }
 BLOCKS = DOMAINS | {
     "--blocks": (f"step.wkt --res 21 {MADE}", "OPTION single", "nodes"),
-    "--walls": (f"hole.wkt --cells 900 --first-cell .02 {MADE}", "OPTION bolt", "code"),
+    "--walls": (f"hole.wkt --cells 900 --first-cell .02 {MADE}", "OPTION bolt", "error"),
 }
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 
