@@ -34,6 +34,9 @@ NUMERICS = (
 )
 OWN_FLAGS = {
     "conformal/strip_rows.c": ["-fno-associative-math"],  # order matters to argument reduction
+    # what is decided from a sign must be the same wherever it is asked
+    "motorcycle/trace.c": ["-fno-associative-math", "-fno-reciprocal-math", "-ffp-contract=off"],
+    "motorcycle/walk.c": ["-fno-associative-math", "-fno-reciprocal-math", "-ffp-contract=off"],
 }
 GLUE = [] if WINDOWS else ["-O0", "-g0"]  # checks and calls: nothing to gain
 LINK = ["-Wl,-s"] if sys.platform == "linux" else []  # no symbols but those that are looked up

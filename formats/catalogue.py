@@ -35,7 +35,11 @@ def _row(record: Format) -> tuple[str, ...]:
         record.name,
         " ".join(record.suffixes),
         _what(record.read_grids is not None, record.read_shapes is not None),
-        _what(record.write_grids is not None, record.write_boundaries is not None),
+        _what(
+            record.write_grids is not None,
+            record.write_boundaries is not None,
+            record.write_layouts is not None,
+        ),
         "yes" if record.names_patches else "",
         "yes" if record.extrudes else "",
         record.blocks,
@@ -45,5 +49,6 @@ def _row(record: Format) -> tuple[str, ...]:
     )
 
 
-def _what(grids: bool, boundaries: bool) -> str:
-    return ", ".join(word for word, can in (("grids", grids), ("boundaries", boundaries)) if can)
+def _what(grids: bool, boundaries: bool, layouts: bool = False) -> str:
+    each = ("grids", grids), ("boundaries", boundaries), ("layouts", layouts)
+    return ", ".join(word for word, can in each if can)

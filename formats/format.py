@@ -13,6 +13,7 @@ from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 
 Heights: TypeAlias = tuple[float, ...]
@@ -30,7 +31,7 @@ class Format:
     name, suffixes, description : for users; file endings in lower case with the dot.
     read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
         outer edges then serve) or cannot be read.
-    read_grids, write_grids, write_boundaries : None when the format cannot.
+    read_grids, write_grids, write_boundaries, write_layouts : None when the format cannot.
     sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
     extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
@@ -53,6 +54,7 @@ class Format:
     read_grids: Callable[[Source], Iterator[Grid]] | None = None
     write_grids: Callable[..., None] | None = None
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
+    write_layouts: Callable[[Path, Iterable[Layout]], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
     extrudes: bool = False
     names_patches: bool = False

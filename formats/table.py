@@ -154,6 +154,11 @@ _FORMATS: tuple[Format, ...] = (
         read_shapes=later("meshonet.formats.outlines.vector:read_wkt"), sniff=is_wkt, many=True,
     ),
     _format(
+        "layout", ".json", "layout of blocks as JSON; read as its coarse grid or its domain",
+        "layout.read:read_shapes layout.read:read_grids layout.write:write_layouts",
+        sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
+    ),
+    _format(
         "geojson", ".geojson .json", "outlines as GeoJSON", "",
         read_shapes=later("meshonet.formats.outlines.vector:read_geojson"), sniff=is_geojson, many=True,
     ),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from libc.stddef cimport ptrdiff_t
-from libc.stdint cimport int64_t, uint64_t, uintptr_t
+from libc.stdint cimport int32_t, int64_t, uint64_t, uintptr_t
 from libc.stdlib cimport calloc, free, malloc
 
 include "include/arrays.pxi"
@@ -18,6 +18,8 @@ include "conformal/conformal.pxi"
 include "neural/neural.pxi"
 include "formats/formats.pxi"
 include "triangulation/triangulation.pxi"
+include "motorcycle/motorcycle.pxi"
 include "sparse/sparse.pxi"
+include "blocking/blocking.pxi"
 include "quads/quads.pxi"
 include "collapse/collapse.pxi"

@@ -9,15 +9,20 @@ from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.shapes.shape import Shape
 
 _SEAM = 1e-6
 
 
-def boundary_of(grid: Grid) -> Boundary:
-    """Return the four outer edges of `grid`, with its topology, parts and name.
+def boundary_of(grid: Grid) -> Shape:
+    """Return the four outer edges of `grid`, with its topology, parts and name; of many blocks, their domain.
 
     Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point.
     """
+    if grid.topology == "blocks":
+        from meshonet.geometry.shapes.given_blocks import given_blocks
+
+        return given_blocks(grid)
     nodes = grid.nodes
     edges = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
     return Boundary(*edges, grid.topology, grid.patches, grid.name, origin=grid.origin)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import connect_quads
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,22 +60,28 @@ class QuadMesh:
     places: Places = field(repr=False)
 
     @cached_property
-    def _sides(self) -> tuple[Indices, Indices]:
-        first, second = self.quads.ravel(), np.roll(self.quads, -1, axis=1).ravel()
-        low, high = np.minimum(first, second), np.maximum(first, second)
-        keys, inverse = np.unique(low * len(self.nodes) + high, return_inverse=True)
-        edges = np.stack(np.divmod(keys, len(self.nodes)), axis=1)
-        return edges, inverse.reshape(self.quads.shape)
+    def _sides(self) -> tuple[Indices, Indices, Indices, bool]:
+        return connect_quads(np.ascontiguousarray(self.quads, dtype=np.intp), len(self.nodes))
 
     @property
     def edges(self) -> Indices:
-        """(e, 2) nodes of each edge, the lower first."""
-        return self._sides[0]
+        """(e, 2) nodes of each edge, the lower first; edges ascend."""
+        return self._sides[2]
 
     @property
     def edge_of(self) -> Indices:
         """(m, 4) edge from each node of a quad to its next."""
+        return self._sides[0]
+
+    @property
+    def twin(self) -> Indices:
+        """(m, 4) for each of these edges 4 times the quad across it, plus which of its edges; -1 at walls."""
         return self._sides[1]
+
+    @property
+    def manifold(self) -> bool:
+        """Whether no edge has more than two quads, or two that turn opposite ways."""
+        return self._sides[3]
 
     @cached_property
     def on_wall(self) -> NDArray[np.bool_]:
@@ -98,7 +105,31 @@ class QuadMesh:
         """(n,) nodes where other than four quads meet, or on the boundary other than two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
+    @cached_property
+    def closed(self) -> QuadMesh:
+        """The mesh with each node that has a partner replaced by it: sides of a period are no walls then.
+
+        Cells wanted at such nodes are those of both; itself where there is no period.
+        """
+        partner = self.places.partner
+        double = np.flatnonzero(partner >= 0)
+        if not double.size:
+            return self
+        own = np.arange(len(partner))
+        own[double] = partner[double]
+        cells = self.places.cells.copy()
+        cells[partner[double]] += cells[double]
+        places = Places(self.places.loop, self.places.arc, cells, np.full(len(own), -1))
+        return QuadMesh(self.domain, self.nodes, own[self.quads], places)
+
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
         places = self.places if arc is None else replace(self.places, arc=arc)
-        return replace(self, nodes=nodes, places=places)
+        return self.with_places(nodes, places)
+
+    def with_places(self, nodes: Floats, places: Places) -> QuadMesh:
+        """Return the same quads with other nodes (n, 2) and places on the boundary."""
+        moved = replace(self, nodes=nodes, places=places)
+        known = ("_sides", "on_wall", "wall_nodes", "valence", "irregular")  # quads alone say these
+        moved.__dict__.update({name: self.__dict__[name] for name in known if name in self.__dict__})
+        return moved

@@ -59,14 +59,21 @@ def find_crossings(points: Floats, *, closed: bool = True, limit: int = 64) -> l
     """
     p = np.ascontiguousarray(points, dtype=np.float64)
     end = np.roll(p, -1, axis=0) if closed else p[1:]
-    along = p @ _SWEEP
-    along_end = np.roll(along, -1) if closed else along[1:]
-    low, top = np.minimum(along[: len(end)], along_end), np.maximum(along[: len(end)], along_end)
-    top += _ROUNDING * np.abs(along).max(initial=0.0)  # of the products
+    low, top = sweep_spans(p, end)
     pairs, complete = crossing_segments(p, np.argsort(low, kind="stable"), low, top, limit, _BUDGET)
     if not complete:
         pairs = _pairs_by_tree(p, end, closed, limit)
-    return [Crossing(i, j, *_shared_point(p, end, i, j)) for i, j in pairs]
+    return [Crossing(i, j, *shared_point(p, end, i, j)) for i, j in pairs]
+
+
+def sweep_spans(p: Floats, end: Floats) -> tuple[Floats, Floats]:
+    """Return where (m,) the segments from `p` to `end` start and stop along the sweep, rounded outwards."""
+    along, along_end = p[: len(end)] @ _SWEEP, end @ _SWEEP
+    low, top = np.minimum(along, along_end), np.maximum(along, along_end)
+    top += _ROUNDING * max(
+        np.abs(along).max(initial=0.0), np.abs(along_end).max(initial=0.0)
+    )  # of the products
+    return low, top
 
 
 def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tuple[int, int]]:
@@ -86,7 +93,7 @@ def _pairs_by_tree(p: Floats, end: Floats, closed: bool, limit: int) -> list[tup
     return pairs[:limit]
 
 
-def _shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
+def shared_point(p: Floats, end: Floats, i: int, j: int) -> tuple[float, float]:
     """Return where segments i and j meet; of collinear ones, a point that both contain."""
     a, b, c, d = p[i], end[i], p[j], end[j]
     r, s, w = b - a, d - c, c - a

@@ -1,0 +1,81 @@
+cdef extern from "collapse/topology.h":
+    ctypedef struct HalfEdges:
+        const ptrdiff_t *quads
+        ptrdiff_t m, n, edges
+        ptrdiff_t *edge
+        ptrdiff_t *twin
+        ptrdiff_t *ends
+        int manifold
+    void mesh_connect(HalfEdges *mesh, ptrdiff_t *room) nogil
+    ptrdiff_t c_joined_classes "joined_classes"(const ptrdiff_t *pairs, ptrdiff_t k, ptrdiff_t n, ptrdiff_t *label,
+                                  ptrdiff_t *parent) nogil
+    ptrdiff_t mesh_blocks(const HalfEdges *mesh, const unsigned char *irregular, unsigned char *marked, ptrdiff_t *label,
+                          ptrdiff_t *room) nogil
+    ptrdiff_t mesh_lattices(const HalfEdges *mesh, const ptrdiff_t *quads, const unsigned char *marked,
+                            const ptrdiff_t *label, ptrdiff_t count, ptrdiff_t *sizes, ptrdiff_t *lattices,
+                            ptrdiff_t *room) nogil
+    ptrdiff_t mesh_chords(const HalfEdges *mesh, const unsigned char *marked, ptrdiff_t *label, ptrdiff_t *room) nogil
+
+
+def connect_quads(quads, ptrdiff_t n):
+    """Return the edge and the twin (m, 4) of each half-edge of quads over n nodes, the ends (e, 2) of each edge, and
+    whether the mesh is manifold; see ``collapse/topology.h``."""
+    cdef HalfEdges mesh
+    cdef ptrdiff_t m = len(quads)
+    if m and not 0 <= quads.min() <= quads.max() < n:
+        raise ValueError("quads of nodes that do not exist")
+    edge, twin, ends = np.empty((m, 4), np.intp), np.empty((m, 4), np.intp), np.empty((4 * m, 2), np.intp)
+    room = np.empty(n + 1 + 4 * m, np.intp)
+    mesh.quads, mesh.m, mesh.n = reads_indices(quads, (m, 4)), m, n
+    mesh.edge, mesh.twin, mesh.ends = fills_indices(edge, (m, 4)), fills_indices(twin, (m, 4)), fills_indices(ends, (4 * m, 2))
+    cdef ptrdiff_t *scratch = fills_indices(room, (n + 1 + 4 * m,))
+    with nogil:
+        mesh_connect(&mesh, scratch)
+    return edge, twin, ends[: mesh.edges].copy(), bool(mesh.manifold)
+
+
+def joined_classes(pairs, ptrdiff_t n):
+    """Return the class (n,), counted from 0 in order, of each of n numbers that `pairs` (k, 2) join, and their count."""
+    cdef ptrdiff_t k = len(pairs), count
+    if k and not 0 <= pairs.min() <= pairs.max() < n:
+        raise ValueError("pairs of numbers that do not exist")
+    label, parent = np.empty(n, np.intp), np.empty(n, np.intp)
+    cdef const ptrdiff_t *joined = reads_indices(pairs, (k, 2))
+    cdef ptrdiff_t *to = fills_indices(label, (n,))
+    cdef ptrdiff_t *room = fills_indices(parent, (n,))
+    with nogil:
+        count = c_joined_classes(joined, k, n, to, room)
+    return label, count
+
+
+def split_quads(quads, named, edge, twin, irregular, marked):
+    """Return the block (m,) of each quad, the lattices of the blocks and the chord (e,) of each edge; None for a mesh
+    whose blocks are no rectangles.
+
+    `edge` and `twin` are those of `quads`; lattices hold numbers of `named` (m, 4), which may be others. `irregular` (n,)
+    says where lines begin; `marked` (e,), edges that bound blocks, is filled up.
+    """
+    cdef HalfEdges mesh
+    cdef ptrdiff_t m = len(quads), count, written = -1, chords = 0, n = len(irregular), edges = len(marked)
+    label, chord = np.empty(m, np.intp), np.empty(edges, np.intp)
+    sizes, lattices, room = np.empty((m, 2), np.intp), np.empty(4 * m, np.intp), np.empty(8 * m, np.intp)
+    mesh.quads, mesh.m, mesh.n, mesh.edges = reads_indices(quads, (m, 4)), m, n, edges
+    mesh.edge, mesh.twin, mesh.ends = fills_indices(edge, (m, 4)), fills_indices(twin, (m, 4)), NULL
+    cdef const ptrdiff_t *own = reads_indices(named, (m, 4))
+    cdef const unsigned char *begins = <const unsigned char *>numbers(irregular, b"?", 1, (n,), False)
+    cdef unsigned char *mark = <unsigned char *>numbers(marked, b"?", 1, (edges,), True)
+    cdef ptrdiff_t *block = fills_indices(label, (m,))
+    cdef ptrdiff_t *size = fills_indices(sizes, (m, 2))
+    cdef ptrdiff_t *lattice = fills_indices(lattices, (4 * m,))
+    cdef ptrdiff_t *side = fills_indices(chord, (edges,))
+    cdef ptrdiff_t *scratch = fills_indices(room, (8 * m,))
+    with nogil:
+        count = mesh_blocks(&mesh, begins, mark, block, scratch)
+        if count >= 0:
+            written = mesh_lattices(&mesh, own, mark, block, count, size, lattice, scratch)
+            chords = mesh_chords(&mesh, mark, side, scratch)
+    if written < 0:
+        return None
+    ends = np.cumsum(sizes[:count, 0] * sizes[:count, 1])[:-1]
+    parts = [part.reshape(shape) for part, shape in zip(np.split(lattices[:written], ends), sizes[:count].tolist())]
+    return label, parts, chord, chords

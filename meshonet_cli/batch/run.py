@@ -13,6 +13,7 @@ from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item, Name, Named
 from meshonet_cli.batch.timed import Timed
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
 T = TypeVar("T", bound=Named)
-S = TypeVar("S", bound=Grid | Boundary)
+S = TypeVar("S", bound=Grid | Boundary | Layout)
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
@@ -196,7 +197,9 @@ def _streamed(
         written(report, destination.text)
 
 
-def _same_size(what: Grid | Boundary, size: str) -> str:
+def _same_size(what: Grid | Boundary | Layout, size: str) -> str:
+    if isinstance(what, Layout):
+        return ""
     own = size_of(what)
     if size and own != size:
         problem = f"{own} does not fit a dataset of {size}"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.blocks.grid import Grid
 
-STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
+STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "compare", "write")
 
 
 @dataclass

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.cross_field import CrossField, cross_field
+from meshonet.solvers.blocking.frames import cut_frames, frame_sizes
+from meshonet.solvers.blocking.parametrisation import Parametrisation
+from meshonet.solvers.blocking.split_edges import split_edges_between_walls
+from meshonet.solvers.blocking.surface import Surface
+from meshonet.solvers.blocking.triangulation import Triangulation, triangulate
 
-if TYPE_CHECKING:
-    from meshonet.solvers.blocking.triangulation import Triangulation
+_FINER = 0.35
+"""Edges at singularities, by those of the first triangulation."""
+_STIFFENINGS = 12
+_NEARLY_FOLDED, _SMALL = 1e-3, 0.2
+"""Jacobians, by those wanted, for which the map is solved again, and those where it is made stiffer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +55,7 @@ class SeamlessMap:
     """(t, 3) how often the period's shift is to be added to points of a triangle when an edge is crossed,
     to have them beside the neighbour: 0, or 1 or -1 across a period."""
     corner_coords: Complexes
-    """(t, 3) coordinates w. The unit is the domain's length times a local factor e^H, whose median is 1;
-    Jacobians are positive if `folded` is 0."""
+    """(t, 3) coordinates w. The unit is the domain's unit of length times `sizes`, whose median is 1."""
     turns: Indices
     """(t, 3) quarter-turns k across each edge, 0 to 3; 0 at walls."""
     wall_axis: Indices
@@ -69,14 +77,97 @@ class SeamlessMap:
     fan_corners: Indices
     """(3 t,) corners around each vertex, counter-clockwise, as 3 times the triangle plus the corner in it;
     at a wall's vertex from the edge that leaves along the wall to the one that arrives."""
-    size: Floats
-    """(t,) target length of the gradients of u and v in each triangle, e^H."""
+    sizes: Floats
+    """(t,) wanted length of the gradients of u and v in each triangle, e^H."""
+    jacobians: Floats
+    """(t,) determinant of the map's derivative by `sizes` squared: 1 is as wanted, 0 or less is folded."""
 
     def fan(self, vertex: int) -> Indices:
         """Return the corners around a vertex, counter-clockwise, as 3 times triangle plus corner."""
         return self.fan_corners[self.fan_start[vertex] : self.fan_start[vertex + 1]]
 
     @property
+    def folded(self) -> int:
+        """Number of triangles that the map turns over: tracing needs 0."""
+        return int((self.jacobians <= 0.0).sum())
+
+    @property
+    def worst_place(self) -> tuple[float, float]:
+        """Where the triangle of the smallest Jacobian is, for messages."""
+        corners = self.triangulation.triangles[np.argmin(self.jacobians)]
+        x, y = self.triangulation.points[corners].mean(axis=0)
+        return float(x), float(y)
+
+    @property
     def singular(self) -> Indices:
         """Inner vertices where other than four cells meet, ascending."""
-        return np.flatnonzero((self.valence != 4) & ~self.on_wall & (self.valence > 0))
+        return np.flatnonzero((self.valence != 4) & (self.valence > 0))
+
+
+def seamless_map(domain: Domain, count: int = 1500, seed: int = 0) -> SeamlessMap:
+    """Return a seamless map of a domain, triangulated by about `count` vertices.
+
+    Where the field has singularities inside, the domain is triangulated anew with smaller triangles there. A
+    map that is nearly folded is solved again with larger weights where it is; `SeamlessMap.folded` says
+    whether that was enough.
+
+    Raises SolverError: the field or the map have no solution; InputError: the domain cannot be triangulated.
+    """
+    surface = _surface(triangulate(domain, count, seed=seed))
+    field = cross_field(surface)
+    singular = field.singular
+    if len(singular):
+        points, sizes = surface.triangulation.points[singular], _FINER * surface.edge_size(singular)
+        if domain.periodic is not None:
+            shift = np.asarray(domain.periodic.shift)
+            points, sizes = np.concatenate([points, points + shift, points - shift]), np.tile(sizes, 3)
+        field = cross_field(_surface(triangulate(domain, count, finer=(points, sizes), seed=seed)))
+    return map_of_field(field)
+
+
+def _surface(triangulation: Triangulation) -> Surface:
+    return Surface.of(split_edges_between_walls(triangulation))
+
+
+def map_of_field(field: CrossField) -> SeamlessMap:
+    """Return the seamless map whose lines follow a cross field."""
+    surface = field.surface
+    frames, sizes = cut_frames(field), frame_sizes(field)
+    system = Parametrisation(frames, sizes)
+    coords = _unfolded(system)
+    jacobians = system.jacobians(coords)
+    wall_axis = np.full(surface.vertices.shape, -1, dtype=np.intp)
+    wall_axis[surface.walls] = frames.wall_axis
+    start, corners = surface.fans
+    boundary = len(surface.triangulation.arc)
+    return SeamlessMap(
+        triangulation=surface.triangulation,
+        vertices=surface.vertices,
+        neighbours=surface.neighbours,
+        neighbour_edge=surface.neighbour_edge,
+        periods=surface.periods,
+        corner_coords=coords,
+        turns=frames.turns,
+        wall_axis=wall_axis,
+        on_wall=surface.on_wall,
+        boundary_cells=field.boundary_cells[:boundary],
+        corner_cells=field.walls.corner_cells,
+        valence=field.valence,
+        fan_start=start,
+        fan_corners=corners,
+        sizes=sizes,
+        jacobians=jacobians,
+    )
+
+
+def _unfolded(system: Parametrisation) -> Complexes:
+    """Return coordinates (t, 3), stiffer where triangles come out small or folded (Bommes et al. 2009)."""
+    weights = np.ones(len(system.sizes))
+    coords = system.solve(weights)
+    for _ in range(_STIFFENINGS):
+        jacobians = system.jacobians(coords)
+        if jacobians.min() > _NEARLY_FOLDED:
+            break
+        weights[jacobians < _SMALL] *= 2.0
+        coords = system.solve(weights)
+    return coords

@@ -1,0 +1,58 @@
+cdef extern from "blocking/surface.h":
+    ctypedef struct Surface:
+        ptrdiff_t triangles, vertices
+        const ptrdiff_t *vertex
+        const ptrdiff_t *neighbour
+        const ptrdiff_t *across
+    ptrdiff_t c_surface_fans "surface_fans"(const Surface *s, ptrdiff_t *start, ptrdiff_t *fan) nogil
+    ptrdiff_t c_surface_comb "surface_comb"(const Surface *s, const ptrdiff_t *quarters, ptrdiff_t *turn,
+                                            unsigned char *cut) nogil
+    int c_surface_prune "surface_prune"(const Surface *s, const ptrdiff_t *start, const ptrdiff_t *fan,
+                                        const unsigned char *keep, unsigned char *cut) nogil
+
+
+cdef Surface surface_of(tuple arrays, ptrdiff_t vertices) except *:
+    """Point to the arrays (t, 3): vertices, neighbours, and the edge's number in these."""
+    vertex, neighbour, across = arrays
+    cdef Surface s
+    cdef tuple shape = (len(vertex), 3)
+    s.triangles, s.vertices = len(vertex), vertices
+    s.vertex, s.neighbour = reads_indices(vertex, shape), reads_indices(neighbour, shape)
+    s.across = reads_indices(across, shape)
+    if s.triangles == 0 or vertex.min() < 0 or vertex.max() >= vertices or neighbour.max() >= s.triangles:
+        raise ValueError("no surface")
+    if ((neighbour >= 0) & ((across < 0) | (across > 2))).any():
+        raise ValueError("triangles have three edges")
+    return s
+
+
+def surface_fans(tuple surface, ptrdiff_t vertices):
+    """Return where the corners around each vertex start (vertices + 1,) in a list of all (3 t,), and how many are in it."""
+    cdef Surface s = surface_of(surface, vertices)
+    start, fan = np.empty(vertices + 1, np.intp), np.empty(3 * s.triangles, np.intp)
+    cdef ptrdiff_t *begins = fills_indices(start, (vertices + 1,))
+    cdef ptrdiff_t *to = fills_indices(fan, (3 * s.triangles,))
+    return start, fan, c_surface_fans(&s, begins, to)
+
+
+def surface_comb(tuple surface, ptrdiff_t vertices, quarters):
+    """Return the quarter-turns (t,) that make frames agree over a spanning tree, and which edges (t, 3) are not in it."""
+    cdef Surface s = surface_of(surface, vertices)
+    turn, cut = np.empty(s.triangles, np.intp), np.empty((s.triangles, 3), np.uint8)
+    cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
+    cdef ptrdiff_t reached = c_surface_comb(&s, reads_indices(quarters, (s.triangles, 3)),
+                                            fills_indices(turn, (s.triangles,)), cuts)
+    if reached < 0:
+        raise MemoryError
+    if reached < s.triangles:
+        raise ValueError("a surface in pieces")
+    return turn, cut
+
+
+def surface_prune(tuple surface, start, fan, keep, cut):
+    """Clear the edges of `cut` (t, 3) that lead nowhere: to a vertex that is not to be kept (vertices,), uint8 both."""
+    cdef Surface s = surface_of(surface, len(keep))
+    cdef unsigned char *cuts = <unsigned char *>numbers(cut, b"B", 1, (s.triangles, 3), True)
+    cdef const unsigned char *kept = <const unsigned char *>numbers(keep, b"B", 1, (s.vertices,), False)
+    if c_surface_prune(&s, reads_indices(start, (s.vertices + 1,)), reads_indices(fan, (3 * s.triangles,)), kept, cuts):
+        raise MemoryError

@@ -1,0 +1,140 @@
+cdef extern from "motorcycle/lines.h":
+    ctypedef struct MapPoint:
+        double x, y
+    ctypedef struct TriangleMap:
+        ptrdiff_t triangles
+        const MapPoint *coordinates
+        const ptrdiff_t *neighbours
+        const ptrdiff_t *edges
+        const ptrdiff_t *turns
+
+cdef extern from "motorcycle/trace.h":
+    ctypedef struct RayLines:
+        TriangleMap map
+        const ptrdiff_t *node
+        const ptrdiff_t *port
+        ptrdiff_t nodes, ports
+        double near
+    ctypedef struct RayStart:
+        ptrdiff_t node, port, face, corner, axis, batch
+    ctypedef struct RayEnd:
+        ptrdiff_t kind, other, place
+        double along, length
+    ctypedef struct RayPiece:
+        ptrdiff_t ray, face, axis
+        MapPoint start "from"
+        MapPoint to
+        double length
+    void c_probe_rays "probe_rays"(const RayLines *lines, const RayStart *starts, ptrdiff_t rays, ptrdiff_t limit,
+                                   ptrdiff_t *met) nogil
+    ptrdiff_t c_trace_rays "trace_rays"(const RayLines *lines, const RayStart *starts, ptrdiff_t rays, ptrdiff_t limit,
+                                        RayEnd *ends, RayPiece *pieces, ptrdiff_t room) nogil
+
+cdef extern from "motorcycle/walk.h":
+    void c_walk_map "walk_map"(const TriangleMap *map, const ptrdiff_t *corners, const MapPoint *points, const ptrdiff_t *start,
+                               const MapPoint *at, const ptrdiff_t *first, ptrdiff_t walks, const MapPoint *targets,
+                               ptrdiff_t limit, MapPoint *reached) nogil
+
+
+cdef TriangleMap seamless(tuple tables) except *:
+    """Return the map whose coordinates are (t, 3, 2) and whose tables are (t, 3)."""
+    cdef TriangleMap found
+    coordinates, neighbours, edges, turns = tables
+    cdef ptrdiff_t t = len(coordinates)
+    found.triangles = t
+    found.coordinates = <const MapPoint *>reads(coordinates, (t, 3, 2))
+    found.neighbours = reads_indices(neighbours, (t, 3))
+    found.edges = reads_indices(edges, (t, 3))
+    found.turns = reads_indices(turns, (t, 3))
+    if np.any((neighbours < -1) | (neighbours >= t) | (edges < -1) | (edges > 2)):
+        raise ValueError("neighbours beyond the triangles")
+    return found
+
+
+cdef RayLines lines_of(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, double near) except *:
+    cdef RayLines lines
+    lines.map = seamless(tables)
+    lines.node = reads_indices(node, (lines.map.triangles, 3))
+    lines.port = reads_indices(port, (lines.map.triangles, 3, 4))
+    lines.nodes, lines.ports, lines.near = nodes, ports, near
+    if np.any((node < -1) | (node >= nodes)) or np.any((port < -1) | (port >= ports)):
+        raise ValueError("nodes or ports beyond the last")
+    return lines
+
+
+cdef const ptrdiff_t *starts_of(starts, ptrdiff_t nodes, ptrdiff_t ports, ptrdiff_t triangles) except NULL:
+    if np.any(starts < 0) or np.any(starts[:, :5] >= (nodes, ports, triangles, 3, 4)):
+        raise ValueError("starts beyond the last")
+    return reads_indices(starts, (len(starts), 6))
+
+
+def probe_rays(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, double near, starts, ptrdiff_t limit):
+    """Return (r, 2) the node and port that each ray meets, or -1; arguments as in ``motorcycle/trace.h``."""
+    cdef RayLines lines = lines_of(tables, node, port, nodes, ports, near)
+    cdef const ptrdiff_t *rays = starts_of(starts, nodes, ports, lines.map.triangles)
+    cdef ptrdiff_t count = len(starts)
+    met = np.empty((count, 2), dtype=np.intp)
+    cdef ptrdiff_t *to = <ptrdiff_t *>numbers(met, b"i", sizeof(ptrdiff_t), (count, 2), True)
+    with nogil:
+        c_probe_rays(&lines, <const RayStart *>rays, count, limit, to)
+    return met
+
+
+def trace_rays(tuple tables, node, port, ptrdiff_t nodes, ptrdiff_t ports, double near, starts, ptrdiff_t limit,
+               ptrdiff_t room):
+    """Return where rays end (r, 3) and (r, 2), and their pieces (p, 3) and (p, 5), as in ``motorcycle/trace.h``.
+
+    None if there are more pieces than `room`.
+    """
+    cdef RayLines lines = lines_of(tables, node, port, nodes, ports, near)
+    cdef const ptrdiff_t *rays = starts_of(starts, nodes, ports, lines.map.triangles)
+    cdef ptrdiff_t count = len(starts), done, i
+    cdef RayEnd *ends = <RayEnd *>malloc((count + 1) * sizeof(RayEnd))
+    cdef RayPiece *pieces = <RayPiece *>malloc((room + 1) * sizeof(RayPiece))
+    try:
+        if ends == NULL or pieces == NULL:
+            raise MemoryError
+        with nogil:
+            done = c_trace_rays(&lines, <const RayStart *>rays, count, limit, ends, pieces, room)
+        if done == -2:
+            raise MemoryError
+        if done == -1:
+            return None
+        whole = np.empty((count, 3), dtype=np.intp), np.empty((done, 3), dtype=np.intp)
+        real = np.empty((count, 2)), np.empty((done, 5))
+        end_ints = <ptrdiff_t *>numbers(whole[0], b"i", sizeof(ptrdiff_t), (count, 3), True)
+        piece_ints = <ptrdiff_t *>numbers(whole[1], b"i", sizeof(ptrdiff_t), (done, 3), True)
+        end_reals, piece_reals = fills(real[0], (count, 2)), fills(real[1], (done, 5))
+        for i in range(count):
+            end_ints[3 * i], end_ints[3 * i + 1], end_ints[3 * i + 2] = ends[i].kind, ends[i].other, ends[i].place
+            end_reals[2 * i], end_reals[2 * i + 1] = ends[i].along, ends[i].length
+        for i in range(done):
+            piece_ints[3 * i], piece_ints[3 * i + 1] = pieces[i].ray, pieces[i].face
+            piece_ints[3 * i + 2] = pieces[i].axis
+            piece_reals[5 * i], piece_reals[5 * i + 1] = pieces[i].start.x, pieces[i].start.y
+            piece_reals[5 * i + 2], piece_reals[5 * i + 3] = pieces[i].to.x, pieces[i].to.y
+            piece_reals[5 * i + 4] = pieces[i].length
+    finally:
+        free(ends)
+        free(pieces)
+    return whole[0], real[0], whole[1], real[1]
+
+
+def walk_map(tuple tables, corners, points, start, at, first, targets, ptrdiff_t limit):
+    """Return (m, 2) the points where straight walks lead, as in ``motorcycle/walk.h``."""
+    cdef TriangleMap seamless_map = seamless(tables)
+    cdef ptrdiff_t walks = len(start), count = len(targets), t = seamless_map.triangles
+    if np.any((start < 0) | (start >= t)) or np.any((corners < 0) | (corners >= len(points))):
+        raise ValueError("starts or corners beyond the last")
+    if first[0] != 0 or first[-1] != count or np.any(first[1:] < first[:-1]):
+        raise ValueError("visits beyond the last")
+    cdef const ptrdiff_t *corner = reads_indices(corners, (t, 3))
+    cdef const ptrdiff_t *starts = reads_indices(start, (walks,))
+    cdef const ptrdiff_t *firsts = reads_indices(first, (walks + 1,))
+    cdef Read plane = reads(points, (len(points), 2)), froms = reads(at, (walks, 2)), goals = reads(targets, (count, 2))
+    reached = np.empty((count, 2))
+    cdef Written to = fills(reached, (count, 2))
+    with nogil:
+        c_walk_map(&seamless_map, corner, <const MapPoint *>plane, starts, <const MapPoint *>froms, firsts, walks,
+                   <const MapPoint *>goals, limit, <MapPoint *>to)
+    return reached

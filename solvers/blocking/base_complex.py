@@ -1,0 +1,96 @@
+"""The blocks that a quad mesh consists of: what its lines through irregular nodes cut it into.
+
+From every irregular node all edges are followed straight on, through regular nodes, to the boundary or
+another irregular node. Between these lines lie lattices, or rings: these get one more line.
+
+Tarini, Puppo, Panozzo, Pietroni, Cignoni, "Simple quad domains for field aligned mesh parametrization", ACM
+Trans. Graph. 30 (2011), section 3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import split_quads
+from meshonet.solvers.blocking.errors import BlockingError
+
+
+@dataclass(frozen=True, eq=False)
+class BaseComplex:
+    """Blocks of a quad mesh, the edges that bound them, and its chords."""
+
+    mesh: QuadMesh
+    blocks: tuple[Indices, ...]
+    """Lattices (ni, nj) of nodes, right-handed."""
+    bounds: NDArray[np.bool_]
+    """(e,) edges that bound blocks."""
+    chord: Indices
+    """(e,) number of the chord of each edge: opposite sides of a block are of one chord, and so are all edges
+    beside them inside the block."""
+    chords: int
+
+    @property
+    def layout(self) -> Layout:
+        """The blocks as a layout."""
+        return Layout(self.mesh, self.blocks)
+
+    @cached_property
+    def sides(self) -> tuple[Indices, Indices, Indices]:
+        """Sides of the blocks: south, north, west and east of each, one after another.
+
+        Their nodes (k,), where in these each side begins (4 b,), and its chord (4 b,).
+        """
+        lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
+        nodes = np.concatenate(lines)
+        first = np.cumsum([0] + [len(line) for line in lines[:-1]])
+        a, b = nodes[first], nodes[first + 1]
+        keys = self.mesh.edges[:, 0] * len(self.mesh.nodes) + self.mesh.edges[:, 1]
+        edge = np.searchsorted(keys, np.minimum(a, b) * len(self.mesh.nodes) + np.maximum(a, b))
+        return nodes, first, self.chord[edge]
+
+    def moved(self, mesh: QuadMesh) -> BaseComplex:
+        """Return the blocks of the same quads with other nodes."""
+        moved = replace(self, mesh=mesh)
+        if "sides" in self.__dict__:
+            moved.__dict__["sides"] = self.sides
+        return moved
+
+    def side_lengths(self) -> Floats:
+        """Return the lengths (b, 4) of south, north, west and east of each block."""
+        nodes, first, _ = self.sides
+        points = self.mesh.nodes[nodes]
+        step = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+        step[first] = 0.0  # from one side to the next
+        return np.asarray(np.add.reduceat(step, first).reshape(-1, 4))
+
+
+def base_complex(mesh: QuadMesh) -> BaseComplex:
+    """Return the blocks of a quad mesh.
+
+    Lines run through periodic sides to their partners; blocks end there.
+
+    Raises BlockingError: the mesh is not manifold, or what its lines bound are no lattices.
+    """
+    closed = mesh.closed
+    quads, named = (np.ascontiguousarray(of.quads, dtype=np.intp) for of in (closed, mesh))
+    bounds = np.zeros(len(closed.edges), dtype=bool)
+    bounds[closed.edge_of[mesh.twin < 0]] = True
+    found = None
+    if closed.manifold:
+        found = split_quads(quads, named, closed.edge_of, closed.twin, closed.irregular, bounds)
+    if found is None:
+        raise BlockingError("the lines of the quad mesh do not bound lattices")
+    _, blocks, chord, chords = found
+    if closed is not mesh:  # an edge along periodic sides is two of the mesh
+        edge = np.empty(len(mesh.edges), dtype=np.intp)
+        edge[mesh.edge_of] = closed.edge_of
+        bounds, chord = bounds[edge], chord[edge]
+    return BaseComplex(mesh, tuple(blocks), bounds, chord, chords)

@@ -1,0 +1,176 @@
+"""The triangles of a domain as a surface: what is around each vertex, where walls are, gradients.
+
+Corner c = 3 f + i is corner i of triangle f; edge i of a triangle goes from its corner i to the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+from meshonet.geometry.errors import SolverError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import surface_fans
+from meshonet.solvers.blocking.triangulation import Triangulation
+
+NEXT = np.array([1, 2, 0])
+PREVIOUS = np.array([2, 0, 1])
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Triangles joined at their edges."""
+
+    triangulation: Triangulation
+    vertices: Indices
+    """(t, 3) vertex at each corner, counter-clockwise."""
+    neighbours: Indices
+    """(t, 3) triangle across each edge, -1 at walls."""
+    neighbour_edge: Indices
+    """(t, 3) number of that edge in the neighbour, -1 at walls."""
+    periods: Indices
+    """(t, 3) how often the period is added to points when an edge is crossed."""
+
+    @classmethod
+    def of(cls, triangulation: Triangulation) -> Surface:
+        """Return the surface of a triangulation; the stretches of a periodic domain are glued.
+
+        Raises SolverError: the vertices on the two stretches do not correspond.
+        """
+        joined = (triangulation.triangles, triangulation.neighbours, triangulation.neighbour_edge)
+        vertices, neighbours, edge = (np.array(a, dtype=np.intp, order="C") for a in joined)
+        periods = np.zeros_like(vertices)
+        if triangulation.domain.periodic is not None:
+            first, second = periodic_pairs(triangulation)
+            same = np.arange(len(triangulation.points))
+            same[second] = first
+            triangle, side = np.nonzero(neighbours < 0)
+            walls = zip(vertices[triangle, side].tolist(), triangle.tolist(), side.tolist(), strict=True)
+            leaving = {start: (f, e) for start, f, e in walls}
+            # along the second stretch the loop runs the other way
+            for here, there in zip(first[:-1].tolist(), second[1:].tolist(), strict=True):
+                (f, e), (g, i) = leaving[here], leaving[there]
+                neighbours[f, e], neighbours[g, i], edge[f, e], edge[g, i] = g, f, i, e
+                periods[f, e], periods[g, i] = 1, -1
+            vertices = same[vertices]
+        return cls(triangulation, vertices, neighbours, edge, periods)
+
+    @property
+    def size(self) -> int:
+        """Number of vertices, n."""
+        return len(self.triangulation.points)
+
+    @property
+    def arrays(self) -> tuple[Indices, Indices, Indices]:
+        """What kernels take."""
+        return self.vertices, self.neighbours, self.neighbour_edge
+
+    @cached_property
+    def fans(self) -> tuple[Indices, Indices]:
+        """Where the corners around each vertex start (n + 1,) in the list of all corners (3 t,)."""
+        start, corners, reached = surface_fans(self.arrays, self.size)
+        if reached != len(corners):
+            raise SolverError("triangles that meet in a point only")
+        return start, corners
+
+    @cached_property
+    def edges(self) -> Complexes:
+        """(t, 3) edge i of each triangle as a complex number."""
+        x, y = np.moveaxis(self.triangulation.points[self.triangulation.triangles], 2, 0)
+        z = x + 1j * y
+        return np.asarray(z[:, NEXT] - z)
+
+    @cached_property
+    def areas(self) -> Floats:
+        """(t,) areas of the triangles."""
+        return np.asarray(0.5 * (np.conj(self.edges[:, 0]) * -self.edges[:, 2]).imag)
+
+    @cached_property
+    def angles(self) -> Floats:
+        """(t, 3) angles at the corners."""
+        return np.asarray(np.angle(-self.edges[:, PREVIOUS] / self.edges))
+
+    @cached_property
+    def gradients(self) -> Complexes:
+        """(t, 3) gradient of the function that is linear in a triangle, 1 at a corner, 0 at the others."""
+        return np.asarray(1j * self.edges[:, NEXT] / (2.0 * self.areas[:, None]))
+
+    @cached_property
+    def walls(self) -> tuple[Indices, Indices]:
+        """Triangles and edges (w,) on walls."""
+        triangles, edges = np.nonzero(self.neighbours < 0)
+        return triangles, edges
+
+    @cached_property
+    def on_wall(self) -> NDArray[np.bool_]:
+        """(n,) vertices on walls."""
+        flags = np.zeros(self.size, dtype=bool)
+        flags[self.vertices[self.walls]] = True
+        return flags
+
+    @cached_property
+    def used(self) -> NDArray[np.bool_]:
+        """(n,) vertices of any triangle: all but those that are the same as others across a period."""
+        return np.asarray(np.diff(self.fans[0]) > 0)
+
+    @cached_property
+    def vertex_of(self) -> Indices:
+        """(n,) the vertex that each point of the triangulation is."""
+        number = np.arange(self.size)
+        number[self.triangulation.triangles] = self.vertices
+        return number
+
+    @cached_property
+    def edge_weights(self) -> Floats:
+        """(t, 3) integral of the product of the gradients at an edge's ends: minus half a cotangent."""
+        g = self.gradients
+        return np.asarray(self.areas[:, None] * (g * np.conj(g[:, NEXT])).real)
+
+    @cached_property
+    def masses(self) -> Floats:
+        """(n,) a third of the triangles around each vertex."""
+        return self.gather(np.repeat(self.areas[:, None] / 3.0, 3, axis=1))
+
+    @cached_property
+    def euler(self) -> int:
+        """Euler's number: 1 for a disc, 0 for an annulus."""
+        inner = int((self.neighbours >= 0).sum()) // 2
+        return int(self.used.sum()) - inner - len(self.walls[0]) + len(self.vertices)
+
+    def gather(self, corners: Floats) -> Floats:
+        """Return the sums (n,) of numbers of corners (t, 3) around each vertex."""
+        return np.asarray(np.bincount(self.vertices.ravel(), corners.ravel(), self.size))
+
+    def edge_size(self, vertices: Indices) -> Floats:
+        """Return the mean length of the edges around each of some vertices."""
+        lengths = self.gather(np.abs(self.edges))
+        return np.asarray(lengths[vertices] / np.diff(self.fans[0])[vertices])
+
+
+def periodic_pairs(triangulation: Triangulation) -> tuple[Indices, Indices]:
+    """Return the vertices (m,) along the first stretch of a periodic domain, and their copies on the second.
+
+    Raises SolverError: there is not one for the other.
+    """
+    periodic = triangulation.domain.periodic
+    if periodic is None:
+        raise ValueError("a domain without periodic stretches")
+    outer = np.flatnonzero(triangulation.loop == 0)
+    length = triangulation.domain.loops[0].length
+    (start, stop), (_, end) = periodic.first, periodic.second
+    span, near = (stop - start) % length, 1e-9 * length
+    along = np.mod(triangulation.arc[outer] - start + near, length) - near
+    back = np.mod(end - triangulation.arc[outer] + near, length) - near
+    first, second = outer[along <= span + near], outer[back <= span + near]
+    first = first[np.argsort(along[along <= span + near])]
+    second = second[np.argsort(back[back <= span + near])]
+    points = triangulation.points
+    if len(first) == len(second):
+        apart = np.abs(points[first] + periodic.shift - points[second]).max()
+        if apart <= 1e-6 * triangulation.domain.extent:
+            return first, second
+    raise SolverError("vertices on periodic sides do not correspond")

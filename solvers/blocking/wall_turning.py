@@ -1,0 +1,50 @@
+"""By how much walls turn between two places on them, and the corners there."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.polygon.corners import Indices, turning
+
+
+@lru_cache(maxsize=64)
+def _table(loop: Loop) -> tuple[Floats, Floats]:
+    """Return the arc lengths (n + 1,) of a loop's points and how much it has turned up to each, in degrees.
+
+    What it turns by at a point is spread over the segments on both sides.
+    """
+    at = np.abs(np.degrees(turning(loop.curve.points, closed=True)))
+    at[list(loop.corners)] = 0.0
+    along = 0.5 * (at + np.roll(at, -1))
+    return np.append(loop.curve.knots, loop.length), np.concatenate([[0.0], np.cumsum(along)])
+
+
+def turning_between(loop: Loop, first: Floats, last: Floats) -> Floats:
+    """Return the degrees (k,) by which a loop turns, either way, from arc lengths `first` to `last` beyond.
+
+    Corners are left out.
+    """
+    arcs, turned = _table(loop)
+    return _turned(loop, last, arcs, turned) - _turned(loop, first, arcs, turned)
+
+
+def _turned(loop: Loop, arc: Floats, arcs: Floats, turned: Floats) -> Floats:
+    rounds = np.floor(arc / loop.length)
+    return np.asarray(np.interp(arc - rounds * loop.length, arcs, turned) + rounds * turned[-1])
+
+
+def corners_between(loop: Loop, first: float, last: float) -> tuple[Floats, Indices]:
+    """Return the corners of a loop strictly between two arc lengths, in that direction, and their cells."""
+    low, high = min(first, last), max(first, last)
+    rounds = np.floor(low / loop.length) + np.arange(3)
+    arcs = (loop.corner_arcs + rounds[:, None] * loop.length).ravel()
+    cells = np.tile(loop.corner_cells, 3)
+    slack = 1e-9 * loop.length
+    inside = np.flatnonzero((arcs > low + slack) & (arcs < high - slack))
+    if last < first:
+        inside = inside[::-1]
+    return arcs[inside], cells[inside]

@@ -1,0 +1,113 @@
+"""Domains in, valid grids of blocks out."""
+
+import numpy as np
+import pytest
+from known_meshes import circle
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.errors import SolverError
+from meshonet.solvers.blocking import decompose as decomposition
+from meshonet.solvers.blocking.block_grid import block_grid, fine_layout
+from meshonet.solvers.blocking.decompose import decompose
+from meshonet.solvers.blocking.errors import BlockingError
+
+STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
+
+
+def rectangle(width, height):
+    return np.array([[0.0, 0], [width, 0], [width, height], [0, height]])
+
+
+def wing(points=60):
+    """Return a symmetric wing section with a sharp edge, its chord from 0 to 1."""
+    x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, points)))
+    y = 0.6 * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    return np.concatenate([np.stack([x, y], axis=1)[::-1], np.stack([x, -y], axis=1)[1:-1]])
+
+
+DOMAINS = {
+    "step": ([STEP], 3, 0),
+    "corner": ([np.array([[0.0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]])], 3, 0),
+    "pipe": ([circle(1.0, 120)], 5, 4),
+    "ring": ([circle(2.0, 120), circle(0.8, 60, (0.3, 0.1))], 1, 0),
+    "cylinder in a channel": ([rectangle(2.2, 0.41), circle(0.05, 80, (0.2, 0.2))], 12, 4),
+    "wing in a tunnel": ([rectangle(6, 3), wing() + np.array([2.0, 1.5])], 6, 0),
+    "plate": ([rectangle(4, 2), circle(0.4, 80, (1, 1)), circle(0.4, 80, (3, 1))], 40, 8),
+}
+"""Loops, and the most blocks and irregular nodes that an engineer would want."""
+
+
+def cells_of(grid: Grid) -> np.ndarray:
+    """Return the signed areas of the corner triangles of all cells."""
+    areas = []
+    for block in grid.blocks:
+        z = block.nodes[..., 0] + 1j * block.nodes[..., 1]
+        corners = [z[:-1, :-1], z[1:, :-1], z[1:, 1:], z[:-1, 1:]]
+        for k in range(4):
+            u, v = corners[(k + 1) % 4] - corners[k], corners[k - 1] - corners[k]
+            areas.append(0.5 * (np.conj(u) * v).imag.ravel())
+    return np.concatenate(areas)
+
+
+@pytest.mark.parametrize("name", DOMAINS)
+def test_blocks_of_an_engineer(name: str) -> None:
+    loops, blocks, irregular = DOMAINS[name]
+    domain = Domain.of_polygons(loops)
+    grid, layout, facts = block_grid(domain, cells=1200)
+    assert (facts.blocks <= blocks, facts.irregular <= irregular) == (True, True), facts
+    assert facts.cells == pytest.approx(1200, rel=0.2)
+    areas = cells_of(grid)
+    assert areas.min() > 0
+    assert 0.5 * areas.sum() == pytest.approx(domain.area, rel=2e-3)
+    # every side of a block is either connected, once, or a patch, once
+    cells = sum(2 * (block.counts[0] + block.counts[1] - 2) for block in grid.blocks)
+    joined = sum(2 * (c.range[0][1] - c.range[0][0]) for c in grid.connections)
+    assert joined + sum(patch.stop - patch.start for patch in grid.patches) == cells
+    assert {patch.name for patch in grid.patches} == {"outer", "body", "body2"} & {
+        name for loop in domain.loops for name in loop.names
+    }
+    for loop in domain.loops:  # its corners are nodes
+        for corner in loop.curve.points[list(loop.corners)]:
+            assert (layout.mesh.nodes == corner).all(axis=1).any()
+
+
+def test_the_same_twice_bitwise() -> None:
+    loops = DOMAINS["cylinder in a channel"][0]
+    first, second = (block_grid(Domain.of_polygons(loops), cells=600)[0] for _ in range(2))
+    for one, other in zip(first.blocks, second.blocks, strict=True):
+        np.testing.assert_array_equal(one.nodes, other.nodes)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1e9])
+def test_blocks_do_not_depend_on_the_unit(scale: float) -> None:
+    domain = Domain.of_polygons([scale * STEP + 3 * scale])
+    grid, _, facts = block_grid(domain, cells=300)
+    assert (facts.blocks, facts.irregular) == (3, 0)
+    assert 0.5 * cells_of(grid).sum() == pytest.approx(domain.area, rel=1e-9)
+
+
+def test_one_layout_at_many_resolutions() -> None:
+    layout = decompose(Domain.of_polygons(DOMAINS["pipe"][0]))
+    for cells in (150, 1500, 15000):
+        fine = fine_layout(layout, cells=cells)
+        assert fine.cells == pytest.approx(cells, rel=0.2)
+        assert len(fine.blocks) == len(layout.blocks)
+    assert fine_layout(layout, cell_size=0.1).cells == pytest.approx(np.pi / 0.01, rel=0.3)
+
+
+def test_another_attempt_where_one_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    seeds = []
+    found = decomposition.seamless_map
+
+    def failing(domain, count, seed):
+        seeds.append(seed)
+        if seed < 2:
+            raise SolverError("no map")
+        return found(domain, count=count, seed=seed)
+
+    monkeypatch.setattr(decomposition, "seamless_map", failing)
+    assert len(decompose(Domain.of_polygons([STEP])).blocks) == 3
+    assert seeds == [0, 1, 2]
+    with pytest.raises(BlockingError, match="no blocks found in 2 attempts: no map"):
+        decompose(Domain.of_polygons([STEP]), attempts=2)
