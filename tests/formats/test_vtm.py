@@ -66,7 +66,7 @@ def test_a_missing_block_is_named(tmp_path: Path) -> None:
     write_grids(tmp_path / "g.vtm", [duct()])
     text = (tmp_path / "g.vtm").read_text()
     (tmp_path / "g.vtm").write_text(re.sub(r".*block-1.vts.*\n", "", text))
-    with pytest.raises(InputError, match="connection of east of block 0 to .* of block 1 leaves its side"):
+    with pytest.raises(InputError, match=r"connection of east of block 0 to .* of block 1 leaves its side"):
         list(read_grids(open_source(str(tmp_path / "g.vtm"))))
 
 
