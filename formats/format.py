@@ -13,8 +13,10 @@ from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
+
+if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
 
 Heights: TypeAlias = tuple[float, ...]
 """z of each plane of a grid that is repeated in z, increasing from 0; none for a flat one."""

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.layout import Layout
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item, Name, Named
 from meshonet_cli.batch.timed import Timed
@@ -21,8 +20,10 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
+    from meshonet.geometry.layout.layout import Layout
+
 T = TypeVar("T", bound=Named)
-S = TypeVar("S", bound=Grid | Boundary | Layout)
+S = TypeVar("S", bound="Grid | Boundary | Layout")
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
@@ -197,9 +198,12 @@ def _streamed(
 
 
 def _same_size(what: Grid | Boundary | Layout, size: str | None) -> str:
-    if isinstance(what, Layout):
+    if isinstance(what, Grid):
+        counts = [block.counts for block in what.blocks]
+    elif isinstance(what, Boundary):
+        counts = [(what.ni, what.nj)]
+    else:  # files of layouts hold one
         return ""
-    counts = [block.counts for block in what.blocks] if isinstance(what, Grid) else [(what.ni, what.nj)]
     own = f"{', '.join('x'.join(map(str, count)) for count in counts)} {what.topology}"
     if size is not None and own != size:
         short, other = (text if len(text) < 60 else f"{len(counts)} blocks" for text in (own, size))
