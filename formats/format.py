@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
@@ -37,8 +37,8 @@ class Format:
     sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
     extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
-    blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh; not
-        at all if empty.
+    blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh;
+        not at all if empty.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that it cannot be written to a stream.
@@ -131,3 +131,10 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
     if first is None:
         raise InputError("there is no grid to write", "check the input")
     return first
+
+
+def size_of(sample: Boundary | Grid) -> str:
+    """Return the counts of nodes and the topology of a grid or boundary, as words."""
+    if isinstance(sample, Grid) and sample.topology == "blocks":
+        return "blocks of " + ", ".join("x".join(map(str, block.counts)) for block in sample.blocks)
+    return f"{sample.ni}x{sample.nj} {sample.topology}"

@@ -98,10 +98,10 @@ _FORMATS: tuple[Format, ...] = (
         sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), extrudes=True, names_patches=True,
     ),
     _format(
-        "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts",
+        "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
         "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
-        extrudes=True, names_patches=True, many=True, beside=True,
+        extrudes=True, names_patches=True, blocks="kept", many=True, beside=True,
     ),
     _format(
         "vtk", ".vtk", "legacy VTK structured grid", "vtk.legacy:read_grids vtk.legacy:write_grids",
@@ -118,7 +118,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
-        "cgns.read:read_grids cgns.write:write_grids",
+        "cgns.read:read_grids cgns.write:write_grids", blocks="kept",
         sniff=is_cgns, extrudes=True, names_patches=True, many=True,
     ),
     _format(
@@ -130,8 +130,8 @@ _FORMATS: tuple[Format, ...] = (
         "gmsh.geo:write_grids", names_patches=True, blocks="merged",
     ),
     _format(
-        "nmf", ".nmf", "NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
-        "plot3d.nmf:write_grids", extrudes=True, names_patches=True,
+        "nmf", ".nmf", "NASA neutral map file: boundary conditions and interfaces of Plot3D blocks",
+        "plot3d.nmf:write_grids", extrudes=True, names_patches=True, blocks="kept",
     ),
     _format(
         "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
@@ -140,9 +140,9 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
-        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt)",
+        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), with the .nmf beside it",
         "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
-        extrudes=True, many=True, choices=CHOICES, reads_options=True,
+        extrudes=True, blocks="kept", many=True, choices=CHOICES, reads_options=True,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
     _format(

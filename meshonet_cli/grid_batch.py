@@ -27,7 +27,6 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from meshonet_cli.options import CheckOptions, FileOptions, LayerOptions, SamplingOptions, SideOptions
 
-BLOCKS = "blocks"  # the method of grids of many blocks
 SHARED = 16  # members that one of several processes gets at a time at the most, when they are solved together
 
 
@@ -61,7 +60,7 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
         cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
-    if solution.method == BLOCKS:
+    if grid.topology == "blocks":
         from meshonet.geometry.quality.blocks import block_figures
 
         with report.timed("quality"):

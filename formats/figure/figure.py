@@ -60,7 +60,9 @@ def draw(
     parts = [_visible(grid, singles, view) for view in views]
     figure, axes, bar = _frame([_ratio(view) for view in views], colouring is not None)
     mesh = None
-    limits = _limits(colouring, parts[0]) if colouring else (0.0, 1.0)
+    # near a body one block has the colours of what matters there; many blocks have those of the whole
+    ruling = parts[-1] if grid.topology == "blocks" else parts[0]
+    limits = _limits(colouring, ruling) if colouring else (0.0, 1.0)
     for ax, view, seen in zip(axes, views, parts, strict=True):
         pixels = ax.get_window_extent().width / (view[1] - view[0])
         lines = _lines(grid, singles, seen, pixels, every)

@@ -1,7 +1,7 @@
 """Gmsh's ``.geo``: the outer edges as transfinite curves, for those who mesh or change it in Gmsh.
 
-The nodes of the boundary are kept; those inside are Gmsh's own interpolation. Each block is a surface; O and C
-grids become two, split at the middle of i, since no transfinite surface may meet itself.
+The nodes of the boundary are kept; those inside are Gmsh's own interpolation. Each block is a surface; O and
+C grids become two, split at the middle of i, since no transfinite surface may meet itself.
 https://gmsh.info/doc/texinfo/gmsh.html#Structured-grids
 """
 

@@ -33,7 +33,7 @@ _KINDS = {2: 1, 4: 3, 8: 5}
 
 
 class Link(NamedTuple):
-    """A periodic patch: its tag, that of its master, the matrix from there, its nodes and the master's (n, 2)."""
+    """A periodic patch: its tag, its master's, the matrix from there, its nodes and the master's (n, 2)."""
 
     tag: int
     master: int

@@ -76,16 +76,10 @@ def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
     """Return the number of a motion among those known, which it may join, and whether it goes back there."""
     for number, known in enumerate(motions):
         for backwards, like in ((False, motion), (True, motion.inverse())):
-            if _alike(known, like):
+            if known.alike(like, _SAME):
                 return number, backwards
     motions.append(motion)
     return len(motions) - 1, False
-
-
-def _alike(first: Motion, second: Motion) -> bool:
-    corner = np.eye(2) * max(1e-300, *map(abs, (*first.shift, *second.shift, float(bool(first.turn)))))
-    here, there = first(np.vstack([0 * corner[:1], corner])), second(np.vstack([0 * corner[:1], corner]))
-    return bool(np.abs(here - there).max() <= _SAME * np.abs(corner).max())
 
 
 def _edges(connection: Connection, numbers: Sequence[Indices]) -> tuple[Indices, Indices]:

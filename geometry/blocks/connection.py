@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Range
+from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.errors import InputError
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
@@ -63,6 +63,12 @@ class Motion:
         turn = np.array(self.turn)
         angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
         return angle, np.linalg.solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
+
+    def alike(self, other: Motion, tolerance: float) -> bool:
+        """Return whether two motions in the plane carry nodes to the same place, to a part of the shifts."""
+        size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
+        frame = size * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        return bool(np.abs(self(frame) - other(frame)).max() <= tolerance * size)
 
     def inverse(self) -> Motion:
         """Return the motion back, to rounding."""
@@ -129,6 +135,26 @@ class Connection:
         """Return side, first and last node of the parts of a planar block's boundary that it connects."""
         ends = ((self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range))
         return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
+
+
+def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[int, ...]]) -> None:
+    """Raise InputError for a connection of blocks, sides or nodes that there are none of.
+
+    `counts` are the nodes of every block along each direction.
+    """
+    for each in connections:
+        ends = (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range)
+        for block, side, span in ends:
+            known = 0 <= block < len(counts) and side in tuple(PLACES)[: 2 * len(counts[block])]
+            most = face_counts(counts[block], side) if known else ()
+            if len(span) != len(most) or any(
+                not 0 <= start < stop < n for (start, stop), n in zip(span, most, strict=True)
+            ):
+                raise InputError(f"{each} leaves its side", "connect sides and nodes that there are")
+        if len(each.orientation) != len(each.range):
+            raise InputError(f"{each} has {len(each.orientation)} directions", f"give {len(each.range)}")
+        if sorted(abs(way) for way in each.orientation) != list(range(1, len(each.range) + 1)):
+            raise InputError(f"{each} has directions {each.orientation}", "give each direction once")
 
 
 def _part(nodes: NDArray[Any], span: Range) -> NDArray[Any]:

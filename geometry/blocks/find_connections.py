@@ -13,16 +13,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block, face_of
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.block import PLACES, Block
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.rounding import rounding
-from meshonet.geometry.blocks.shared_nodes import shared_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
@@ -35,9 +35,6 @@ _DIRECTION = np.array([np.cos(0.7), np.sin(0.7)])
 
 _MOST = 0.25
 """Nodes farther apart than this part of an edge are different, however coarsely they were rounded."""
-_PASSES = 9
-"""Periodic sides that end on other ones need one more pass each."""
-
 Stretch: TypeAlias = tuple[int, Side, int, int]
 """Block, side, first and last node of a part of its boundary."""
 
@@ -49,49 +46,30 @@ def find_connections(
 
     Nodes are the same when they are no farther apart than `tolerance` edges, or than the digits tell that
     their coordinates were rounded to (`meshonet.geometry.blocks.rounding`). Nodes of a connection need not be
-    equal yet: `with_equal_nodes` makes them. `without` says which stretches are known to be no interface.
-    Where more than two sides lie on each other, a block is joined to itself first, then the first to the next.
+    equal yet: `with_equal_nodes` (`meshonet.geometry.blocks.equal_nodes`) makes them. `without` has stretches
+    that are known to be no interface. Where more than two sides lie on each other, a block is joined to
+    itself first, then one to the next.
 
     Raises InputError: a block that is not planar.
     """
     edges = _edges(blocks, without)
-    own, donor = _pairs(edges, tolerance)
     free = np.ones(len(edges.start), dtype=bool)
+    starts = np.searchsorted(edges.block, np.arange(len(blocks) + 1))
     found = []
-    for run in sorted(_runs(edges, own, donor), key=lambda run: run.rank(edges)):
-        for first, last in run.parts(free):
-            free[run.own[first:last]] = free[run.donor[first:last]] = False
-            found.append(_connection(edges, run.own[first:last], run.donor[first:last]))
+    for first, last in [*pairwise(starts.tolist()), (0, len(free))]:  # each block by itself, then all
+        among = first + np.flatnonzero(free[first:last])
+        runs = _runs(edges, *_pairs(edges, among, tolerance))
+        for run in sorted(runs, key=_Run.rank):
+            for start, stop in run.parts(free):
+                own, donor = run.own[start:stop], run.donor[start:stop]
+                free[own] = free[donor] = False
+                found.append(_connection(edges, own, donor))
     return tuple(sorted(found, key=order))
 
 
 def order(connection: Connection) -> tuple[int, int, int]:
     """Return what connections are sorted by: block, side and first node."""
     return connection.block, list(PLACES).index(connection.side), connection.range[0][0]
-
-
-def with_equal_nodes(blocks: Sequence[Block], connections: Sequence[Connection]) -> tuple[Block, ...]:
-    """Return `blocks` with the nodes that `connections` join made equal, bitwise.
-
-    Joined nodes become the first of them; those of the second of two periodic sides the first ones moved.
-    """
-    numbers = shared_nodes([block.counts for block in blocks], connections)
-    shared = np.concatenate([block.nodes.reshape(-1, block.nodes.shape[-1]) for block in blocks])
-    _, first = np.unique(np.concatenate([number.ravel() for number in numbers]), return_index=True)
-    shared = shared[first]
-
-    def face(block: int, side: Side) -> Indices:
-        return np.asarray(face_of(numbers[block], side)[..., None])
-
-    periodic = [(each, *replace(each, transform=None).nodes(face)) for each in connections if each.transform]
-    for _ in range(_PASSES if periodic else 0):
-        before = shared.copy()
-        for each, own, donor in periodic:
-            move: Motion = each.transform or Motion()
-            shared[donor[..., 0]] = move(shared[own[..., 0]])
-        if np.array_equal(shared, before):
-            break
-    return tuple(Block(shared[number], finite=True) for number in numbers)
 
 
 @dataclass(frozen=True)
@@ -106,43 +84,44 @@ class _Edges:
     slack: Floats
     """How far a node may be from where it was meant."""
 
-    @property
-    def length(self) -> Floats:
-        return np.hypot(*(self.end - self.start).T)
+    def reach(self, tolerance: float) -> Floats:
+        """Return how far nodes that are the same may be apart."""
+        length = np.hypot(*(self.end - self.start).T)
+        return np.minimum(np.maximum(tolerance * length, self.slack), _MOST * length)
 
 
 def _edges(blocks: Sequence[Block], without: Iterable[Stretch]) -> _Edges:
     known = list(without)
     lines, blocks_of, sides, cells, used = [], [], [], [], []
-    for number, block in enumerate(blocks):
-        if block.nodes.shape[2:] != (2,):
+    for number, each in enumerate(blocks):
+        if each.nodes.shape[2:] != (2,):
             raise InputError(f"block {number} is not planar", "find connections of planar blocks")
-        for place, (side, way) in enumerate(AROUND):
-            face = block.face(side)
-            cell = np.arange(len(face) - 1)
-            keep = np.ones(len(cell), dtype=bool)
+        for turn, (side, way) in enumerate(AROUND):
+            face = each.face(side)
+            count = len(face) - 1
+            keep = np.ones(count, dtype=bool)
             for _, _, first, last in (s for s in known if s[:2] == (number, side)):
                 keep[first:last] = False
             lines.append(np.stack([face[:-1], face[1:]], axis=1)[::way, ::way])
-            cells.append(cell[::way])
+            cells.append(np.arange(count)[::way])
             used.append(keep[::way])
-            blocks_of.append(np.full(len(cell), number))
-            sides.append(np.full(len(cell), place))
+            blocks_of.append(np.full(count, number))
+            sides.append(np.full(count, turn))
     line, keep = np.concatenate(lines), np.concatenate(used)
     keep &= (line[:, 0] != line[:, 1]).any(axis=1)  # a side may be a point
     line = line[keep]
     about = np.abs(line).max(axis=(1, 2))
     digits = rounding(line.reshape(-1))
-    block_of, side, cell = (np.concatenate(parts)[keep] for parts in (blocks_of, sides, cells))
-    return _Edges(line[:, 0], line[:, 1], block_of, side, cell, 2.0 * digits(about))
+    block, place, cell = (np.concatenate(parts)[keep] for parts in (blocks_of, sides, cells))
+    return _Edges(line[:, 0], line[:, 1], block, place, cell, 2.0 * digits(about))
 
 
-def _pairs(edges: _Edges, tolerance: float) -> tuple[Indices, Indices]:
+def _pairs(edges: _Edges, among: Indices, tolerance: float) -> tuple[Indices, Indices]:
     """Return pairs of edges, the first one of the lower number, that join the same nodes in opposite ways."""
-    reach = np.minimum(np.maximum(tolerance * edges.length, edges.slack), _MOST * edges.length)
-    place = 0.5 * (edges.start + edges.end) @ _DIRECTION
-    row = np.argsort(place, kind="stable")
-    ordered = place[row]
+    reach = edges.reach(tolerance)
+    place = 0.5 * (edges.start[among] + edges.end[among]) @ _DIRECTION
+    row = among[np.argsort(place, kind="stable")]
+    ordered = np.sort(place, kind="stable")
     stop = np.searchsorted(ordered, ordered + reach[row], side="right")
     count = np.maximum(stop - np.arange(len(row)) - 1, 0)
     first = np.repeat(np.arange(len(row)), count)
@@ -163,10 +142,9 @@ class _Run(NamedTuple):
     own: Indices
     donor: Indices
 
-    def rank(self, edges: _Edges) -> tuple[bool, int, int, int]:
+    def rank(self) -> tuple[int, int, int]:
         """Return what decides between runs that claim the same edges."""
-        a, b = self.own[0], self.donor[0]
-        return bool(edges.block[a] != edges.block[b]), -len(self.own), int(a), int(b)
+        return -len(self.own), int(self.own[0]), int(self.donor[0])
 
     def parts(self, free: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> Iterator[tuple[int, int]]:
         """Yield the first place and that behind the last one of each part of which no edge is taken."""

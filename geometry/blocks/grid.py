@@ -23,7 +23,14 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connected, Connection, connections_of, topology_of, wake_cells
+from meshonet.geometry.blocks.connection import (
+    Connected,
+    Connection,
+    check_connections,
+    connections_of,
+    topology_of,
+    wake_cells,
+)
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
 
@@ -63,7 +70,9 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
-        check_patches(self.patches, [block.counts for block in self.blocks])
+        counts = [block.counts for block in self.blocks]
+        check_patches(self.patches, counts)
+        check_connections(self.connections, counts)
         for connection in self.connections:
             connection.check(self.face)
 

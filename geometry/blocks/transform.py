@@ -22,7 +22,7 @@ from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.find_connections import with_equal_nodes
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -165,13 +165,16 @@ def turned(grid: Grid) -> Grid:
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
     planar(grid)
     last = [block.counts[0] - 1 for block in grid.blocks]
-    patches = []
-    for patch in grid.patches:
-        side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last[patch.block])
-        patches.append(replace(patch, side=side, start=start, stop=stop))
+    patches = tuple(turned_patch(patch, last[patch.block]) for patch in grid.patches)
     connections = tuple(_turned_connection(each, last) for each in grid.connections)
     blocks = tuple(Block(np.swapaxes(block.nodes, 0, 1)[:, ::-1], finite=True) for block in grid.blocks)
-    return replace(grid, blocks=blocks, patches=tuple(patches), connections=connections)
+    return replace(grid, blocks=blocks, patches=patches, connections=connections)
+
+
+def turned_patch(patch: Patch, last: int) -> Patch:
+    """Return a patch of a block whose last node along xi has the number `last`, turned as `turned` does."""
+    side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last)
+    return replace(patch, side=side, start=start, stop=stop)
 
 
 def _turned_connection(each: Connection, last: list[int]) -> Connection:

@@ -73,6 +73,7 @@ class _Ring:
 def _boundary(grid: Grid, numbers: tuple[Indices, ...]) -> dict[int, tuple[int, str]]:
     """Return for each boundary node the next one, the domain on the left, and the name of that edge."""
     after: dict[int, tuple[int, str]] = {}
+    named = {(p.name, p.block, p.side) for p in grid.patches}
     for patch in [*grid.outer_patches(), *_periodic_sides(grid)]:
         line = face_of(numbers[patch.block], patch.side)[patch.start : patch.stop + 1]
         for a, b in pairwise(line[:: AROUND[patch.side]].tolist()):
@@ -80,7 +81,7 @@ def _boundary(grid: Grid, numbers: tuple[Indices, ...]) -> dict[int, tuple[int, 
                 x, y = grid.face(patch.block, patch.side)[int(np.argmax(line == a))]
                 problem = f"blocks overlap at ({x:.6g}, {y:.6g}) of block {patch.block}"
                 raise InputError(problem, "check that a side is connected to one other")
-            after[a] = (b, patch.name)
+            after[a] = (b, patch.name if (patch.name, patch.block, patch.side) in named else "outer")
     return after
 
 

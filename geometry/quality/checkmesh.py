@@ -28,6 +28,7 @@ from itertools import chain
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.across import across, planar, rows_beside
@@ -72,6 +73,23 @@ def faces(grid: Grid) -> Faces:
     within = (face for number, block in blocks for face in _within(block.nodes, number))
     boxes = ((0, 0, _box_ratio(block.nodes), number) for number, block in blocks)
     return _summed(chain(within, _across(grid)), _outer(grid), boxes)
+
+
+def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
+    """Return the cells (block, i, j) with a face beyond a non-orthogonality, in degrees, or a skewness."""
+    found: list[tuple[int, int, int]] = []
+    for number, block in enumerate(grid.blocks):
+        for i, j, angles, skews, _ in _within(block.nodes, number):
+            found += _placed(number, i, j, (angles > angle) | (skews > skew))
+    for i, j, angles, skews, at in _across(grid):
+        found += _placed(at or 0, i, j, (angles > angle) | (skews > skew))
+    for i, j, skews, at in _outer(grid):
+        found += _placed(at or 0, i, j, skews > skew)
+    return found
+
+
+def _placed(block: int, i: int, j: int, where: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+    return [(block, i + a, j + b) for a, b in np.argwhere(where).tolist()]
 
 
 def _summed(inside: Iterable[Inside], outside: Iterable[Values], box_ratios: Iterable[Values]) -> Faces:

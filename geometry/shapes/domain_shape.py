@@ -18,6 +18,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
@@ -42,6 +43,7 @@ class DomainShape:
     unit : length that Reynolds numbers are based on: the extent of its bodies, or an airfoil's chord.
     far_field : whether a far field was put around bodies.
     layout : its blocks, where the input has them.
+    given : the grid of many blocks that it is the domain of, where the input is one.
     """
 
     domain: Domain
@@ -50,6 +52,7 @@ class DomainShape:
     unit: float = 0.0
     far_field: bool = False
     layout: Layout | None = None
+    given: Grid | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         if not self.unit:

@@ -18,6 +18,7 @@ from meshonet.solvers.blocking.size_metric import SizeMetric
 JOIN = 1.1
 """Ratio of the first cell outside a ring to the last one inside."""
 
+
 @dataclass(frozen=True)
 class LayerSettings:
     """Layers of cells at walls.
@@ -39,8 +40,8 @@ class LayerSettings:
         return self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
 
 
-def ring_metric(ring: Ring, settings: LayerSettings, scale: float, largest: float) -> SizeMetric:
-    """Return the sizes that the front of a ring asks for, those along it times `scale`."""
+def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
+    """Return the sizes that the front of a ring asks for: its columns and its last layer."""
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
     length = np.hypot(*step.T)
@@ -52,10 +53,12 @@ def ring_metric(ring: Ring, settings: LayerSettings, scale: float, largest: floa
     rows = settings.rows(float(thickness.max()))
     arcs = layer_arcs(thickness, settings.first, np.full_like(thickness, np.inf), rows, settings.constant)
     across = JOIN * (arcs[:, -1] - arcs[:, -2])
-    return SizeMetric(points, normal, across, scale * along, largest)
+    return SizeMetric(points, normal, across, along, np.inf)
 
 
-def ring_rows(mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats) -> Rows:
+def ring_rows(
+    mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerSettings, inner: Floats
+) -> Rows:
     """Return the layers under the nodes of a front, `inner` (k,) the heights of the cells beyond it."""
     order = loop_nodes(mesh, loop)
     columns, starts = ring.columns(mesh.places.arc[order])
@@ -63,7 +66,7 @@ def ring_rows(mesh: QuadMesh, loop: int, ring: Ring, rows: int, settings: LayerS
     columns += part[..., None] * (mesh.nodes[order] - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
-        return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant)
+        return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant, settings.growth)
 
     lines = spaced(columns, law)
     _exact(lines, settings.first)
@@ -76,10 +79,13 @@ def heights_inside(layout: Layout, loop: int) -> Floats:
     height = np.zeros(len(mesh.nodes))
     for block in layout.blocks:
         for side, next_row in (
-            (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]), (block[0], block[1]), (block[-1], block[-2]),
+            (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]),
+            (block[0], block[1]), (block[-1], block[-2]),
         ):  # fmt: skip
             if (mesh.places.loop[side] == loop).all():
-                height[side] = np.maximum(height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T))
+                height[side] = np.maximum(
+                    height[side], np.hypot(*(mesh.nodes[next_row] - mesh.nodes[side]).T)
+                )
     return height[loop_nodes(mesh, loop)]
 
 

@@ -84,12 +84,18 @@ class Ring:
                     weight *= np.where(used, (offset - other) / (k - other), 1.0)
             weight[k > width] = 0.0
             nodes += weight[:, None, None] * self.levels[(first + k) % n]
-        starts = monotone_cubic(
-            np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n)
-        ) % self.wall.length
+        starts = (
+            monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n))
+            % self.wall.length
+        )
         exact = index == np.round(index)
         starts[exact] = self.arcs[index[exact].astype(np.intp) % n]
-        nodes[:, 0] = self.wall.at(starts)
+        wall = self.wall.at(starts)
+        step = np.diff(nodes, axis=1)
+        height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
+        left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))  # of the way to the front
+        nodes += left[..., None] * (wall - nodes[:, 0])[:, None]
+        nodes[:, 0] = wall
         return nodes, starts
 
     def _unwrapped(self) -> Floats:
@@ -145,7 +151,9 @@ def _place(loop: Loop, arcs: Floats, column: int) -> str:
 def _marched(start: Floats, thickness: Floats, first: float) -> tuple[Floats | None, Floats]:
     """Return levels (n, m, 2), and where (n,) they are folded, of the best of several marches."""
     cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
-    ratios = np.array([growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness])
+    ratios = np.array(
+        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
+    )
     best, where = None, np.ones(len(start), dtype=bool)
     for settings in ATTEMPTS:
         levels = _march(start, cells, first, ratios, settings)
@@ -168,7 +176,7 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
         settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
         AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
     )  # fmt: skip
-    steps = first * most ** np.arange(cells)
+    steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
     hyperbolic_march(levels[0], levels[1], steps, *knobs, None, ratios / most)
     return np.ascontiguousarray(levels.transpose(2, 1, 0))
 

@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.quality.measure import count_folded, worst_cells_of
 from meshonet.geometry.shapes.assembly import assembled, domain_of
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.blocking.request import BlockRequest
+from meshonet.solvers.solution import Solution
 
 if TYPE_CHECKING:
+    from meshonet.geometry.blocks.grid import Grid
     from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.request import GridRequest
 
-METHODS = ("best", "auto", "variational")
+SMOOTHERS = ("auto", "variational")
+"""Methods that smooth the blocks of a given grid."""
+METHODS = ("best", *SMOOTHERS)
 """Methods under whose names blocks are made: their nodes come from one optimum of the variational energy."""
 _OF_ONE = ("spacing", "le_spacing", "te_spacing", "wake", "wake_nodes")
+_OF_SMOOTHING = ("slide", "refine", "max_cycles")
 _OF_GRIDS = (
     "spacing_south", "spacing_north", "spacing_west", "spacing_east", "slide", "wall_angle", "initial",
     "refine", "repair_margin",
@@ -36,8 +42,46 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
         return None
     if not (request.asks_for_blocks or getattr(shape, "many", False)):
         return None
-    _check_use(request)
-    return _domain(shape, request)
+    domain = _domain(shape, request)
+    _check_use(request, smooths=smooths(domain, request))
+    return domain
+
+
+def smooths(shape: DomainShape, request: GridRequest) -> bool:
+    """Say whether a request is to smooth the blocks of a grid that was given: it asks for no others."""
+    asked = request.asks_for_blocks or request.sampling.ni or request.at_walls
+    return shape.given is not None and request.method in SMOOTHERS and not asked
+
+
+def smoothed(grid: Grid, request: GridRequest) -> Solution:
+    """Return a given grid of many blocks smoothed, and as often refined and smoothed again as is asked for.
+
+    Raises InputError: as `smooth`; with refinement, a connection of a part of a side; NoValidGridError: cells
+    are still folded, and that was not allowed.
+    """
+    from meshonet.solvers.smoothing.refine import refined
+    from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
+
+    begun = perf_counter()
+    iterations = request.settings.get("max_cycles", ITERATIONS)
+    solution = smooth(grid, slide=bool(request.slide), iterations=iterations)
+    for _ in range(request.refine):
+        solution = smooth(refined(solution.grid, 2), slide=bool(request.slide), iterations=iterations)
+    seconds = {"grid": perf_counter() - begun}
+    if not request.allow_invalid:
+        _refuse_folded(solution.grid)
+    return replace(solution, seconds=seconds)
+
+
+def _refuse_folded(grid: Grid) -> None:
+    worst = worst_cells_of(grid)
+    if worst:
+        folded = sum(count_folded(block.nodes) for block in grid.blocks)
+        cells = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)
+        problem = (
+            f"{folded} of {cells} cells stay folded; find other blocks with {{cells}}, or {{allow_invalid}}"
+        )
+        raise NoValidGridError(problem, worst)
 
 
 def check_asked(request: GridRequest) -> None:
@@ -107,8 +151,8 @@ def _for_one(request: GridRequest) -> dict[str, bool]:
     }
 
 
-def _check_use(request: GridRequest) -> None:
-    """Raise InputError for the first parameter that is of no use to many blocks."""
+def _check_use(request: GridRequest, *, smooths: bool = False) -> None:
+    """Raise InputError for the first parameter of no use to many blocks, or to smoothing given ones."""
     if request.method not in METHODS:
         problem = f"method {request.method} makes single blocks"
         raise InputError(problem, "drop {method}, or ask for {blocks} single")
@@ -117,4 +161,6 @@ def _check_use(request: GridRequest) -> None:
     useless += [name for name in _OF_GRIDS if getattr(request, name)]
     useless += list(request.chosen)
     for name in useless:
+        if smooths and name in _OF_SMOOTHING:
+            continue
         raise InputError(f"{{{name}}} is of no use to a domain of many blocks", f"drop {{{name}}}")

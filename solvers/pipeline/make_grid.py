@@ -191,9 +191,16 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
 
 def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
     """Return the grid of blocks of a domain, measured."""
-    from meshonet.solvers.pipeline.blocks import block_request
+    from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
 
     begun = time.perf_counter()
+    if shape.given is not None and smooths(shape, request):
+        solution = smoothed(shape.given, request)
+        seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
+        begun = time.perf_counter()
+        quality = measure(solution.grid, percentiles=request.percentiles)
+        seconds["quality"] = time.perf_counter() - begun
+        return Result(solution, quality, seconds, (*shape.notes, *solution.notes))
     from meshonet.solvers.blocking.make import make_blocks
 
     loaded = time.perf_counter()

@@ -9,7 +9,8 @@ from block_grids import butterfly, duct, o_ring, turned
 
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.find_connections import find_connections, order, with_equal_nodes
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
+from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
@@ -30,8 +31,8 @@ def _passage(motion: Motion, name: str) -> Grid:
     )
     patches = [Patch("inlet", "west", 0, 5), Patch("outlet", "east", 0, 5, block=2)]
     for joint in joints:
-        patches.append(Patch("lower side", joint.side, 0, 4, block=joint.block))
-        patches.append(Patch("upper side", joint.donor_side, 0, 4, block=joint.donor))
+        patches.append(Patch("periodic low", joint.side, 0, 4, block=joint.block))
+        patches.append(Patch("periodic high", joint.donor_side, 0, 4, block=joint.donor))
     connections = tuple(sorted((*seams, *joints), key=order))
     return Grid(
         with_equal_nodes(blocks, connections), tuple(patches), connections, name, {"method": "formula"}
@@ -64,3 +65,12 @@ def step() -> Grid:
 
 MANY: list[Callable[[], Grid]] = [butterfly, o_ring, duct, step, passage, sector]
 """Makers of grids of several blocks; all but the last two without periodic sides."""
+
+
+def by_block(patches: tuple[Patch, ...]) -> tuple[Patch, ...]:
+    """Patches in the order of their blocks, as files that store them block by block have them."""
+    return tuple(sorted(patches, key=lambda patch: patch.block))
+
+
+def sorted_joints(connections: tuple[Connection, ...]) -> list[Connection]:
+    return sorted(connections, key=order)

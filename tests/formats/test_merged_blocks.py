@@ -64,7 +64,7 @@ def test_walls_that_touch_without_being_connected_stay_two() -> None:
 def test_periodic_edges_face_each_other_row_by_row(make: Make) -> None:
     mesh = unstructured(make())
     (pair,) = mesh.periodic
-    assert (pair.name, pair.partner) == ("lower side", "upper side")
+    assert (pair.name, pair.partner) == ("periodic low", "periodic high")
     own, partner = mesh.points[mesh.edges[pair.name]], mesh.points[mesh.edges[pair.partner]]
     np.testing.assert_array_equal(pair.motion(own), partner[:, ::-1])
     np.testing.assert_array_equal(pair.motion(mesh.points[pair.nodes[:, 0]]), mesh.points[pair.nodes[:, 1]])
@@ -73,7 +73,7 @@ def test_periodic_edges_face_each_other_row_by_row(make: Make) -> None:
 
 def test_periodic_sides_without_names_or_with_one_name_get_two() -> None:
     grid = passage()
-    plain = tuple(patch for patch in grid.patches if "side" not in patch.name)
+    plain = tuple(patch for patch in grid.patches if "periodic" not in patch.name)
     assert set(unstructured(Grid(grid.blocks, plain, grid.connections)).edges) == {
         "inlet", "outlet", "periodic1", "periodic2"
     }  # fmt: skip
@@ -117,10 +117,10 @@ def test_cyclic_patches_name_each_other_and_how_they_come_together(tmp_path: Pat
         name: re.sub(r"\s+", " ", body)
         for name, body in re.findall(r"    (\S+)\n    \{\n(.*?)\}", text, re.S)
     }
-    assert "type cyclic; neighbourPatch upper_side; transform translational;" in entries["lower_side"]
-    assert "separationVector (0.1" in entries["lower_side"]
-    assert "neighbourPatch lower_side;" in entries["upper_side"]
-    assert "separationVector (-0.1" in entries["upper_side"]
+    assert "type cyclic; neighbourPatch periodic_high; transform translational;" in entries["periodic_low"]
+    assert "separationVector (0.1" in entries["periodic_low"]
+    assert "neighbourPatch periodic_low;" in entries["periodic_high"]
+    assert "separationVector (-0.1" in entries["periodic_high"]
     write_foam(tmp_path / "case.foam", [sector()])
     text = (tmp_path / "constant" / "polyMesh" / "boundary").read_text()
     assert text.count("transform       rotational;\n        rotationAxis    (0 0 1);") == 2
@@ -130,9 +130,9 @@ def test_su2_has_a_marker_a_name_and_the_line_that_couples_them(tmp_path: Path) 
     for make, numbers in ((passage, [0, 0, 0, 0, 0, 0, 0.1, 0.7, 0]), (sector, [0, 0, 0, 0, 0, 40, 0, 0, 0])):
         write_su2(tmp_path / "g.su2", [make()])
         text = (tmp_path / "g.su2").read_text()
-        (listed,) = re.findall(r"^% MARKER_PERIODIC= \( lower_side, upper_side, (.*) \)$", text, re.M)
+        (listed,) = re.findall(r"^% MARKER_PERIODIC= \( periodic_low, periodic_high, (.*) \)$", text, re.M)
         np.testing.assert_allclose([float(word) for word in listed.split(",")], numbers, atol=1e-12)
-        assert re.findall(r"MARKER_TAG= (\S+)", text) == ["inlet", "outlet", "lower_side", "upper_side"]
+        assert re.findall(r"MARKER_TAG= (\S+)", text) == ["inlet", "outlet", "periodic_low", "periodic_high"]
         mesh = meshio.read(tmp_path / "g.su2")
         assert len(mesh.points) == 78
         assert len(mesh.get_cells_type("quad")) == 60
@@ -163,11 +163,11 @@ def test_gmsh_knows_groups_and_partners(
         return
     if words.startswith("2.2"):  # gmsh writes them so and passes over them when it reads
         ((_, (slave, master), affine, rows),) = meshio.read(tmp_path / "g.msh").gmsh_periodic
-        assert slave == groups["upper side"][0]
+        assert slave == groups["periodic high"][0]
         own, theirs = rows.T + 1
     else:
-        master, own, theirs, affine = gmsh.model.mesh.getPeriodicNodes(dim - 1, groups["upper side"][0])
-    assert master == groups["lower side"][0]
+        master, own, theirs, affine = gmsh.model.mesh.getPeriodicNodes(dim - 1, groups["periodic high"][0])
+    assert master == groups["periodic low"][0]
     assert len(own) == 13 * max(len(heights), 1)
     place = dict(zip(tags.tolist(), coordinates.reshape(-1, 3), strict=True))
     matrix = np.array(affine).reshape(4, 4)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -16,10 +17,18 @@ from meshonet.solvers.blocking.seamless_map import SeamlessMap
 
 
 def seamless_of(
-    domain: Domain, coordinates: Callable[[Complexes, Complexes], Complexes], *, count: int = 1500, seed: int = 0
+    domain: Domain,
+    coordinates: Callable[[Complexes, Complexes], Complexes],
+    *,
+    count: int = 1500,
+    seed: int = 0,
+    centre: bool = False,
 ) -> SeamlessMap:
-    """Return the map whose coordinates at corners z (t, 3) of triangles of centres (t, 1) are given."""
-    triangulation = triangulated(domain, count, seed)
+    """Return the map whose coordinates at corners z (t, 3) of triangles of centres (t, 1) are given.
+
+    With `centre` the origin is a vertex.
+    """
+    triangulation = triangulated(domain, count, seed, centre=centre)
     triangles, points = triangulation.triangles, triangulation.points
     z = points[:, 0] + 1j * points[:, 1]
     w = coordinates(z[triangles], z[triangles].mean(axis=1, keepdims=True))
@@ -65,14 +74,18 @@ def seamless_of(
     )
 
 
-def triangulated(domain: Domain, count: int, seed: int) -> Any:
+def triangulated(domain: Domain, count: int, seed: int, *, centre: bool) -> Any:
     """Return a Delaunay triangulation of about so many random points, corners among them."""
     rng = np.random.default_rng(seed)
     size = np.sqrt(domain.area / count)
     points, loops, arcs = [], [], []
     for number, loop in enumerate(domain.loops):
-        ends = np.append(loop.corner_arcs, loop.corner_arcs[0] + loop.length) if loop.corners else [0, loop.length]
-        for a, b in zip(ends[:-1], ends[1:], strict=True):
+        ends = (
+            np.append(loop.corner_arcs, loop.corner_arcs[0] + loop.length)
+            if loop.corners
+            else [0, loop.length]
+        )
+        for a, b in pairwise(ends):
             steps = max(3, int(np.ceil((b - a) / size)))
             inner = (np.arange(1, steps) + rng.uniform(-0.2, 0.2, steps - 1)) / steps
             arc = a + (b - a) * np.append(0.0, inner)
@@ -88,10 +101,12 @@ def triangulated(domain: Domain, count: int, seed: int) -> Any:
     free = low + size * (grid + rng.uniform(-0.3, 0.3, grid.shape))
     inner = region.buffer(-0.5 * size)
     free = free[shapely.contains_xy(inner, free[:, 0], free[:, 1])]
+    if centre:
+        free[np.argmin(np.hypot(*free.T))] = 0.0
     every = np.concatenate([wall, free])
     triangles = Delaunay(every).simplices
-    centre = every[triangles].mean(axis=1)
-    triangles = triangles[shapely.contains_xy(region, centre[:, 0], centre[:, 1])].astype(np.intp)
+    middle = every[triangles].mean(axis=1)
+    triangles = triangles[shapely.contains_xy(region, middle[:, 0], middle[:, 1])].astype(np.intp)
     x = every[triangles]
     left = _area(x)
     triangles[left < 0] = triangles[left < 0][:, ::-1]
