@@ -84,7 +84,9 @@ def test_a_damaged_file_is_refused_or_read(name: str, data: st.DataObject) -> No
 
 @settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
-def test_a_damaged_map_is_refused_or_read(data: st.DataObject, tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_a_damaged_map_is_refused_or_read(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     folder = tmp_path_factory.mktemp("map")
     write_plot3d(folder / "g.p3d", [passage()])
     good_map = (folder / "g.nmf").read_bytes()

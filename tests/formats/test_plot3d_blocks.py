@@ -51,7 +51,9 @@ def test_a_grid_comes_back_with_its_map(
     assert set(named) <= set(told)
     mesh, wanted = unstructured(found), unstructured(grid)
     assert {n: len(e) for n, e in mesh.edges.items()} == {n: len(e) for n, e in wanted.edges.items()}
-    assert "iblank" not in words or found.provenance == {"iblank": {"1": sum(b.nodes.size // 2 for b in grid.blocks)}}
+    assert "iblank" not in words or found.provenance == {
+        "iblank": {"1": sum(b.nodes.size // 2 for b in grid.blocks)}
+    }
 
 
 @pytest.mark.parametrize("make", MANY)
@@ -168,7 +170,10 @@ def test_maps_of_others_are_read_as_they_are_spelled(tmp_path: Path) -> None:
         ("", "g.nmf: its map is of 0 blocks"),
         ("1\n1 9 5 1\n", "g.nmf: its map is of 1 blocks: 9x5x1; write the map again, or take it away"),
         (ROWS.replace("2  5 9", "2  5 8"), "its map is of 2 blocks: 9x5x1, 5x8x1"),
-        (ROWS.replace("viscous_solid 1 6", "viscous_solid 3 6"), "row 'viscous_solid 3 6 .* is not understood"),
+        (
+            ROWS.replace("viscous_solid 1 6", "viscous_solid 3 6"),
+            "row 'viscous_solid 3 6 .* is not understood",
+        ),
         (ROWS.replace("viscous_solid 1 6", "viscous_solid 1 9"), "is not understood"),
         (ROWS.replace("2 6  1 1  1 5", "2 6  1 1  1 4"), "joins 4 cells to 3; join equal counts"),
         ("x\n", "its map cannot be read"),

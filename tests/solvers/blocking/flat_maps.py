@@ -16,7 +16,11 @@ from meshonet.solvers.blocking.seamless_map import SeamlessMap
 
 
 def seamless_of(
-    domain: Domain, coordinates: Callable[[Complexes, Complexes], Complexes], *, count: int = 1500, seed: int = 0
+    domain: Domain,
+    coordinates: Callable[[Complexes, Complexes], Complexes],
+    *,
+    count: int = 1500,
+    seed: int = 0,
 ) -> SeamlessMap:
     """Return the map whose coordinates at corners z (t, 3) of triangles of centres (t, 1) are given."""
     triangulation = triangulated(domain, count, seed)
@@ -71,7 +75,11 @@ def triangulated(domain: Domain, count: int, seed: int) -> Any:
     size = np.sqrt(domain.area / count)
     points, loops, arcs = [], [], []
     for number, loop in enumerate(domain.loops):
-        ends = np.append(loop.corner_arcs, loop.corner_arcs[0] + loop.length) if loop.corners else [0, loop.length]
+        ends = (
+            np.append(loop.corner_arcs, loop.corner_arcs[0] + loop.length)
+            if loop.corners
+            else [0, loop.length]
+        )
         for a, b in zip(ends[:-1], ends[1:], strict=True):
             steps = max(3, int(np.ceil((b - a) / size)))
             inner = (np.arange(1, steps) + rng.uniform(-0.2, 0.2, steps - 1)) / steps

@@ -60,7 +60,9 @@ def checked(mesh: QuadMesh) -> QuadMesh:
         nodes = nodes[np.argsort(mesh.places.arc[nodes])]
         assert np.abs(loop.at(mesh.places.arc[nodes]) - mesh.nodes[nodes]).max() < 1e-9 * loop.length
         assert np.diff(mesh.places.arc[nodes]).min() > 0
-        around = {tuple(sorted(pair)) for pair in zip(nodes.tolist(), np.roll(nodes, -1).tolist(), strict=True)}
+        around = {
+            tuple(sorted(pair)) for pair in zip(nodes.tolist(), np.roll(nodes, -1).tolist(), strict=True)
+        }
         assert around <= pairs
         pairs -= around
         fixed = nodes[mesh.places.cells[nodes] > 0]
