@@ -161,13 +161,7 @@ def split_quads(
     quads: Indices, named: Indices, edge: Indices, twin: Indices, irregular: NDArray[np.bool_],
     marked: NDArray[np.bool_],
 ) -> tuple[Indices, list[Indices], Indices, int] | None: ...  # fmt: skip
-# sparse: `pattern` is order, parent, start, row, fill
-SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
 
-def sparse_analyse(n: int, rows: Indices, columns: Indices) -> tuple[SparsePattern, Indices]: ...
-def sparse_factor(pattern: SparsePattern, values: Floats) -> tuple[tuple[Reals, Floats, Floats], int]: ...
-def sparse_solve(pattern: SparsePattern, factor: tuple[Reals, Floats, Floats], x: Floats) -> None: ...
-def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: Floats) -> None: ...
 # motorcycle
 def probe_rays(
     tables: TriangleMap, node: Indices, port: Indices, nodes: int, ports: int, near: float, starts: Indices,
@@ -181,6 +175,7 @@ def walk_map(
     tables: TriangleMap, corners: Indices, points: Floats, start: Indices, at: Floats, first: Indices,
     targets: Floats, limit: int,
 ) -> Floats: ...  # fmt: skip
+def nearest_points(places: Floats, points: Floats) -> tuple[Indices, Floats]: ...
 
 # quads
 def quad_edges(quads: Indices, nodes: int) -> tuple[Indices, Indices]: ...
@@ -190,10 +185,11 @@ def line_neighbours(
 
 class QuadDescent:
     def __init__(
-        self, nodes: Floats, cells: tuple[Indices, Floats, Floats], lines: tuple[Indices, Indices, int, Floats],
-        eased: tuple[Indices, Floats], inner: Indices, tied: tuple[Indices, tuple[float, float]],
-        unknown: Indices, wall: Indices, wall_nodes: tuple[Indices, Indices, Floats],
-        wall_edges: tuple[Indices, Floats], loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
+        self, nodes: Floats, cells: tuple[Indices, Floats, Floats],
+        lines: tuple[Indices, Indices, int, Floats], eased: tuple[Indices, Floats], inner: Indices,
+        tied: tuple[Indices, tuple[float, float]], unknown: Indices, wall: Indices,
+        wall_nodes: tuple[Indices, Indices, Floats], wall_edges: tuple[Indices, Floats],
+        loops: tuple[tuple[object, ...], ...], bent: float, allowed: float,
     ) -> None: ...  # fmt: skip
     def run(
         self,
@@ -205,29 +201,9 @@ class QuadDescent:
         most: int,
         renew: bool,
     ) -> tuple[float, float, int]: ...
-def surface_fans(surface: Surface, vertices: int) -> tuple[Indices, Indices, int]: ...
-def surface_comb(surface: Surface, vertices: int, quarters: Indices) -> tuple[Indices, NDArray[np.uint8]]: ...
-def surface_prune(
-    surface: Surface, start: Indices, fan: Indices, keep: NDArray[np.uint8], cut: NDArray[np.uint8]
-) -> None: ...
-
-# triangulation
-def wall_gaps(points: Floats, normals: Floats, part: float, cone: float, size: Floats) -> None: ...
-def wall_growth(points: Floats, growth: float, size: Floats) -> None: ...
-
-class DelaunayMesh:
-    def insert(self, places: Whole, sizes: Floats, order: Indices) -> NDArray[np.bool_]: ...
-    def are_edges(self, pairs: NDArray[np.int32]) -> NDArray[np.bool_]: ...
-    def force(self, pairs: NDArray[np.int32]) -> NDArray[np.int32]: ...
-    def set_walls(self, pairs: NDArray[np.int32], wall: bool) -> None: ...
-    def refine(
-        self, walls: NDArray[np.int32], largest: float, growth: float, sources: Floats, source_sizes: Floats,
-        most: int,
-    ) -> None: ...  # fmt: skip
-    def smooth(self, first: int, part: float) -> None: ...
-    def shake(self, first: int, part: float, seed: int) -> None: ...
-    def nodes(self) -> tuple[Whole, Floats]: ...
-    def triangles(self) -> tuple[Indices, Indices, Indices]: ...
+    def evaluate(
+        self, shape: float, smoothness: float, epsilon: float, size: float, gradient: Floats
+    ) -> float: ...
 
 # sparse: `pattern` is order, parent, start, row, fill
 SparsePattern: TypeAlias = tuple[Reals, Reals, Indices, Reals, Indices]
@@ -241,15 +217,16 @@ def sparse_multiply(pattern: SparsePattern, values: Floats, x: Floats, product: 
 Surface: TypeAlias = tuple[Indices, Indices, Indices]
 
 def surface_fans(surface: Surface, vertices: int) -> tuple[Indices, Indices, int]: ...
-def surface_comb(
-    surface: Surface, vertices: int, quarters: Indices
-) -> tuple[Indices, NDArray[np.uint8]]: ...
+def surface_comb(surface: Surface, vertices: int, quarters: Indices) -> tuple[Indices, NDArray[np.uint8]]: ...
 def surface_prune(
     surface: Surface, start: Indices, fan: Indices, keep: NDArray[np.uint8], cut: NDArray[np.uint8]
 ) -> None: ...
 
 # triangulation
-def wall_gaps(points: Floats, normals: Floats, part: float, cone: float, size: Floats) -> None: ...
+def wall_gaps(
+    points: Floats, normals: Floats, piece: Indices, beside: Indices, corner: Floats, part: float,
+    cone: float, size: Floats,
+) -> None: ...  # fmt: skip
 def wall_growth(points: Floats, growth: float, size: Floats) -> None: ...
 
 class DelaunayMesh:

@@ -1,6 +1,6 @@
 """Thirty domains that engineers draw, and random ones: lists of loops (n, 2), the outer one first.
 
-    python examples/domains/domains.py FOLDER     writes each as GeoJSON into FOLDER
+python examples/domains/domains.py FOLDER     writes each as GeoJSON into FOLDER
 """
 
 from __future__ import annotations
@@ -50,7 +50,10 @@ def naca4(thickness: float, camber: float = 0.0, at: float = 0.4, points: int = 
     half = 5.0 * thickness * (
         0.2969 * np.sqrt(x) - 0.1260 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4
     )  # fmt: skip
-    front, rear = camber / at**2 * (2 * at * x - x**2), camber / (1 - at) ** 2 * (1 - 2 * at + 2 * at * x - x**2)
+    front, rear = (
+        camber / at**2 * (2 * at * x - x**2),
+        camber / (1 - at) ** 2 * (1 - 2 * at + 2 * at * x - x**2),
+    )
     mean = np.where(x < at, front, rear)
     upper, lower = np.stack([x, mean + half], axis=1), np.stack([x, mean - half], axis=1)
     return np.concatenate([upper[::-1], lower[1:-1]])
@@ -89,7 +92,9 @@ def nozzle(points: int = 50) -> Loop:
 
 def _bend() -> Loop:
     outer, inner = arc(0.0, 0.0, 2.0, -90.0, 0.0), arc(0.0, 0.0, 1.0, 0.0, -90.0)
-    return np.concatenate([polygon(-2.0, -2.0), outer, polygon(2.0, 2.0, 1.0, 2.0), inner, polygon(-2.0, -1.0)])
+    return np.concatenate(
+        [polygon(-2.0, -2.0), outer, polygon(2.0, 2.0, 1.0, 2.0), inner, polygon(-2.0, -1.0)]
+    )
 
 
 def _keyhole() -> Loop:

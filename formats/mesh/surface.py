@@ -6,6 +6,7 @@ beside each other are a shape each.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -170,7 +171,7 @@ def _domain(loop: Loop, surface: Surface, name: str) -> Shape:
         if not meshed and isinstance(domain_or_body(curve), Outline | Airfoil):
             return _labelled(curve, [loop], points)
         shape = polygon_shape([_ring(loop, points)], name)
-        return replace(shape, one=lambda: _labelled(curve, [loop], points))
+        return replace(shape, one=partial(_labelled, curve, [loop], points))
     count, first = len(loop.nodes), 0
     if polygon_area(points[loop.nodes]) < 0:
         loop, first = loop.reversed(), count - 1

@@ -1,10 +1,11 @@
 """NASA's neutral map file, ``.nmf``: which stretch of a Plot3D block is what, and where blocks join.
 
-It goes with a Plot3D file of the same grid: flat, or one cell thick when both are written so. Faces are
-1, 2 at k = 1, kmax; 3, 4 at i = 1, imax; 5, 6 at j = 1, jmax; their two ranges run over the next indices in
-cyclic order (i, j), (j, k), (k, i). Of two joined faces the second's ranges run as the first's, or are swapped.
+It goes with a Plot3D file of the same grid: flat, or one cell thick when both are written so. Faces are 1, 2
+at k = 1, kmax; 3, 4 at i = 1, imax; 5, 6 at j = 1, jmax; their two ranges run over the next indices in cyclic
+order (i, j), (j, k), (k, i). Of two joined faces the second's ranges run as the first's, or are swapped.
 Names of patches stand in comments before their rows. Periodic sides, which nobody has laid down, are rows of
-type PERIODIC that else are as those of interfaces. https://crumsey.github.io/turbmodels/nmf_documentation.html
+type PERIODIC that else are as those of interfaces.
+https://crumsey.github.io/turbmodels/nmf_documentation.html
 """
 
 from __future__ import annotations
@@ -37,7 +38,8 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> Non
 
 def write_map(path: Path, grids: Sequence[Grid], planes: int, span: int = 2) -> None:
     """Write the map of all blocks of `grids`, whose `planes` in z are counted by the index `span`."""
-    dims, rows = [], []
+    dims: list[list[int]] = []
+    rows: list[str] = []
     for grid in grids:
         before = len(dims)
         for block in grid.blocks:

@@ -16,8 +16,8 @@ from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
 
 _KINDS: tuple[tuple[str, Kind], ...] = (
-    ("viscous", "wall"), ("wall", "wall"), ("tangency", "wall"), ("inviscid", "wall"), ("farfield", "farfield"),
-    ("inflow", "inlet"), ("outflow", "outlet"), ("back_pressure", "outlet"), ("sym", "symmetry"),
+    ("viscous", "wall"), ("wall", "wall"), ("tangency", "wall"), ("inviscid", "wall"), ("farfield",
+    "farfield"), ("inflow", "inlet"), ("outflow", "outlet"), ("back_pressure", "outlet"), ("sym", "symmetry"),
 )  # fmt: skip
 _NOTHING = ("unprocessed", "collapsed", "pole", "patched", "overset")
 _MOST_BYTES = 1 << 26

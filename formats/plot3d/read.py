@@ -25,9 +25,10 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
     """Yield the grids of the blocks, right-handed: those that touch are one, others one each.
 
-    Where blocks join, and what their sides are, stands in a neutral map file beside the file, or else is found
-    by position; of a block alone the topology is recovered from its nodes. Where there is an iblank array, the provenance says how many nodes have which value. `options` say what
-    is known of the layout. Raises InputError where none fits the file's length, or a block is not plane.
+    Where blocks join, and what their sides are, stands in a neutral map file beside the file, or else is
+    found by position; of a block alone the topology is recovered from its nodes. Where there is an iblank
+    array, the provenance says how many nodes have which value. `options` say what is known of the layout.
+    Raises InputError where none fits the file's length, or a block is not plane.
     """
     data = source.read_bytes()
     every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)

@@ -54,7 +54,8 @@ def write_grids(
 ) -> None:
     """Write the blocks of `grids`: a plane of their nodes at each of `heights`, or one without z.
 
-    Where a grid has several blocks, a neutral map file beside the file says where they join, and what is what.
+    Where a grid has several blocks, a neutral map file beside the file says where they join, and what is
+    what.
 
     Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
     can hold.

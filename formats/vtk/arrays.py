@@ -148,7 +148,7 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
 
 
 def plane_points(nodes: Floats, height: float, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield nodes (ni, nj, 2) as points (n, 3) at z = `height`, i fastest, some rows at a time, in one memory."""
+    """Yield nodes (ni, nj, 2) as points (n, 3) at z = `height`, i fastest, some rows at a time in one memory."""
     ni, nj = nodes.shape[:2]
     rows = max(1, _BLOCK_NODES // ni)
     block = np.empty((rows, ni, 3), dtype)

@@ -1,9 +1,8 @@
 """VTK multi-block files, ``.vtm``: an index beside a folder ``NAME_blocks`` with a ``.vts`` for every block.
 
-A grid of several blocks is a ``Block`` in the index, and its blocks say which grid they belong to; a grid of one
-block stands there by itself and says that it is whole. Blocks that say neither are another's: those that touch
-make one grid.
-https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
+A grid of several blocks is a ``Block`` in the index, and its blocks say which grid they belong to; a grid of
+one block stands there by itself and says that it is whole. Blocks that say neither are another's: those that
+touch make one grid. https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
 import re

@@ -93,7 +93,7 @@ class Curve:
 
     @property
     def tables(self) -> tuple[Floats, Floats, Floats, Floats, int]:
-        """Coefficients (4, n, 2) of the cubics; arc lengths, and the slopes of their inverse, of so many pieces each.
+        """Coefficients (4, n, 2) of the cubics; arc lengths and the slopes of their inverse; pieces of each.
 
         For kernels that follow the curve themselves (``kernels/geometry/curve.h``).
         """

@@ -105,6 +105,23 @@ class QuadMesh:
         """(n,) nodes where other than four quads meet, or on the boundary other than two."""
         return self.valence != np.where(self.wall_nodes, 2, 4)
 
+    @cached_property
+    def closed(self) -> QuadMesh:
+        """The mesh with each node that has a partner replaced by it: sides of a period are no walls then.
+
+        Cells wanted at such nodes are those of both; itself where there is no period.
+        """
+        partner = self.places.partner
+        double = np.flatnonzero(partner >= 0)
+        if not double.size:
+            return self
+        own = np.arange(len(partner))
+        own[double] = partner[double]
+        cells = self.places.cells.copy()
+        cells[partner[double]] += cells[double]
+        places = Places(self.places.loop, self.places.arc, cells, np.full(len(own), -1))
+        return QuadMesh(self.domain, self.nodes, own[self.quads], places)
+
     def with_nodes(self, nodes: Floats, arc: Floats | None = None) -> QuadMesh:
         """Return the same quads with nodes (n, 2), and boundary nodes at arc lengths (n,), moved."""
         places = self.places if arc is None else replace(self.places, arc=arc)

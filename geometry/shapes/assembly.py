@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import chain
 
 import numpy as np
@@ -20,7 +21,7 @@ from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.corners import turning
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.annulus import Annulus
-from meshonet.geometry.shapes.domain_shape import DomainShape, extent_of
+from meshonet.geometry.shapes.domain_shape import DomainShape, extent_of, itself
 from meshonet.geometry.shapes.named_edges import Labelled
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
@@ -78,7 +79,7 @@ def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
     else:
         return assembled([shape], ["body"], sampling, shape.name)
     notes = tuple(getattr(shape, "notes", ()))
-    return DomainShape(Domain((loop,), shape.name, notes), one=lambda: shape)
+    return DomainShape(Domain((loop,), shape.name, notes), one=partial(itself, shape))
 
 
 def far_loop(middle: Floats, radius: float) -> Loop:

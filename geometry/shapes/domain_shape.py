@@ -39,7 +39,7 @@ class DomainShape:
     ----------
     domain : loops and names.
     many : whether blocks are made of it unless one is asked for.
-    one : makes the shape that it is as one block; None where it cannot be one.
+    one : makes the shape that it is as one block, in any process; None where it cannot be one.
     unit : length that Reynolds numbers are based on: the extent of its bodies, or an airfoil's chord.
     far_field : whether a far field was put around bodies.
     layout : its blocks, where the input has them.
@@ -77,6 +77,11 @@ class DomainShape:
             remedy = "let infer or solve-pde find its blocks"
             raise InputError(f"{described(self.domain)} is not one block", remedy)
         return self.one().boundary(sampling)
+
+
+def itself(shape: Shape) -> Shape:
+    """Return a shape; as a partial function, unlike a lambda, another process can have it."""
+    return shape
 
 
 def described(domain: Domain) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
 from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.closed_curve import closed_curve
-from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided, in_far_field
+from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided, in_far_field, itself
 from meshonet.geometry.shapes.named_edges import Labelled
 from meshonet.geometry.shapes.outline import Outline
 from meshonet.geometry.shapes.shape import Shape
@@ -51,9 +52,11 @@ def polygon_shape(rings: Sequence[Ring], name: str = "", notes: tuple[str, ...] 
     named = any(ring.names for ring in rings)
     if len(loops) == 1:
         given = rings[0].corners is not None
-        return DomainShape(domain, not four_sided(domain), lambda: _outline(domain, named=named, given=given))
+        return DomainShape(
+            domain, not four_sided(domain), partial(_outline, domain, named=named, given=given)
+        )
     if len(loops) == 2:
-        return DomainShape(domain, not in_far_field(domain), lambda: _annulus(domain, named=named))
+        return DomainShape(domain, not in_far_field(domain), partial(_annulus, domain, named=named))
     return DomainShape(domain)
 
 
@@ -63,7 +66,7 @@ def domain_or_body(shape: Outline | Airfoil) -> Shape:
         return shape
     points = shape.curve.points
     domain = Domain((ring_loop(points, hole=False),), shape.name, shape.notes)
-    return shape if four_sided(domain) else DomainShape(domain, one=lambda: shape)
+    return shape if four_sided(domain) else DomainShape(domain, one=partial(itself, shape))
 
 
 def default_name(number: int) -> str:

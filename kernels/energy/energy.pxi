@@ -1,6 +1,7 @@
 cdef extern from "energy/steps.h":
     ctypedef struct Steps:
         ptrdiff_t n
+        double *gradient
         double value, smallest, reach, farthest, still, gain
     int GOES_ON
     int steps_take(Steps *s) nogil

@@ -7,6 +7,7 @@
 
 #define FLOOR 0.02     /* of the mean square of lengths: shorter edges are as stiff as these */
 #define SHIFT 1e-9     /* of the mean diagonal, added to it */
+#define MANY 100000 /* unknowns from which on inner and wall nodes do not know of each other: a fourth of the work */
 #define STIFFNESS 3.0  /* of an edge, over its length squared and the number of cells */
 
 /* Unknown k's share of the moves of a node, (2,) or for free nodes a row of the unit matrix. */
@@ -48,7 +49,7 @@ static ptrdiff_t assemble(const QuadDescent *d, ptrdiff_t *rows, ptrdiff_t *colu
             values[slot[b.first + i]] += stiff[e];
         for (int i = 0; i < a.count; i++)
             for (int j = 0; j < b.count; j++) {
-                if (a.count == 2 && b.count == 2 && i != j)
+                if (a.count == 2 && b.count == 2 ? i != j : n > MANY && a.count != b.count)
                     continue;
                 if (rows)
                     rows[entry] = a.first + i, columns[entry] = b.first + j;
@@ -211,6 +212,8 @@ static void precondition(void *problem, const double *gradient, float *result)
     QuadDescent *d = problem;
     Stiffness *s = &d->stiffness;
     const ptrdiff_t n = d->steps.n;
+    if (n == 0)
+        return;
     memcpy(s->right, gradient, (size_t)n * sizeof *gradient);
     sparse_solve(&s->pattern, s->lower_row, s->lower, s->pivots, 1, s->right, s->scratch);
     for (ptrdiff_t k = 0; k < n; k++)
@@ -255,7 +258,7 @@ int quad_descent_start(QuadDescent *d, int renew)
     set_sizes(d);
     get_unknowns(d, d->here);
     set_nodes(d, d->here);
-    if ((renew || !d->stiffness.values) && make_stiffness(d) < 0)
+    if (s->n > 0 && (renew || !d->stiffness.values) && make_stiffness(d) < 0)
         return -1;
     steps_start(s);
     return 0;

@@ -150,7 +150,7 @@ cdef class QuadDescent:
         free(self.loop)
 
     def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew):
-        """Descend; return (value, smallest Jacobian, iterations).
+        """Descend; return (value, smallest Jacobian over the area of its cell, iterations).
 
         It ends when the value falls by less than its part `gain` in each of three iterations, or after `most`. The
         preconditioner is made anew where the nodes are with `renew`.
@@ -172,3 +172,15 @@ cdef class QuadDescent:
         with nogil:
             quad_descent_end(&self.state)
         return steps.value, steps.smallest, done
+
+    def evaluate(self, double shape, double smoothness, double epsilon, double size, gradient):
+        """Return the value where the nodes are, and fill `gradient` (unknowns,)."""
+        cdef QuadMesh *mesh = &self.state.mesh
+        cdef ptrdiff_t k
+        cdef Written to = fills(gradient, (self.state.steps.n,))
+        mesh.shape, mesh.smoothness, mesh.epsilon, mesh.size = shape, smoothness, epsilon, size
+        with nogil:
+            quad_descent_start(&self.state, True)
+        for k in range(self.state.steps.n):
+            to[k] = self.state.steps.gradient[k]
+        return self.state.steps.value

@@ -48,9 +48,10 @@ double walls_energy(const Walls *walls, double weight, double allowed)
             const double over = walls->turned[b] - walls->turned[a] + laps * loop->turned[n] - allowed;
             if (!(over > 0.0))
                 continue;
-            energy += weight * over * over;
-            walls->force[a] -= 2.0 * weight * over * walls->turning[a];
-            walls->force[b] += 2.0 * weight * over * walls->turning[b];
+            const double square = over * over, force = weight * over * (2.0 + 6.0 * square * square);
+            energy += weight * square * (1.0 + square * square);
+            walls->force[a] -= force * walls->turning[a];
+            walls->force[b] += force * walls->turning[b];
         }
     }
     return energy;

@@ -26,6 +26,6 @@ typedef struct {
 /* Put the nodes x (nodes of the mesh, 2) that slide at their arc lengths; find tangents and turning. */
 void walls_place(const Walls *walls, double *x);
 
-/* Return `weight` times the sum over wall edges of the squares of what they turn by beyond `allowed`, and its derivative
-   by the arc lengths in `force`; infinite where nodes are out of order. */
+/* Return `weight` times the sum over wall edges of the squares (and sixth powers) of what they turn by beyond `allowed`,
+   and its derivative by the arc lengths in `force`; infinite where nodes are out of order. */
 double walls_energy(const Walls *walls, double weight, double allowed);

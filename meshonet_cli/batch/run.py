@@ -9,6 +9,7 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -181,7 +182,7 @@ def _streamed(
     done: Iterator[Done[S, R]], destination: Destination, session: Session, written: Callable[[R, str], None]
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
-    size: str | None = None
+    size = ""
     for item, _, outcome in done:
         what: S | None = None
         with session.member(item.label, item.source):
@@ -196,13 +197,11 @@ def _streamed(
         written(report, destination.text)
 
 
-def _same_size(what: Grid | Boundary | Layout, size: str | None) -> str:
+def _same_size(what: Grid | Boundary | Layout, size: str) -> str:
     if isinstance(what, Layout):
         return ""
-    counts = [block.counts for block in what.blocks] if isinstance(what, Grid) else [(what.ni, what.nj)]
-    own = f"{', '.join('x'.join(map(str, count)) for count in counts)} {what.topology}"
-    if size is not None and own != size:
-        short, other = (text if len(text) < 60 else f"{len(counts)} blocks" for text in (own, size))
-        problem = f"{short} does not fit a dataset of {other}"
+    own = size_of(what)
+    if size and own != size:
+        problem = f"{own} does not fit a dataset of {size}"
         raise InputError(problem, "set {res} and {topology}, or write one file each")
     return own

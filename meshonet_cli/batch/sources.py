@@ -77,7 +77,7 @@ def _assembly(
         names: list[str] = []
         for source in sources:
             own = list(read(source))
-            stem = Path(source).stem if source != "-" else "stdin"
+            stem = "stdin" if source == "-" else Path(source).stem.replace(":", "")
             shapes += own
             names += [stem if len(own) == 1 else f"{stem}{k}" for k in range(1, len(own) + 1)]
         domain = assembled(shapes, names, sampling, "+".join(dict.fromkeys(names)))

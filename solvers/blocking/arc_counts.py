@@ -17,7 +17,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.t_mesh import TMesh
 
-OPTIONS = {
+OPTIONS: dict[str, bool | int | float | str] = {
     "output_flag": False,
     "threads": 1,
     "random_seed": 0,
@@ -27,8 +27,8 @@ OPTIONS = {
     "time_limit": 10.0,
 }
 """Of HiGHS. One thread and a fixed seed: the same numbers always."""
-STEPS = (0.0, 0.05, 0.1, 0.2, 0.3, 0.4)
-"""Steps by which a number goes up or down, as parts of it but at least 1; the last goes on to the end."""
+STEPS = (1.0, 1.05, 1.1, 1.2, 1.4, 1.6, 2.0, 2.0, np.inf)
+"""Factors by which a number goes up or down in each step, by 1 at least."""
 LOOP = 4
 """Cells along a closed wall, at least."""
 
@@ -91,7 +91,7 @@ def _solved(programme: Any, lengths: Floats) -> Floats:
     """Return the steps (b, k) taken, whole ones: mostly those of the relaxed programme are already."""
     from highspy import Highs, HighsVarType
 
-    solver = Highs()
+    solver: Any = Highs()  # type: ignore[no-untyped-call]
     for name, value in OPTIONS.items():
         solver.setOptionValue(name, value)
     for whole in (False, True):
@@ -117,14 +117,17 @@ def _steps(wanted: Floats, least: Floats) -> tuple[Floats, Floats, Floats, Float
     signs, lengths, costs = [], [], []
     for sign in (1.0, -1.0):
         at = base
-        for part in STEPS:
-            to = np.maximum(at + sign * np.maximum(np.round(part * base), 1.0), least)
-            if part == STEPS[-1] and sign < 0:
+        for factor in STEPS:
+            ends = np.isinf(factor)
+            times = 2.0 if ends else factor
+            to = np.round(at * times if sign > 0 else at / times)
+            to = np.maximum(least, np.maximum(to, at + 1.0) if sign > 0 else np.minimum(to, at - 1.0))
+            if ends and sign < 0:
                 to = least
             far = np.abs(to - at)
             rise = np.divide(cost(to) - cost(at), far, out=np.zeros(len(base)), where=far > 0)
             signs.append(sign)
-            lengths.append(np.full(len(base), np.inf) if part == STEPS[-1] and sign > 0 else far)
+            lengths.append(np.full(len(base), np.inf) if ends and sign > 0 else far)
             costs.append(rise)
             at = to
     return base, np.array(signs), np.array(lengths), np.array(costs)
@@ -134,7 +137,7 @@ def _model(steps: tuple[Floats, Floats, Floats, Floats], rows: Sequence[Row]) ->
     """Return the programme in steps: n = base + those up - those down, each step dearer than the one before.
 
     The cost is then linear between whole numbers and not below them, and relaxed solutions are whole, or
-    nearly so: each arc is in two rows with coefficients +-1 (a bidirected network: corners are half-integral).
+    nearly so: each arc is in two rows with coefficients +-1 (bidirected networks have half-integral corners).
     """
     from highspy import HighsLp, MatrixFormat
 

@@ -107,7 +107,7 @@ def _beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[In
 
 
 def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
-    """Return lines (k, n, 2) sampled anew from lines (k, m, 2) at `law` of their lengths (k,): (k, n) arcs."""
+    """Return lines (k, n, 2): lines (k, m, 2) at the arcs (k, n) that `law` makes of their lengths."""
     step = np.diff(lines, axis=1)
     length = np.hypot(step[..., 0], step[..., 1])
     arc = np.concatenate([np.zeros((len(lines), 1)), np.cumsum(length, axis=1)], axis=1)

@@ -9,15 +9,17 @@ Trans. Graph. 30 (2011), section 3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.kernels._native import connect_quads, split_quads
+from meshonet.kernels._native import split_quads
 from meshonet.solvers.blocking.errors import BlockingError
 
 
@@ -40,6 +42,35 @@ class BaseComplex:
         """The blocks as a layout."""
         return Layout(self.mesh, self.blocks)
 
+    @cached_property
+    def sides(self) -> tuple[Indices, Indices, Indices]:
+        """Sides of the blocks: south, north, west and east of each, one after another.
+
+        Their nodes (k,), where in these each side begins (4 b,), and its chord (4 b,).
+        """
+        lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
+        nodes = np.concatenate(lines)
+        first = np.cumsum([0] + [len(line) for line in lines[:-1]])
+        a, b = nodes[first], nodes[first + 1]
+        keys = self.mesh.edges[:, 0] * len(self.mesh.nodes) + self.mesh.edges[:, 1]
+        edge = np.searchsorted(keys, np.minimum(a, b) * len(self.mesh.nodes) + np.maximum(a, b))
+        return nodes, first, self.chord[edge]
+
+    def moved(self, mesh: QuadMesh) -> BaseComplex:
+        """Return the blocks of the same quads with other nodes."""
+        moved = replace(self, mesh=mesh)
+        if "sides" in self.__dict__:
+            moved.__dict__["sides"] = self.sides
+        return moved
+
+    def side_lengths(self) -> Floats:
+        """Return the lengths (b, 4) of south, north, west and east of each block."""
+        nodes, first, _ = self.sides
+        points = self.mesh.nodes[nodes]
+        step = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+        step[first] = 0.0  # from one side to the next
+        return np.asarray(np.add.reduceat(step, first).reshape(-1, 4))
+
 
 def base_complex(mesh: QuadMesh) -> BaseComplex:
     """Return the blocks of a quad mesh.
@@ -48,44 +79,18 @@ def base_complex(mesh: QuadMesh) -> BaseComplex:
 
     Raises BlockingError: the mesh is not manifold, or what its lines bound are no lattices.
     """
-    quads = np.ascontiguousarray(mesh.quads, dtype=np.intp)
-    n = len(mesh.nodes)
-    if not (mesh.places.partner >= 0).any():
-        edge, twin, irregular = mesh.edge_of, mesh.twin, mesh.irregular
-        bounds = np.zeros(len(mesh.edges), dtype=bool)
-        found = split_quads(quads, quads, edge, twin, irregular, bounds) if mesh.manifold else None
-    else:
-        glued = glued_quads(mesh)
-        edge, twin, ends, manifold = connect_quads(glued, n)
-        glued_bounds = np.zeros(len(ends), dtype=bool)
-        glued_bounds[edge[(mesh.twin < 0)]] = True
-        found = (
-            split_quads(glued, quads, edge, twin, _irregular(glued, twin, n), glued_bounds)
-            if manifold
-            else None
-        )
-        # edges of the mesh, two for one along periodic sides
-        bounds = np.zeros(len(mesh.edges), dtype=bool)
-        bounds[mesh.edge_of.ravel()] = glued_bounds[edge.ravel()]
+    closed = mesh.closed
+    quads, named = (np.ascontiguousarray(of.quads, dtype=np.intp) for of in (closed, mesh))
+    bounds = np.zeros(len(closed.edges), dtype=bool)
+    bounds[closed.edge_of[mesh.twin < 0]] = True
+    found = None
+    if closed.manifold:
+        found = split_quads(quads, named, closed.edge_of, closed.twin, closed.irregular, bounds)
     if found is None:
         raise BlockingError("the lines of the quad mesh do not bound lattices")
     _, blocks, chord, chords = found
-    if edge is not mesh.edge_of:
-        own = np.zeros(len(mesh.edges), dtype=np.intp)
-        own[mesh.edge_of.ravel()] = chord[edge.ravel()]
-        chord = own
+    if closed is not mesh:  # an edge along periodic sides is two of the mesh
+        edge = np.empty(len(mesh.edges), dtype=np.intp)
+        edge[mesh.edge_of] = closed.edge_of
+        bounds, chord = bounds[edge], chord[edge]
     return BaseComplex(mesh, tuple(blocks), bounds, chord, chords)
-
-
-def glued_quads(mesh: QuadMesh) -> Indices:
-    """Return the quads (m, 4) with every node that has a partner replaced by it."""
-    partner = mesh.places.partner
-    return np.ascontiguousarray(np.where(partner >= 0, partner, np.arange(len(partner)))[mesh.quads])
-
-
-def _irregular(quads: Indices, twin: Indices, n: int) -> NDArray[np.bool_]:
-    wall = np.zeros(n, dtype=bool)
-    wall[quads[twin < 0]] = True
-    wall[np.roll(quads, -1, axis=1)[twin < 0]] = True
-    valence = np.bincount(quads.ravel(), minlength=n)
-    return (valence != np.where(wall, 2, 4)) & (valence > 0)

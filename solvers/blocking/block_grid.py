@@ -11,8 +11,10 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.chords import Chords
+from meshonet.solvers.blocking.collapse import irregular_inside
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
@@ -22,6 +24,10 @@ CELLS = 2500
 OPTIMISED = 6000
 """Most cells that are optimised themselves; more are splines through half as many each way."""
 ITERATIONS = 150
+CUT_OFF = 7e-4
+"""Most of the area that cells may cut off along walls, before walls get more of them."""
+ROUNDS, STEP, MORE = 4, 1.3, 1.15
+"""How often at the most, by which factor, and up to how many times the cells asked for."""
 
 
 @dataclass(frozen=True)
@@ -60,9 +66,8 @@ def block_grid(
     folded = sum(count_folded(block.nodes) for block in grid.blocks)
     if folded:
         raise NoValidGridError(f"{folded} cells of the blocks stay folded")
-    mesh = fine.mesh
-    irregular = int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
-    return grid, fine, BlockFacts(len(fine.blocks), fine.cells, irregular, timings)
+    facts = BlockFacts(len(fine.blocks), fine.cells, irregular_inside(fine.mesh), timings)
+    return grid, fine, facts
 
 
 def fine_layout(
@@ -77,22 +82,51 @@ def fine_layout(
     Raises NoValidGridError: it stays folded.
     """
     timings = timings or Timings()
-    chords = Chords.of(layout)
     area = layout.mesh.domain.area
     wanted = cells or (area / cell_size**2 if cell_size else CELLS)
     halvings = 0
     while wanted / 4**halvings > OPTIMISED:
         halvings += 1
-    with timings.stage("refine"):
+    chords = Chords.of(layout)
+    least = chords.least
+    fine: Layout | None = None
+    for _ in range(ROUNDS):
         if cell_size and not cells:
-            counts = chords.counts_for_size(cell_size * 2**halvings)
+            counts = chords.counts_for_size(cell_size * 2**halvings, least)
         else:
-            counts = chords.counts_for_cells(int(wanted / 4**halvings))
-        fine = refine(layout, counts, chords)
+            counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
+        if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
+            break
+        fine = _optimised(chords, counts, timings)
+        more = _more_along_walls(Chords.of(fine), 4.0**halvings)
+        if (more <= counts).all():
+            break
+        least = np.maximum(least, more)
+    assert fine is not None  # noqa: S101 - the first round makes it
+    with timings.stage("refine"):
+        return multiplied(fine, 2**halvings) if halvings else fine
+
+
+def _optimised(chords: Chords, counts: Indices, timings: Timings) -> Layout:
+    with timings.stage("refine"):
+        fine = refine(chords.layout, counts, chords)
     with timings.stage("optimum"):
         optimum = optimise(fine.mesh, iterations=ITERATIONS)
     if not optimum.valid:
         raise NoValidGridError("cells of the blocks stay folded after optimisation")
-    fine = Layout(optimum.mesh, fine.blocks)
-    with timings.stage("refine"):
-        return multiplied(fine, 2**halvings) if halvings else fine
+    return Layout(optimum.mesh, fine.blocks)
+
+
+def _more_along_walls(fine: Chords, finer: float) -> Indices:
+    """Return counts (chords,) of which cells cut less off along walls, if that is over `CUT_OFF` of the area.
+
+    It goes with the square of the counts; chords that cut off more than their part, by the length of walls,
+    get up to `STEP` times as many. `finer` is how many times less is cut off after refinement.
+    """
+    lost = np.bincount(fine.chord, fine.cut_off(), fine.count) / finer
+    walls = np.bincount(fine.chord, np.where(fine.wall, fine.lengths, 0.0), fine.count)
+    allowed = CUT_OFF * fine.layout.mesh.domain.area * walls / walls.sum()
+    if lost.sum() <= CUT_OFF * fine.layout.mesh.domain.area:
+        return fine.counts
+    over = np.sqrt(np.maximum(lost, 1e-300) / np.maximum(allowed, 1e-300))
+    return np.ceil(fine.counts * np.clip(over, 1.0, STEP)).astype(np.intp)

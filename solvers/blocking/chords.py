@@ -29,7 +29,7 @@ class Chords:
     """The edges of a layout's blocks, each once.
 
     `sides` (b, 4) are the edges at south, north, west and east of each block, `reversed` (b, 4) says where
-    the block runs the other way along one, `wall` (e,) which have one block only; the `partner` (e,) of an
+    the block runs the other way along one, `wall` (e,) which are walls; the `partner` (e,) of an
     edge is the one that it is, moved by the period, else -1, and `chord` (e,) numbers the chord of each.
     """
 
@@ -56,9 +56,10 @@ class Chords:
                     numbers[key] = len(edges)
                     edges.append(line[::-1] if turned[b, k] else line)
                 sides[b, k] = numbers[key]
-        wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
         partner = _partners(layout, edges, numbers)
         has = np.flatnonzero(partner >= 0)
+        wall = np.bincount(sides.ravel(), minlength=len(edges)) == 1
+        wall[has], wall[partner[has]] = False, False
         pairs = np.concatenate([sides[:, :2], sides[:, 2:], np.stack([has, partner[has]], axis=1)])
         chord, count = joined_classes(np.ascontiguousarray(pairs), len(edges))
         return cls(layout, tuple(edges), sides, turned, wall, partner, chord, count)
@@ -107,22 +108,38 @@ class Chords:
         along = counts[self.chord[self.sides]]
         return int((along[:, 0] * along[:, 2]).sum())
 
-    def counts_for_size(self, size: float) -> Indices:
-        """Return counts (chords,) for cells of a size: the geometric mean over edges of length / size."""
+    def cut_off(self) -> Floats:
+        """Return the areas (e,) between the walls and the cells along each edge, whatever their signs."""
+        mesh, lost = self.layout.mesh, np.zeros(len(self.edges))
+        part = np.linspace(0.0, 1.0, 5)
+        for edge in np.flatnonzero(self.wall):
+            arcs = self.arcs(int(edge))
+            loop = mesh.domain.loops[mesh.places.loop[self.edges[edge][0]]]
+            points = loop.at((arcs[:-1, None] + part * np.diff(arcs)[:, None]).ravel())
+            z = (points[:, 0] + 1j * points[:, 1]).reshape(-1, len(part))
+            z -= z[:, :1]
+            lost[edge] = 0.5 * np.abs((np.conj(z[:, :-1]) * z[:, 1:]).imag.sum(axis=1)).sum()
+        return lost
+
+    def counts_for_size(self, size: float, least: Indices | None = None) -> Indices:
+        """Return counts (chords,) for cells of a size: the geometric mean over edges of length / size.
+
+        They are at least `least` (chords,), by default the property of that name.
+        """
         wanted = np.log(np.maximum(self.lengths / size, 1e-9))
         mean = np.bincount(self.chord, wanted, self.count) / np.bincount(self.chord, minlength=self.count)
-        return np.maximum(self.least, np.round(np.exp(mean)).astype(np.intp))
+        return np.maximum(self.least if least is None else least, np.round(np.exp(mean)).astype(np.intp))
 
-    def counts_for_cells(self, cells: int) -> Indices:
+    def counts_for_cells(self, cells: int, least: Indices | None = None) -> Indices:
         """Return counts (chords,) for about so many cells in all; more where the fewest possible are more."""
         size = np.sqrt(self.layout.mesh.domain.area / cells)
-        best = self.counts_for_size(size)
+        best = self.counts_for_size(size, least)
         for _ in range(12):
             total = self.cells(best)
             if abs(total - cells) <= 0.02 * cells:
                 break
             size *= np.sqrt(total / cells)
-            counts = self.counts_for_size(size)
+            counts = self.counts_for_size(size, least)
             if abs(self.cells(counts) - cells) < abs(total - cells):
                 best = counts
         return best

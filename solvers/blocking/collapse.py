@@ -10,8 +10,6 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -20,6 +18,7 @@ from meshonet.solvers.blocking.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.contract import contract
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.score import PRICE, score
+from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
 FAILURES = 8
@@ -30,23 +29,27 @@ ITERATIONS = (6, 12, 22)
 
 
 def simplify(
-    mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS
+    mesh: QuadMesh,
+    *,
+    price: float = PRICE,
+    iterations: tuple[int, ...] = ITERATIONS,
+    sizes: SizeMetric | None = None,
 ) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    `price` is what a block costs, in degrees of mean deviation from 90.
+    `price` is what a block costs, in degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
     """
     current = base_complex(mesh)
-    best = score(mesh, len(current.blocks), price)
+    best = score(current, price)
     while True:
-        better = _first_gain(current, best, price, iterations)
+        better = _first_gain(current, best, price, iterations, sizes)
         if better is None:
             return current
         current, best = better
 
 
 def _first_gain(
-    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...]
+    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...], sizes: SizeMetric | None
 ) -> tuple[BaseComplex, float] | None:
     """Return the first collapse, and its score, that lowers `best`; None after `FAILURES`."""
     failures = 0
@@ -56,13 +59,14 @@ def _first_gain(
             continue
         mesh = trial.mesh
         for more in iterations:
-            optimum = optimise(mesh, iterations=more)
+            optimum = optimise(mesh, iterations=more, targets=sizes.edges(mesh) if sizes else None)
             if not optimum.valid:
                 break
             mesh = optimum.mesh
-            value = score(mesh, len(trial.blocks), price)
+            judged = trial.moved(mesh)
+            value = score(judged, price)
             if value < best:
-                return replace(trial, mesh=mesh), value
+                return judged, value
         failures += 1
         if failures >= FAILURES:
             return None
@@ -79,24 +83,18 @@ def _collapsed(current: BaseComplex, chord: int) -> BaseComplex | None:
         blocks = base_complex(trial)
     except BlockingError:
         return None
-    fewer = _irregular_inside(trial) < _irregular_inside(mesh)
+    fewer = irregular_inside(trial) < irregular_inside(mesh)
     return blocks if fewer or len(blocks.blocks) < len(current.blocks) else None
 
 
-def _irregular_inside(mesh: QuadMesh) -> int:
-    return int(np.count_nonzero(mesh.irregular & ~mesh.wall_nodes))
+def irregular_inside(mesh: QuadMesh) -> int:
+    """Return how many nodes inside have other than four quads, those on periodic sides once."""
+    closed = mesh.closed
+    return int(np.count_nonzero(closed.irregular & ~closed.wall_nodes & (closed.valence > 0)))
 
 
 def widths(current: BaseComplex) -> Floats:
-    """Return how wide each chord (chords,) is: the mean length of edges across it, all rows added up."""
-    mesh = current.mesh
-    step = mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]
-    edges = np.bincount(current.chord, minlength=current.chords)
-    mean = np.bincount(current.chord, np.hypot(*step.T), minlength=current.chords) / edges
-    sides = [line for block in current.blocks for line in (block[:, 0], block[0])]
-    ends = np.array([line[:2] for line in sides])
-    keys = mesh.edges[:, 0] * len(mesh.nodes) + mesh.edges[:, 1]
-    first = np.searchsorted(keys, ends.min(axis=1) * len(mesh.nodes) + ends.max(axis=1))
-    rows = np.zeros(current.chords)
-    rows[current.chord[first]] = [len(line) - 1 for line in sides]
-    return np.asarray(mean * rows)
+    """Return how wide each chord (chords,) is: the mean length of sides of blocks across it."""
+    chord = current.sides[2]
+    edges = np.bincount(chord, minlength=current.chords)
+    return np.bincount(chord, current.side_lengths().ravel(), current.chords) / edges

@@ -12,9 +12,9 @@ import numpy as np
 from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.laplacian import Laplacian, solve_complex
 from meshonet.solvers.blocking.surface import NEXT, PREVIOUS, Surface
 from meshonet.solvers.blocking.wall_directions import QUARTER, WallDirections, wall_directions
-from meshonet.solvers.sparse import SparsePattern
 
 _STEPS = 6
 _DIFFUSION = 0.003
@@ -29,6 +29,8 @@ class CrossField:
     walls: WallDirections
     crosses: Complexes
     """(n,) exp(4 i theta) at vertices."""
+    shears: Complexes
+    """(n,) linear maps z - nu conj(z), |nu| < 1, that make acute corners right ones."""
     angles: Floats
     """(t,) theta in each triangle, of one of its cross's four directions: that of the frame."""
     quarters: Indices
@@ -55,7 +57,7 @@ def cross_field(surface: Surface) -> CrossField:
     Raises SolverError: the sum of the singularities is not what the surface's topology asks for.
     """
     walls = wall_directions(surface)
-    crosses = _smooth(surface, np.where(surface.on_wall, np.exp(4j * walls.vertices), 0.0))
+    crosses, shears = _smooth(surface, walls)
     angles = np.angle(crosses[surface.vertices].sum(axis=1)) / 4.0
     inner = surface.neighbours >= 0
     lag = (angles[:, None] - angles[surface.neighbours]) / QUARTER
@@ -63,42 +65,28 @@ def cross_field(surface: Surface) -> CrossField:
     triangle, _ = surface.walls
     wall_axis = np.round((walls.edges - angles[triangle]) / QUARTER).astype(np.intp)
     valence, boundary_cells = _around_vertices(surface, walls, quarters, wall_axis)
-    field = CrossField(surface, walls, crosses, angles, quarters, wall_axis, valence, boundary_cells)
+    field = CrossField(surface, walls, crosses, shears, angles, quarters, wall_axis, valence, boundary_cells)
     _check_sum(field)
     return field
 
 
-def _smooth(surface: Surface, crosses: Complexes) -> Complexes:
-    """Return unit numbers (n,) in place of those inside."""
+def _smooth(surface: Surface, walls: WallDirections) -> tuple[Complexes, Complexes]:
+    """Return the crosses (n,), unit numbers, and the harmonic shears."""
+    crosses = np.where(surface.on_wall, np.exp(4j * walls.vertices), 0.0)
     free = surface.used & ~surface.on_wall
     if not free.any():
-        return crosses
-    number = np.cumsum(free) - 1
-    start, stop, weight = surface.vertices, surface.vertices[:, NEXT], surface.edge_weights
-    both = free[start] & free[stop]
-    count = int(free.sum())
-    diagonal = surface.gather(-weight - weight[:, PREVIOUS])[free]
-    pattern = SparsePattern(
-        count,
-        np.concatenate([number[start[both]], np.arange(count)]),
-        np.concatenate([number[stop[both]], np.arange(count)]),
-    )
-    given = weight * crosses[stop] + weight[:, PREVIOUS] * crosses[surface.vertices[:, PREVIOUS]]
-    flow = -(surface.gather(given.real) + 1j * surface.gather(given.imag))[free]
-    inside = _solve(pattern, np.append(weight[both], diagonal), flow)
+        return crosses, walls.shears
+    laplacian = Laplacian(surface, free)
+    flow, factor = laplacian.flow(crosses), laplacian.factor()
+    shears = walls.shears.copy()
+    shears[free] = solve_complex(factor, laplacian.flow(shears))
+    inside = solve_complex(factor, flow)
     lag = surface.masses[free] / (_DIFFUSION * float(surface.areas.sum()))
-    step = pattern.factor(np.append(weight[both], diagonal + lag))
+    step = laplacian.factor(lag)
     for _ in range(_STEPS):
-        right = lag * _unit(inside) + flow
-        inside = step.solve(right.view(np.float64).reshape(-1, 2)).view(np.complex128)[:, 0]
-    crosses = crosses.copy()
+        inside = solve_complex(step, lag * _unit(inside) + flow)
     crosses[free] = _unit(inside)
-    return crosses
-
-
-def _solve(pattern: SparsePattern, values: Floats, right: Complexes) -> Complexes:
-    solution = pattern.factor(values).solve(right.view(np.float64).reshape(-1, 2))
-    return np.asarray(solution.view(np.complex128)[:, 0])
+    return crosses, shears
 
 
 def _unit(z: Complexes) -> Complexes:

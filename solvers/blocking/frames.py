@@ -11,9 +11,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_comb, surface_prune
 from meshonet.solvers.blocking.cross_field import CrossField
+from meshonet.solvers.blocking.laplacian import Laplacian
 from meshonet.solvers.blocking.surface import NEXT, PREVIOUS
 from meshonet.solvers.blocking.wall_directions import QUARTER
-from meshonet.solvers.sparse import SparsePattern
 
 _LARGEST = 4.0
 """Of the logarithm of a frame's size."""
@@ -92,15 +92,7 @@ def frame_sizes(field: CrossField) -> Floats:
     right = surface.gather((surface.gradients * np.conj(turned)[:, None]).real)
     free = surface.used.copy()
     free[np.argmax(free)] = False
-    number = np.cumsum(free) - 1
-    begin, end, weight = surface.vertices, surface.vertices[:, NEXT], surface.edge_weights
-    both = free[begin] & free[end]
-    each = np.arange(int(free.sum()))
-    pattern = SparsePattern(
-        len(each), np.concatenate([number[begin[both]], each]), np.concatenate([number[end[both]], each])
-    )
-    diagonal = surface.gather(-weight - weight[:, PREVIOUS])[free]
     size = np.zeros(surface.size)
-    size[free] = pattern.factor(np.append(weight[both], diagonal)).solve(right[free])
+    size[free] = Laplacian(surface, free).factor().solve(right[free])
     size = np.clip(size - np.median(size[surface.used]), -_LARGEST, _LARGEST)
     return np.asarray(np.exp(size[surface.vertices].mean(axis=1)))

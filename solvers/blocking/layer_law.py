@@ -9,12 +9,15 @@ STEEPER = 0.2
 """By how much more than with a constant ratio, as a part of its logarithm, neighbouring cells may differ."""
 
 
-def layer_arcs(length: Floats, first: float, last: Floats, cells: int, constant: int = 1) -> Floats:
+def layer_arcs(
+    length: Floats, first: float, last: Floats, cells: int, constant: int = 1, growth: float = 1.0
+) -> Floats:
     """Return arcs (k, cells + 1) from 0 to `length` (k,) of cells that start with `first` at the wall.
 
-    The first `constant` cells are equal. The logarithm of the others is a parabola of their number that ends at
-    about `last` (k,), or as a constant ratio has it where that is infinite, as far as neighbouring cells then differ, in logarithms, by at most a fifth more than with
-    a constant ratio.
+    The first `constant` cells are equal. The logarithm of the others is a parabola of their number that ends
+    at about `last` (k,), or where a constant ratio has it if that is infinite: as far as neighbouring cells
+    then grow by at most `growth`, or a fifth more, in logarithms, than with a constant ratio. They do not
+    shrink.
     """
     rows = cells - constant + 1  # the last constant cell and those that grow
     rest = length - (constant - 1) * first
@@ -28,8 +31,10 @@ def layer_arcs(length: Floats, first: float, last: Floats, cells: int, constant:
         bend = 0.5 * (low + high)
         total = first * np.exp(slope[:, None] * k + bend[:, None] * k * (1 - k)).sum(axis=1)
         low, high = np.where(total < rest, bend, low), np.where(total < rest, high, bend)
-    steep = slope + np.abs(bend) > (1.0 + STEEPER) * plain  # the last cell gives way
-    bound = np.where(steep, np.clip(bend, -STEEPER * plain, STEEPER * plain), bend)
+    most = np.maximum((1.0 + STEEPER) * plain, (rows - 1) * np.log(growth))
+    room = np.minimum(most - plain, plain)
+    steep = (slope + np.abs(bend) > most) | (slope < np.abs(bend))  # the last cell gives way
+    bound = np.where(steep, np.clip(bend, -room, room), bend)
     if (bound != bend).any():
         slope, bend = _with_bend(rest, first, bound, slope, bend, k)
     steps = first * np.exp(slope[:, None] * k + bend[:, None] * k * (1 - k))

@@ -40,8 +40,8 @@ class LayerSettings:
         return self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
 
 
-def ring_metric(ring: Ring, settings: LayerSettings, scale: float, largest: float) -> SizeMetric:
-    """Return the sizes that the front of a ring asks for, those along it times `scale`."""
+def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:
+    """Return the sizes that the front of a ring asks for: its columns and its last layer."""
     points = ring.front.curve.points
     step = np.roll(points, -1, axis=0) - points
     length = np.hypot(*step.T)
@@ -53,7 +53,7 @@ def ring_metric(ring: Ring, settings: LayerSettings, scale: float, largest: floa
     rows = settings.rows(float(thickness.max()))
     arcs = layer_arcs(thickness, settings.first, np.full_like(thickness, np.inf), rows, settings.constant)
     across = JOIN * (arcs[:, -1] - arcs[:, -2])
-    return SizeMetric(points, normal, across, scale * along, largest)
+    return SizeMetric(points, normal, across, along, np.inf)
 
 
 def ring_rows(
@@ -66,7 +66,7 @@ def ring_rows(
     columns += part[..., None] * (mesh.nodes[order] - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
-        return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant)
+        return layer_arcs(length, settings.first, inner / JOIN, rows, settings.constant, settings.growth)
 
     lines = spaced(columns, law)
     _exact(lines, settings.first)
@@ -79,7 +79,8 @@ def heights_inside(layout: Layout, loop: int) -> Floats:
     height = np.zeros(len(mesh.nodes))
     for block in layout.blocks:
         for side, next_row in (
-            (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]), (block[0], block[1]), (block[-1], block[-2]),
+            (block[:, 0], block[:, 1]), (block[:, -1], block[:, -2]),
+            (block[0], block[1]), (block[-1], block[-2]),
         ):  # fmt: skip
             if (mesh.places.loop[side] == loop).all():
                 height[side] = np.maximum(

@@ -2,19 +2,19 @@
 
 ::
 
-    walls --march--> rings        fronts, near field --decompose--> layout --counts, optimum--> fine layout
-                       |                                                                             |
-                       +------------------ columns at the nodes of the fronts -----------------------+--> whole
+    walls --march--> rings    fronts, near field --decompose--> layout --counts, optimum--> fine layout
+                       |                                                                         |
+                       +------------------ columns at the nodes of the fronts -------------------+--> whole
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import NoValidGridError
@@ -28,6 +28,7 @@ from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
 from meshonet.solvers.blocking.refine import multiplied, refine
+from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.blocking.rings import Ring, march_ring
 from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
@@ -39,9 +40,12 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
+PRICE = 0.02
+"""Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 PASSES = 2
 """Optimisations, each with the sizes at the nodes of the one before."""
 _BISECTIONS = 12
+_PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,14 +79,16 @@ class Rings:
         rest += [rings[k].front if k in rings else domain.loops[k] for k in range(1, len(domain.loops))]
         return cls(domain, rings, near, Domain(tuple(rest), domain.name), settings)
 
+    @cached_property
+    def _metric(self) -> SizeMetric:
+        if not self.rings:
+            return feature_sizes(self.rest)
+        return SizeMetric.joined([ring_metric(ring, self.settings) for ring in self.rings.values()])
+
     def metric(self, scale: float) -> SizeMetric:
         """Return the sizes of cells outside the rings; `scale` is that of their columns."""
         largest = self.rest.extent / 12.0 * scale**0.5
-        features = feature_sizes(self.rest)
-        return SizeMetric.joined(
-            [ring_metric(ring, self.settings, scale, largest) for ring in self.rings.values()]
-            + [replace(features, largest=largest)][: 0 if self.rings else 1]
-        )
+        return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
     def rows(self, ring: Ring) -> int:
         """Return the layers of a ring."""
@@ -103,7 +109,9 @@ def layered(
     with timings.stage("layers"):
         rings = Rings.around(domain, loops, settings)
     if layout is None:
-        layout = decompose(rings.rest, timings=timings, sizes=feature_sizes(rings.rest))
+        plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
+        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
+        layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
     fine = _outside(rings, layout, cells, timings)
     with timings.stage("layers"):
         return _joined(rings, fine)
@@ -118,7 +126,7 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
     with timings.stage("optimum"):
         mesh = coarse.mesh
         for _ in range(PASSES):
-            optimum = optimise(mesh, iterations=ITERATIONS, targets=edge_targets(mesh, metric))
+            optimum = optimise(mesh, iterations=ITERATIONS, targets=metric.edges(mesh))
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
@@ -126,19 +134,14 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
         return multiplied(Layout(mesh, coarse.blocks), times)
 
 
-def edge_targets(mesh: QuadMesh, metric: SizeMetric) -> Floats:
-    """Return the lengths (e,) that a metric wants of the edges of a mesh."""
-    first, second = mesh.nodes[mesh.edges].transpose(1, 0, 2)
-    return metric.length(0.5 * (first + second), second - first)
-
-
 def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
     low, high = np.log(0.1), np.log(8.0)
+    wanted = _Wanted(chords, rings.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
         metric = rings.metric(float(np.exp(middle)))
-        counts = counts_for_metric(chords, metric)
+        counts = wanted.counts(metric)
         total = chords.cells(counts) + _attached_cells(rings, chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)
     times = 1
@@ -159,20 +162,26 @@ def _attached_cells(rings: Rings, chords: Chords, counts: Indices) -> int:
     return total
 
 
-def counts_for_metric(chords: Chords, metric: SizeMetric) -> Indices:
-    """Return counts (chords,): the mean, by length, of the logarithms of what edges want."""
-    nodes = chords.layout.mesh.nodes
-    ends = np.cumsum([len(edge) - 1 for edge in chords.edges])
-    start = nodes[np.concatenate([edge[:-1] for edge in chords.edges])]
-    stop = nodes[np.concatenate([edge[1:] for edge in chords.edges])]
-    step = stop - start
-    parts = [
-        np.hypot(*step.T) / metric.length(start + part * step, step) for part in (0.1, 0.3, 0.5, 0.7, 0.9)
-    ]
-    wanted = np.add.reduceat(np.mean(parts, axis=0), np.concatenate([[0], ends[:-1]]))
-    weight = np.bincount(chords.chord, wanted, chords.count)
-    mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
-    return np.maximum(chords.least, np.round(np.exp(mean)).astype(np.intp))
+class _Wanted:
+    """What edges of chords want, for any sizes at the same points."""
+
+    def __init__(self, chords: Chords, metric: SizeMetric) -> None:
+        self.chords = chords
+        nodes = chords.layout.mesh.nodes
+        start = nodes[np.concatenate([edge[:-1] for edge in chords.edges])]
+        step = nodes[np.concatenate([edge[1:] for edge in chords.edges])] - start
+        self.length = np.hypot(*step.T)
+        self.near = [metric.near(start + part * step, step) for part in _PARTS]
+        self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
+
+    def counts(self, metric: SizeMetric) -> Indices:
+        """Return counts (chords,): the mean, by length, of the logarithms of what edges want."""
+        parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
+        chords = self.chords
+        wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
+        weight = np.bincount(chords.chord, wanted, chords.count)
+        mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
+        return np.maximum(chords.least, np.round(np.exp(mean)).astype(np.intp))
 
 
 def _joined(rings: Rings, outside: Layout) -> Layout:
@@ -185,10 +194,16 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     ]
     if rings.near is not None:
         rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
-    whole = attach(outside, rings.domain, rows)
+    whole = respaced(attach(outside, rings.domain, rows), rings.settings)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("layers are folded")
     return whole
+
+
+def _smooth(loop: Loop) -> Loop:
+    """Return a loop without the corners at which the field is not to turn: nodes are put there later."""
+    corners = tuple(k for k, cells in zip(loop.corners, loop.corner_cells, strict=True) if cells != 2)
+    return loop if corners == loop.corners else Loop(loop.curve, corners, loop.names[:1])
 
 
 def smallest_corner(mesh: QuadMesh) -> float:

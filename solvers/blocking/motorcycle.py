@@ -74,7 +74,7 @@ def motorcycle_graph(seamless: SeamlessMap) -> MotorcycleGraph:
         lone = _not_joined(graph, len(traced.ends))
         if lone < 0:
             return graph
-        joined.append(_free_vertex(seamless, walls, lone, graph.vertex, 7 * attempt))
+        joined.append(_free_vertex(walls, lone, graph.vertex, 7 * attempt))
     raise BlockingError(f"{len(walls.first) - 1} walls of the domain could not be joined by lines of the map")
 
 
@@ -116,7 +116,7 @@ def _graph(seamless: SeamlessMap, traced: _Traced, walls: Trails) -> MotorcycleG
     wall = np.full(len(vertex), -1, dtype=np.intp)
     stations: list[list[tuple[float, int, int, int]]] = [[] for _ in range(rays + len(walls.first) - 1)]
     for node in np.flatnonzero(ports.on_wall).tolist():
-        trail, length = walls.at_vertex(seamless, int(vertex[node]))
+        trail, length = walls.at_vertex(int(vertex[node]))
         wall[node] = rays + trail
         stations[rays + trail].append((length, node, int(quarters[node]), 0))
     sides = traced.ends[at_wall, 1:]
@@ -169,10 +169,10 @@ def _not_joined(graph: MotorcycleGraph, rays: int) -> int:
     return (apart or bare or [-1])[0] if walls > 1 or bare else -1
 
 
-def _free_vertex(seamless: SeamlessMap, walls: Trails, wall: int, taken: Indices, attempt: int) -> int:
+def _free_vertex(walls: Trails, wall: int, taken: Indices, attempt: int) -> int:
     """Return a vertex of a wall at which no node is."""
     pieces = slice(int(walls.first[wall]), int(walls.first[wall + 1]))
-    vertices = seamless.vertices[walls.face[pieces], walls.edge[pieces]]
+    vertices = walls.vertex[pieces]
     free = vertices[~np.isin(vertices, taken)]
     if not len(free):
         raise BlockingError(f"wall {wall} has no free vertex to join it to the others from")

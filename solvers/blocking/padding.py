@@ -22,8 +22,9 @@ INSET = 0.25
 
 def wrong_count(mesh: QuadMesh) -> NDArray[np.bool_]:
     """Return the boundary nodes (n,) where other than the wanted count of quads meet: 2 but at corners."""
-    cells = mesh.places.cells
-    return np.asarray(mesh.wall_nodes & (mesh.valence != np.where(cells > 0, cells, 2)))
+    closed = mesh.closed
+    cells = closed.places.cells
+    return np.asarray(closed.wall_nodes & (closed.valence != np.where(cells > 0, cells, 2)))
 
 
 def loops_to_pad(mesh: QuadMesh) -> list[int]:

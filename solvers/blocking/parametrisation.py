@@ -50,9 +50,14 @@ class Parametrisation:
             np.concatenate([self._places[0], self._size + self._rows, below]),
             np.concatenate([self._places[1], self._columns, below]),
         )
-        direction = sizes * np.exp(1j * frames.angles)
-        slopes = surface.areas[:, None] * np.conj(surface.gradients) * direction[:, None]
-        self._right = np.stack([slopes.real, -slopes.imag])
+        direction, shear = (
+            sizes * np.exp(1j * frames.angles),
+            frames.field.shears[surface.vertices].mean(axis=1),
+        )
+        self._wanted = sizes**2 * (1.0 - np.abs(shear) ** 2)
+        wanted = direction - shear * np.conj(direction), 1j * (direction + shear * np.conj(direction))
+        inner = [surface.areas[:, None] * np.conj(surface.gradients) * g[:, None] for g in wanted]
+        self._right = np.stack([slopes.real for slopes in inner])
 
     def _unknowns(self, frames: Frames) -> tuple[Indices, int]:
         """Return the unknown (2, t, 3) that u and v of each corner are, -1 for 0, and how many there are."""
@@ -122,7 +127,7 @@ class Parametrisation:
     def jacobians(self, coords: Complexes) -> Floats:
         """Return the determinants (t,) of the map's derivative, by those that are wanted."""
         first, second = coords[:, 1] - coords[:, 0], coords[:, 2] - coords[:, 0]
-        return np.asarray((np.conj(first) * second).imag / (2.0 * self.surface.areas * self.sizes**2))
+        return np.asarray((np.conj(first) * second).imag / (2.0 * self.surface.areas * self._wanted))
 
 
 def _joined(count: int, pairs: list[list[int]]) -> Indices:

@@ -38,7 +38,7 @@ class Passage:
     front : the blade, or the front of its layers, the passage on its left.
     map : to the plane in which it is an ordinary domain.
     domain : that domain: front, inlet, outlet.
-    inlet, outlet : distances from the centre of the map at which blocks end, along its axis; negative upstream.
+    inlet, outlet : distances from the centre of the map, along its axis, at which blocks end.
     """
 
     front: Loop
@@ -49,7 +49,7 @@ class Passage:
 
     @classmethod
     def around(cls, front: Loop, pitch: tuple[float, float], name: str = "") -> Passage:
-        """Return the passage around a closed front; `pitch` leads to the next blade, to the left of the flow."""
+        """Return the passage around a closed front; `pitch` leads to the next blade, left of the flow."""
         points = front.curve.points
         passage = PassageMap(complex(*pitch), inner_point(points))
         axial = passage.axial(points)
@@ -64,7 +64,7 @@ class Passage:
         return cls(front, passage, Domain((blade, *ends), name), inlet, outlet)
 
     def front_arcs(self, arcs: Floats) -> Floats:
-        """Return the arc lengths (n,) of the front at those of the loop that it is in the plane of the map."""
+        """Return the arc lengths (n,) of the front at those of its image in the plane of the map."""
         loop = self.domain.loops[BLADE]
         count = len(loop.curve.points)
         index = np.interp(

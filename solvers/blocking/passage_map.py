@@ -4,15 +4,17 @@ With p the pitch and z₀ a point of the blade, the conformal map
 
     ζ = iπ (z - z₀) / p,   w = coth ζ
 
-is the same for z and z + p. The blade becomes the outer loop (it surrounds the pole z₀), and a line across the
-flow, Re ζ = ±a, the circle around ±coth 2a of radius 1/sinh 2a: inlet and outlet. Angles stay what they are.
+is the same for z and z + p. The blade becomes the outer loop (it surrounds the pole z₀), and a line across
+the flow, Re ζ = ±a, the circle around ±coth 2a of radius 1/sinh 2a: inlet and outlet. Angles stay the same.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Complexes, Floats
 
@@ -33,7 +35,7 @@ class PassageMap:
 
     def axial(self, points: Floats) -> Floats:
         """Return how far (n,) points (n, 2) are from the centre along the axis."""
-        return np.asarray((_complex(points) - self.centre) * np.conj(self.axis)).real
+        return np.asarray(((_complex(points) - self.centre) * np.conj(self.axis)).real)
 
     def forward(self, points: Floats) -> Floats:
         """Return the places w (n, 2) of points z (n, 2)."""
@@ -41,7 +43,7 @@ class PassageMap:
         return _pairs(1.0 / np.tanh(zeta))
 
     def back(self, places: Floats) -> Floats:
-        """Return the points z (n, 2) of places w (n, 2) within half a pitch of the axis through the centre."""
+        """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
         w = _complex(places)
         zeta = 0.5 * np.log((w + 1.0) / (w - 1.0))
         return _pairs(self.centre + zeta * self.pitch / (1j * np.pi))
@@ -99,5 +101,5 @@ def _complex(points: Floats) -> Complexes:
     return np.asarray(points[..., 0] + 1j * points[..., 1])
 
 
-def _pairs(values: Complexes) -> Floats:
+def _pairs(values: NDArray[Any]) -> Floats:
     return np.stack([values.real, values.imag], axis=-1)

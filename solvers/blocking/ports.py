@@ -36,13 +36,14 @@ class Ports:
 
 
 def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
-    """Return the ports of all corners and singular vertices, then those of `joined`, vertices of walls."""
+    """Return the ports of corners, ends of stretches and singular vertices, then of `joined` on walls."""
     cells = seamless.boundary_cells
     count = len(seamless.on_wall)
     around = np.zeros(count, dtype=np.intp)
     around[: len(cells)] = cells
     corners = np.zeros(count, dtype=bool)
     corners[: len(cells)] = (seamless.corner_cells > 0) | ((cells != 2) & (cells > 0))
+    corners[list(stretch_ends(seamless))] = True
     corners &= seamless.on_wall
     around = np.where(seamless.on_wall, around, seamless.valence)
     vertex = np.concatenate([np.flatnonzero(corners), seamless.singular, joined]).astype(np.intp)
@@ -58,6 +59,19 @@ def ports_of(seamless: SeamlessMap, joined: Indices) -> Ports:
     shoots = late | ~on_wall | (quarters != 2)
     starts = _starts(face, corner, owner, port, margin, shoots, int(quarters.max(initial=1)))
     return Ports(vertex, quarters, on_wall, node_at, port_at, starts)
+
+
+def stretch_ends(seamless: SeamlessMap) -> tuple[int, ...]:
+    """Return the vertices at both ends of the first stretch of a periodic domain, none of any other."""
+    triangulation = seamless.triangulation
+    if triangulation.domain.periodic is None:
+        return ()
+    length = triangulation.domain.loops[0].length
+    found = []
+    for end in triangulation.domain.periodic.first:
+        apart = np.abs(np.mod(triangulation.arc - end + length / 2, length) - length / 2)
+        found.append(int(np.argmin(np.where(triangulation.loop == 0, apart, np.inf))))
+    return tuple(found)
 
 
 def _fans(seamless: SeamlessMap, vertex: Indices) -> tuple[Indices, Indices]:

@@ -90,7 +90,12 @@ class Ring:
         )
         exact = index == np.round(index)
         starts[exact] = self.arcs[index[exact].astype(np.intp) % n]
-        nodes[:, 0] = self.wall.at(starts)
+        wall = self.wall.at(starts)
+        step = np.diff(nodes, axis=1)
+        height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
+        left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))  # of the way to the front
+        nodes += left[..., None] * (wall - nodes[:, 0])[:, None]
+        nodes[:, 0] = wall
         return nodes, starts
 
     def _unwrapped(self) -> Floats:
@@ -171,7 +176,7 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
         settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
         AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
     )  # fmt: skip
-    steps = first * most ** np.arange(cells)
+    steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
     hyperbolic_march(levels[0], levels[1], steps, *knobs, None, ratios / most)
     return np.ascontiguousarray(levels.transpose(2, 1, 0))
 

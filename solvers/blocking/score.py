@@ -6,6 +6,7 @@
     + 0.05 of the 99th percentile of cells' worst + 0.1 of what the worst exceeds 60 degrees by
     + 0.15 of what the turning of a wall along one edge exceeds 35 degrees by
     + 4 for each wall node with a wrong count of quads + `price` for each block
+    + `SIZES` times the mean square of the log of cell lengths over the length wanted everywhere
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.solvers.blocking.base_complex import BaseComplex
 from meshonet.solvers.blocking.padding import wrong_count
 from meshonet.solvers.blocking.wall_turning import turning_between
 
@@ -21,8 +23,13 @@ PRICE = 0.12
 """Degrees of mean deviation that a block costs."""
 
 
-def score(mesh: QuadMesh, blocks: int, price: float = PRICE) -> float:
-    """Return the score of a quad mesh that has so many blocks; the lower, the better."""
+SIZES = 8.0
+"""Degrees of mean deviation that cells everywhere e times too long or short cost."""
+
+
+def score(blocks: BaseComplex, price: float = PRICE) -> float:
+    """Return the score of the blocks of a quad mesh; the lower, the better."""
+    mesh = blocks.mesh
     off = deviations(mesh)
     worst = off.max(axis=1)
     return float(
@@ -31,8 +38,24 @@ def score(mesh: QuadMesh, blocks: int, price: float = PRICE) -> float:
         + 0.1 * max(0.0, worst.max() - 60.0)
         + 0.15 * max(0.0, largest_turning(mesh) - 35.0)
         + 4.0 * np.count_nonzero(wrong_count(mesh))
-        + price * blocks
+        + price * len(blocks.blocks)
+        + SIZES * size_spread(blocks)
     )
+
+
+def size_spread(blocks: BaseComplex) -> float:
+    """Return the mean square of log(length / mean length) of sides of blocks across each chord.
+
+    A chord has as many cells everywhere, so the spread of these lengths is that of its cells. Means are by
+    the area of blocks.
+    """
+    lengths = np.log(blocks.side_lengths())
+    chord = blocks.sides[2]
+    across = np.exp(lengths).reshape(-1, 2, 2).mean(axis=2)
+    area = np.repeat(across[:, 0] * across[:, 1], 4)
+    weight = np.bincount(chord, area, blocks.chords)
+    mean = np.bincount(chord, area * lengths.ravel(), blocks.chords) / weight
+    return float((area * (lengths.ravel() - mean[chord]) ** 2).sum() / area.sum())
 
 
 def deviations(mesh: QuadMesh) -> Floats:
@@ -47,7 +70,8 @@ def deviations(mesh: QuadMesh) -> Floats:
 
 def largest_turning(mesh: QuadMesh) -> float:
     """Return the most degrees by which a wall turns along one edge of the mesh."""
-    on = mesh.on_wall[mesh.edge_of]
+    closed = mesh.closed
+    on = closed.on_wall[closed.edge_of]
     first, second = mesh.quads[on], np.roll(mesh.quads, -1, axis=1)[on]
     loops, arcs = mesh.places.loop, mesh.places.arc
     most = 0.0

@@ -13,13 +13,14 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.cross_field import CrossField, cross_field
 from meshonet.solvers.blocking.frames import cut_frames, frame_sizes
 from meshonet.solvers.blocking.parametrisation import Parametrisation
+from meshonet.solvers.blocking.split_edges import split_edges_between_walls
 from meshonet.solvers.blocking.surface import Surface
 from meshonet.solvers.blocking.triangulation import Triangulation, triangulate
 
 _FINER = 0.35
 """Edges at singularities, by those of the first triangulation."""
-_STIFFENINGS = 5
-_NEARLY_FOLDED, _SMALL = 1e-3, 0.05
+_STIFFENINGS = 12
+_NEARLY_FOLDED, _SMALL = 1e-3, 0.2
 """Jacobians, by those wanted, for which the map is solved again, and those where it is made stiffer."""
 
 
@@ -91,6 +92,13 @@ class SeamlessMap:
         return int((self.jacobians <= 0.0).sum())
 
     @property
+    def worst_place(self) -> tuple[float, float]:
+        """Where the triangle of the smallest Jacobian is, for messages."""
+        corners = self.triangulation.triangles[np.argmin(self.jacobians)]
+        x, y = self.triangulation.points[corners].mean(axis=0)
+        return float(x), float(y)
+
+    @property
     def singular(self) -> Indices:
         """Inner vertices where other than four cells meet, ascending."""
         return np.flatnonzero((self.valence != 4) & (self.valence > 0))
@@ -105,7 +113,7 @@ def seamless_map(domain: Domain, count: int = 1500, seed: int = 0) -> SeamlessMa
 
     Raises SolverError: the field or the map have no solution; InputError: the domain cannot be triangulated.
     """
-    surface = Surface.of(triangulate(domain, count, seed=seed))
+    surface = _surface(triangulate(domain, count, seed=seed))
     field = cross_field(surface)
     singular = field.singular
     if len(singular):
@@ -113,8 +121,12 @@ def seamless_map(domain: Domain, count: int = 1500, seed: int = 0) -> SeamlessMa
         if domain.periodic is not None:
             shift = np.asarray(domain.periodic.shift)
             points, sizes = np.concatenate([points, points + shift, points - shift]), np.tile(sizes, 3)
-        field = cross_field(Surface.of(triangulate(domain, count, finer=(points, sizes), seed=seed)))
+        field = cross_field(_surface(triangulate(domain, count, finer=(points, sizes), seed=seed)))
     return map_of_field(field)
+
+
+def _surface(triangulation: Triangulation) -> Surface:
+    return Surface.of(split_edges_between_walls(triangulation))
 
 
 def map_of_field(field: CrossField) -> SeamlessMap:
@@ -122,15 +134,8 @@ def map_of_field(field: CrossField) -> SeamlessMap:
     surface = field.surface
     frames, sizes = cut_frames(field), frame_sizes(field)
     system = Parametrisation(frames, sizes)
-    weights = np.ones(len(sizes))
-    coords = system.solve(weights)
+    coords = _unfolded(system)
     jacobians = system.jacobians(coords)
-    for _ in range(_STIFFENINGS):
-        if jacobians.min() > _NEARLY_FOLDED:
-            break
-        weights[jacobians < _SMALL] *= 4.0
-        coords = system.solve(weights)
-        jacobians = system.jacobians(coords)
     wall_axis = np.full(surface.vertices.shape, -1, dtype=np.intp)
     wall_axis[surface.walls] = frames.wall_axis
     start, corners = surface.fans
@@ -153,3 +158,16 @@ def map_of_field(field: CrossField) -> SeamlessMap:
         sizes=sizes,
         jacobians=jacobians,
     )
+
+
+def _unfolded(system: Parametrisation) -> Complexes:
+    """Return coordinates (t, 3), stiffer where triangles come out small or folded (Bommes et al. 2009)."""
+    weights = np.ones(len(system.sizes))
+    coords = system.solve(weights)
+    for _ in range(_STIFFENINGS):
+        jacobians = system.jacobians(coords)
+        if jacobians.min() > _NEARLY_FOLDED:
+            break
+        weights[jacobians < _SMALL] *= 2.0
+        coords = system.solve(weights)
+    return coords

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -47,10 +48,19 @@ class Trails:
     """(k,) number of the loop, for walls; -1 for rays."""
     arc: Floats
     """(p, 2) arc lengths on the loop at the start of the piece and how much it is long; 0 for rays."""
-    _places: dict[tuple[int, int], int] = field(default_factory=dict, repr=False)
-    """Piece of each wall's triangle and edge."""
-    _vertices: dict[int, int] = field(default_factory=dict, repr=False)
-    """Piece that starts at a wall's vertex."""
+    vertex: Indices
+    """(p,) vertex at the start of the piece, at walls; -1 elsewhere."""
+
+    @cached_property
+    def _edges(self) -> dict[tuple[int, int], int]:
+        """Piece of each wall's triangle and edge."""
+        keys = zip(self.face.tolist(), self.edge.tolist(), strict=True)
+        return {key: piece for piece, key in enumerate(keys)}
+
+    @cached_property
+    def _vertices(self) -> dict[int, int]:
+        """Piece that starts at each wall's vertex."""
+        return {vertex: piece for piece, vertex in enumerate(self.vertex.tolist())}
 
     def total(self, trail: int) -> float:
         """Return the length of a trail in the map."""
@@ -60,21 +70,15 @@ class Trails:
         """Return the trail of a piece."""
         return int(np.searchsorted(self.first, piece, side="right")) - 1
 
-    def at_vertex(self, seamless: SeamlessMap, vertex: int) -> tuple[int, float]:
+    def at_vertex(self, vertex: int) -> tuple[int, float]:
         """Return the trail of walls through a vertex, and its length there."""
-        if not self._vertices:
-            starts = seamless.vertices[self.face, self.edge].tolist()
-            self._vertices.update({v: piece for piece, v in enumerate(starts)})
         piece = self._vertices[vertex]
         trail = self.trail_of(piece)
         return trail, float(self.length[piece + trail])
 
     def at_edge(self, face: int, edge: int, part: float) -> tuple[int, float]:
         """Return the trail of walls over part of an edge, and its length there."""
-        if not self._places:
-            keys = zip(self.face.tolist(), self.edge.tolist(), strict=True)
-            self._places.update({key: piece for piece, key in enumerate(keys)})
-        piece = self._places[face, edge]
+        piece = self._edges[face, edge]
         trail = self.trail_of(piece)
         start, stop = self.length[piece + trail : piece + trail + 2]
         return trail, float(start + part * (stop - start))
@@ -94,13 +98,10 @@ class Trails:
 
     def joined(self, others: Trails) -> Trails:
         """Return these trails and then the others."""
-        pairs = ((getattr(self, name), getattr(others, name)) for name in _BY_PIECE)
-        columns = dict(zip(_BY_PIECE, (np.concatenate(pair) for pair in pairs), strict=True))
-        first = np.append(self.first, others.first[1:] + self.first[-1])
-        return Trails(first=first, **columns)
-
-
-_BY_PIECE = ("face", "edge", "axis", "origin", "length", "begin", "end", "loop", "arc")
+        names = [each.name for each in fields(self)]
+        mine, theirs = ([getattr(trails, name) for name in names] for trails in (self, others))
+        theirs[0] = theirs[0][1:] + self.first[-1]
+        return Trails(*(np.concatenate(pair) for pair in zip(mine, theirs, strict=True)))
 
 
 def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int) -> Trails:
@@ -127,6 +128,7 @@ def ray_trails(seamless: SeamlessMap, pieces: Indices, lines: Floats, rays: int)
         end=to_plane(seamless, face, stop),
         loop=np.full(rays, -1, dtype=np.intp),
         arc=np.zeros((len(face), 2)),
+        vertex=np.full(len(face), -1, dtype=np.intp),
     )
 
 
@@ -169,6 +171,7 @@ def wall_trails(seamless: SeamlessMap) -> Trails:
         end=plane[there],
         loop=np.asarray(loops, dtype=np.intp),
         arc=np.stack([arc, np.mod(triangulation.arc[there] - arc, whole)], axis=1),
+        vertex=seamless.vertices[face, edge],
     )
 
 

@@ -2,7 +2,7 @@
 
 ::
 
-    inlet -------- cut, moved by the pitch -------- outlet      the cut runs along sides of blocks; nodes on it
+    inlet -------- cut, moved by the pitch -------- outlet      the cut runs along sides of blocks; its nodes
       |                                               |        are there twice, the second time as partners
     inlet ----------------- cut ------------------- outlet
 """
@@ -63,7 +63,7 @@ def unwrap(layout: Layout, passage: PassageMap) -> Unwrapped:
     principal = passage.back(mesh.nodes)
     nodes = principal[source] + (shift + low)[:, None] * pitch
     places = mesh.places.take(source)
-    pair = {}
+    pair: dict[int, list[tuple[int, int]]] = {}
     for new, (node, turn) in enumerate(zip(source.tolist(), shift.tolist(), strict=True)):
         pair.setdefault(node, []).append((turn, new))
     if any(len(pair[node]) != 2 for node in cut.tolist()):
@@ -92,7 +92,7 @@ def _cut(layout: Layout, passage: PassageMap) -> Indices:
         links.setdefault(a, []).append((length, b, k))
         links.setdefault(b, []).append((length, a, k))
     starts = [v for v in links if loop[v] == INLET]
-    best = {v: 0.0 for v in starts}
+    best = dict.fromkeys(starts, 0.0)
     before: dict[int, tuple[int, int]] = {}
     heap = [(0.0, v) for v in starts]
     while heap:

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Complexes, Floats
 from meshonet.geometry.domain.loop import CORNER_DEG, Loop
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.surface import NEXT, Surface
+
+Flags: TypeAlias = NDArray[np.bool_]
 
 QUARTER = 0.5 * np.pi
 _REACH = 0.15
@@ -24,6 +28,9 @@ class WallDirections:
     """(b,) cells wanted at boundary vertices that are corners, 0 at all others."""
     vertices: Floats
     """(n,) angle at each wall vertex, 0 at all others."""
+    shears: Complexes
+    """(n,) near acute corners the linear map z - nu conj(z) that turns the walls to have these angles: it
+    takes the place of one that shrinks to nothing in the corner as a power of the distance."""
     edges: Floats
     """(w,) angle of each wall edge, in the order of `Surface.walls`."""
     offsets: Floats
@@ -43,7 +50,7 @@ def wall_directions(surface: Surface) -> WallDirections:
     start = surface.vertices[triangle, edge]
     own = np.angle(surface.edges[triangle, edge])
     inside = surface.gather(surface.angles)
-    cells, after, before = _corner_offsets(surface, np.where(surface.on_wall, inside, 0.0))
+    cells, after, before, acute = _corner_offsets(surface, np.where(surface.on_wall, inside, 0.0))
     places = surface.triangulation.triangles
     leaving, arriving = after[places[triangle, edge]], before[places[triangle, NEXT[edge]]]
     angle = np.zeros(surface.size)
@@ -51,33 +58,40 @@ def wall_directions(surface: Surface) -> WallDirections:
     here = cells[start] > 0
     angle[start[here]] = own[here]
     angle[start] += leaving
+    shears = np.zeros(surface.size, dtype=np.complex128)
+    sheared = np.where(acute[places[triangle, edge]], np.tan(leaving), 0.0)
+    shears[start] = -1j * sheared * np.exp(2j * angle[start])
     offsets = 0.5 * (leaving + arriving)
-    return WallDirections(cells, angle, own + offsets, offsets, np.where(surface.on_wall, inside, 0.0))
+    inside = np.where(surface.on_wall, inside, 0.0)
+    return WallDirections(cells, angle, shears, own + offsets, offsets, inside)
 
 
-def _corner_offsets(surface: Surface, inside: Floats) -> tuple[Indices, Floats, Floats]:
-    """Return cells wanted (b,), and offsets (b,) of walls that leave vertices and of those that arrive."""
+def _corner_offsets(surface: Surface, inside: Floats) -> tuple[Indices, Floats, Floats, Flags]:
+    """Return cells wanted (b,), offsets (b,) of walls that leave vertices and of those that arrive.
+
+    And whether (b,) the nearest corner is acute: less than 90 degrees, and one cell is wanted.
+    """
     triangulation = surface.triangulation
     count = len(triangulation.arc)
     cells = np.zeros(count, dtype=np.intp)
-    after, before = np.zeros(count), np.zeros(count)
+    after, before, acute = np.zeros(count), np.zeros(count), np.zeros(count, dtype=bool)
     for number, loop in enumerate(triangulation.domain.loops):
         if not loop.corners:
             continue
         mine = np.flatnonzero(triangulation.loop == number)
-        away = _around(triangulation.arc[mine][:, None] - loop.corner_arcs, loop.length)
-        at = mine[np.argmin(np.abs(away), axis=0)]
+        arcs = triangulation.arc[mine]
+        at = mine[_nearest(loop.corner_arcs, arcs, loop.length)]
         vertex = surface.vertex_of[at]
         wanted = _wanted_cells(surface, loop.corner_cells, vertex, inside[vertex])
         cells[vertex] = wanted
         half = np.where(wanted > 0, 0.5 * (wanted * QUARTER - inside[vertex]), 0.0)
-        nearest = np.argmin(np.abs(away), axis=1)
-        reach = _reaches(loop)[nearest]
-        distance = np.take_along_axis(away, nearest[:, None], axis=1)[:, 0]
+        nearest = _nearest(arcs, loop.corner_arcs, loop.length)
+        reach, distance = _reaches(loop)[nearest], _around(arcs - loop.corner_arcs[nearest], loop.length)
+        acute[mine] = ((wanted == 1) & (half > 0))[nearest]
         offset = half[nearest] * np.maximum(0.0, 1.0 - np.abs(distance) / reach) ** 2
         after[mine] = before[mine] = np.where(distance > 0, -offset, offset)
         after[at], before[at] = -half, half
-    return cells, after, before
+    return cells, after, before, acute
 
 
 def _wanted_cells(surface: Surface, own: Indices, vertices: Indices, inside: Floats) -> Indices:
@@ -94,6 +108,14 @@ def _wanted_cells(surface: Surface, own: Indices, vertices: Indices, inside: Flo
 def _reaches(loop: Loop) -> Floats:
     steps = np.diff(loop.corner_arcs, append=loop.corner_arcs[0] + loop.length)
     return np.minimum(0.5 * np.minimum(steps, np.roll(steps, 1)), _REACH * loop.length)
+
+
+def _nearest(arcs: Floats, places: Floats, length: float) -> Indices:
+    """Return which of some ascending `places` around a loop is nearest to each arc length (m,)."""
+    after = np.searchsorted(places, arcs)
+    before, after = (after - 1) % len(places), after % len(places)
+    nearer = np.abs(_around(arcs - places[before], length)) <= np.abs(_around(arcs - places[after], length))
+    return np.where(nearer, before, after)
 
 
 def _around(length: Floats, whole: float) -> Floats:

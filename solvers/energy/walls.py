@@ -1,4 +1,4 @@
-"""Wall nodes of a quad mesh as unknowns: which slide on which loop, in which order, how far the loop turns."""
+"""Wall nodes of a quad mesh as unknowns: on which loop they are, in which order, how far the loop turns."""
 
 from __future__ import annotations
 
@@ -41,10 +41,11 @@ class Walls:
         return n[0], n[1], e[0], e[1]
 
 
-def walls_of(mesh: QuadMesh, edges: Indices, edge_of: Indices, fixed: Bools, tied: Bools) -> Walls | None:
-    """Return the walls of a mesh, nodes that overtook others put back; None where nodes that stay are out of order.
+def walls_of(mesh: QuadMesh, fixed: Bools, tied: Bools) -> Walls | None:
+    """Return the walls of a mesh, nodes that overtook others put back.
 
-    `fixed` (n,) are nodes that stay, `tied` (n,) those of periodic sides, which are no walls.
+    `fixed` (n,) are nodes that stay, `tied` (n,) those of periodic sides, which are no walls. None where
+    nodes that stay are out of order.
     """
     places = mesh.places
     on = (places.loop >= 0) & ~tied
@@ -55,8 +56,7 @@ def walls_of(mesh: QuadMesh, edges: Indices, edge_of: Indices, fixed: Bools, tie
     arc = np.mod(places.arc[nodes], lengths[loop])
     number = np.full(len(mesh.nodes), -1, dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
-    once = np.bincount(edge_of.ravel(), minlength=len(edges))[edge_of] == 1
-    cell, side = np.nonzero(once)
+    cell, side = np.nonzero(mesh.on_wall[mesh.edge_of])
     ends = np.stack([mesh.quads[cell, side], mesh.quads[cell, (side + 1) % 4]], axis=1)
     first, second = number[ends[:, 0]], number[ends[:, 1]]
     both = (first >= 0) & (second >= 0)
@@ -75,68 +75,50 @@ def walls_of(mesh: QuadMesh, edges: Indices, edge_of: Indices, fixed: Bools, tie
 
 def _in_order(arc: Floats, edges: Indices, length: Floats, fixed: Bools) -> tuple[Floats, bool]:
     """Return arc lengths (w,) that rise along the `edges` (e, 2) of each loop, and whether there are such."""
-    gap = arc[edges[:, 1]] - arc[edges[:, 0]]
-    gap = np.where(gap <= 0, gap + length, gap)
-    if not len(edges) or _laps(gap, edges, length, len(arc)):
-        return arc, True
-    return _put_back(arc, edges, length, fixed)
-
-
-def _laps(gap: Floats, edges: Indices, length: Floats, count: int) -> bool:
-    """Return whether the gaps along each closed ring of edges add up to its loop's length, once around."""
-    following = np.full(count, -1, dtype=np.intp)
-    following[edges[:, 0]] = np.arange(len(edges))
-    seen = np.zeros(len(edges), dtype=bool)
-    for start in range(len(edges)):
-        ring, k = [], start
-        while k >= 0 and not seen[k]:
-            seen[k] = True
-            ring.append(k)
-            k = int(following[edges[k, 1]])
-        if ring and gap[ring].sum() > length[ring[0]] * (1 + 1e-9):
-            return False
-    return True
-
-
-def _put_back(arc: Floats, edges: Indices, length: Floats, fixed: Bools) -> tuple[Floats, bool]:
-    """Spread nodes that overtook others between those that stay."""
-    arc = arc.copy()
     following = np.full(len(arc), -1, dtype=np.intp)
     following[edges[:, 0]] = np.arange(len(edges))
-    before = np.full(len(arc), -1, dtype=np.intp)
-    before[edges[:, 1]] = np.arange(len(edges))
-    anchors = [int(k) for k in np.flatnonzero(fixed & (following >= 0))]
-    seen = np.zeros(len(edges), dtype=bool)
-    for a in anchors + [int(e[0]) for e in edges]:
-        k, chain = int(following[a]), []
+    if _once_around(arc, edges, length, following):
+        return arc, True
+    arc = arc.copy()
+    for chain in _chains(edges, following, np.flatnonzero(fixed & (following >= 0)), fixed):
+        _spread(arc, edges[chain], float(length[chain[0]]), bool(fixed[edges[chain[-1], 1]]))
+    return arc, _once_around(arc, edges, length, following)
+
+
+def _once_around(arc: Floats, edges: Indices, length: Floats, following: Indices) -> bool:
+    """Return whether the way along each ring of edges is not more than its loop's length."""
+    gap = arc[edges[:, 1]] - arc[edges[:, 0]]
+    gap = np.where(gap <= 0, gap + length, gap)
+    nowhere = np.zeros(len(arc), dtype=bool)
+    rings = _chains(edges, following, np.empty(0, dtype=np.intp), nowhere)
+    return all(gap[ring].sum() <= length[ring[0]] * (1 + 1e-9) for ring in rings)
+
+
+def _chains(edges: Indices, following: Indices, starts: Indices, ends: Bools) -> list[list[int]]:
+    """Return the edges in chains, from nodes `starts` and then from others, up to those that are `ends`."""
+    seen, found = np.zeros(len(edges), dtype=bool), []
+    for start in [*starts.tolist(), *edges[:, 0].tolist()]:
+        k, chain = int(following[start]), []
         while k >= 0 and not seen[k]:
             seen[k] = True
             chain.append(k)
-            if fixed[edges[k, 1]] or edges[k, 1] == a:
-                break
-            k = int(following[edges[k, 1]])
-        if chain and not _spread(
-            arc, edges[chain], float(length[chain[0]]), bool(fixed[edges[chain[-1], 1]])
-        ):
-            return arc, False
-    return arc, True
+            k = -1 if ends[edges[k, 1]] else int(following[edges[k, 1]])
+        if chain:
+            found.append(chain)
+    return found
 
 
-def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> bool:
+def _spread(arc: Floats, chain: Indices, length: float, ends: bool) -> None:
     """Give the edges of a chain (k, 2) gaps above zero, in place; `ends`: at a node that stays."""
-    raw = arc[chain[:, 1]] - arc[chain[:, 0]]
-    gap = raw - length * np.round(raw / length)
-    total = gap.sum()
-    if ends or chain[-1, 1] == chain[0, 0]:
-        total = (arc[chain[-1, 1]] - arc[chain[0, 0]]) % length
-        total = total if total > 0 else length
-    if total <= 0:
-        return False
+    gap = arc[chain[:, 1]] - arc[chain[:, 0]]
+    gap = gap - length * np.round(gap / length)
+    whole = ends or chain[-1, 1] == chain[0, 0]
+    total = (arc[chain[-1, 1]] - arc[chain[0, 0]]) % length if whole else gap.sum()
+    total = total if total > 0 else length
     gap = np.maximum(gap, LEAST_GAP * total / len(gap))
     gap *= total / gap.sum()
-    inner = chain[:-1, 1] if ends or chain[-1, 1] == chain[0, 0] else chain[:, 1]
+    inner = chain[:-1, 1] if whole else chain[:, 1]
     arc[inner] = np.mod(arc[chain[0, 0]] + np.cumsum(gap)[: len(inner)], length)
-    return True
 
 
 @lru_cache(maxsize=256)

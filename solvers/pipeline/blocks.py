@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from meshonet.geometry.errors import InputError, NoValidGridError
 from meshonet.geometry.quality.measure import count_folded, worst_cells_of
-from meshonet.geometry.shapes.assembly import domain_of
+from meshonet.geometry.shapes.assembly import assembled, domain_of
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.shape import Shape
 from meshonet.geometry.spacing.sampling import Sampling
@@ -123,10 +123,22 @@ def block_request(request: GridRequest) -> BlockRequest:
 
 
 def _domain(shape: Shape, request: GridRequest) -> DomainShape:
+    if request.pitch is not None:
+        return _blade(shape, request.sampling)
     domain = domain_of(shape, request.sampling)
     if request.sampling.far_field is not None and not domain.far_field:
         raise InputError("a domain with a boundary of its own has no far field", "leave {far_field} out")
     return domain
+
+
+def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
+    """Return the domain of which the only hole is the blade of a cascade."""
+    if sampling.far_field is not None:
+        raise InputError("the passage of a cascade has no far field", "leave {far_field} out")
+    around = assembled([shape], ["blade"], sampling, shape.name)
+    if len(around.domain.loops) != 2 or not around.far_field:
+        raise InputError("a cascade is made of one blade", "give one closed curve", parameter="pitch")
+    return around
 
 
 def _for_one(request: GridRequest) -> dict[str, bool]:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.measure import measure
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
@@ -208,6 +209,9 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
     begun = time.perf_counter()
     quality = measure(solution.grid, percentiles=request.percentiles)
     seconds["quality"] = time.perf_counter() - begun
+    if quality.folded and not request.allow_invalid:
+        problem = f"{quality.folded} of {quality.cells} cells of the blocks are folded; use more {{cells}}"
+        raise NoValidGridError(problem, worst_cells_of(solution.grid))
     return Result(solution, quality, seconds, solution.notes)
 
 

@@ -17,6 +17,7 @@ from meshonet.formats.cgns.nodes import child, root
 from meshonet.formats.cgns.read import read_grids
 from meshonet.formats.cgns.write import write_grids
 from meshonet.formats.mesh.unstructured import unstructured
+from meshonet.formats.registry import read_grids as read_any
 from meshonet.formats.source import open_source
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.connection import Motion
@@ -180,7 +181,7 @@ def pair(shift: float = 0.0) -> tuple[Floats, Floats]:
     """Two blocks beside each other, 5 x 4 and 3 x 4 nodes, the second `shift` away."""
     x, y = np.meshgrid(np.arange(7.0), np.arange(4.0), indexing="ij")
     nodes = np.stack([x, y + 0.1 * x * y], axis=-1)
-    return nodes[:5], nodes[4:] + (shift, 0)
+    return nodes[:5], nodes[4:] + np.array([shift, 0])
 
 
 @pytest.mark.parametrize("own", [[[5, 1], [5, 4]], [[5, 4], [5, 1]]])
@@ -256,7 +257,7 @@ def test_zones_in_several_bases_that_touch_are_one_grid_and_others_are_not(tmp_p
     left, right = pair()
     with h5py.File(tmp_path / "g.cgns", "w", track_order=True) as file:
         top = root(file)
-        for name, nodes in (("A", left), ("B", right), ("C", left + (0, 50))):
+        for name, nodes in (("A", left), ("B", right), ("C", left + np.array([0, 50]))):
             base = child(top, name, "CGNSBase_t", np.array([2, 2], np.int32))
             made = zone(base, "zone", nodes)
             if name == "A":
@@ -313,6 +314,43 @@ def test_a_single_zone_of_others_keeps_its_names_when_it_is_turned(tmp_path: Pat
     assert {(p.name, p.side, p.kind) for p in grid.patches} == {
         ("skin", "south", "wall"), ("far", "north", "farfield"),
     }  # fmt: skip
+
+
+@pytest.mark.usefixtures("silent_gmsh")
+@pytest.mark.parametrize("ending", ["cgns", "p3d"])
+def test_what_gmsh_writes_of_transfinite_surfaces_is_one_grid(ending: str, tmp_path: Path) -> None:
+    import gmsh
+
+    geo, lines = gmsh.model.geo, dict[str, int]()
+    points = {
+        name: geo.addPoint(x, y, 0)
+        for name, (x, y) in {
+            "a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (2, 1), "e": (1, 1), "f": (0, 1), "g": (1, 2), "h": (0, 2)
+        }.items()
+    }  # fmt: skip
+    for corners in ("abef", "bcde", "fegh"):
+        loop = []
+        for first, second in zip(corners, corners[1:] + corners[0], strict=True):
+            if second + first not in lines:
+                lines[first + second] = geo.addLine(points[first], points[second])
+            loop.append(lines.get(first + second) or -lines[second + first])
+        surface = geo.addPlaneSurface([geo.addCurveLoop(loop)])
+        geo.mesh.setTransfiniteSurface(surface)
+        geo.mesh.setRecombine(2, surface)
+    for name, line in lines.items():
+        geo.mesh.setTransfiniteCurve(line, 6 if name in ("ab", "ef", "gh") else 5)
+    geo.synchronize()
+    gmsh.model.addPhysicalGroup(1, [lines["ab"], lines["bc"]], name="wall")
+    gmsh.model.addPhysicalGroup(1, [lines["gh"]], name="outlet")
+    gmsh.model.addPhysicalGroup(2, [1, 2, 3], name="fluid")
+    gmsh.model.mesh.generate(2)
+    gmsh.option.setNumber("Mesh.CgnsExportStructured", 1)
+    gmsh.write(str(tmp_path / f"g.{ending}"))
+    (grid,) = read_any(str(tmp_path / f"g.{ending}"))
+    mesh = unstructured(grid)
+    assert (len(grid.blocks), len(grid.connections), len(mesh.points), len(mesh.quads)) == (3, 2, 74, 56)
+    sizes = {name: len(edges) for name, edges in mesh.edges.items()}
+    assert sizes == ({"wall": 9, "outlet": 5, "outer": 20} if ending == "cgns" else {"outer": 34})
 
 
 @pytest.mark.parametrize("make", [butterfly, duct, step])

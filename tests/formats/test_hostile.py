@@ -91,12 +91,13 @@ def test_a_damaged_map_is_refused_or_read(
     write_plot3d(folder / "g.p3d", [passage()])
     good_map = (folder / "g.nmf").read_bytes()
     (folder / "g.nmf").write_bytes(data.draw(mutated(good_map)))
+    refused = None
     try:
         for grid in read_plot3d(Source("g", path=folder / "g.p3d")):
             assert all(patch.name.isprintable() for patch in grid.patches)
     except InputError as error:
-        assert error.remedy
-        assert str(error).isprintable()
+        refused = error
+    assert refused is None or (refused.remedy and str(refused).isprintable())
 
 
 @pytest.mark.parametrize("name", READABLE)

@@ -66,7 +66,7 @@ def test_a_missing_block_is_named(tmp_path: Path) -> None:
     write_grids(tmp_path / "g.vtm", [duct()])
     text = (tmp_path / "g.vtm").read_text()
     (tmp_path / "g.vtm").write_text(re.sub(r".*block-1.vts.*\n", "", text))
-    with pytest.raises(InputError, match="its connections|leaves its side|has blocks 0 of a grid"):
+    with pytest.raises(InputError, match="connection of east of block 0 to .* of block 1 leaves its side"):
         list(read_grids(open_source(str(tmp_path / "g.vtm"))))
 
 
@@ -75,7 +75,7 @@ def test_blocks_that_vtk_wrote_are_joined_where_they_touch(tmp_path: Path) -> No
     for k, block in enumerate((*butterfly().blocks, *duct().blocks)):
         points = vtk.vtkPoints()
         points.SetDataTypeToDouble()
-        for x, y in block.nodes.swapaxes(0, 1).reshape(-1, 2) + (9.0 * (k > 4), 0):
+        for x, y in block.nodes.swapaxes(0, 1).reshape(-1, 2) + np.array([9.0 * (k > 4), 0]):
             points.InsertNextPoint(x, y, 0)
         made = vtk.vtkStructuredGrid()
         made.SetDimensions(*block.counts, 1)

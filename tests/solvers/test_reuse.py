@@ -66,10 +66,7 @@ def test_a_loop_without_corners_turns_with_its_box() -> None:
     ("polygons", "told"),
     [
         ([STEP, circle(4, 1, 0.3)], "the layout is of a domain with 0 holes, this one has 1 hole; give a"),
-        (
-            [STEP[[0, 2, 3, 4, 5]]],
-            r"loop 0 \(outer\) has 4 corners, in the layout it has 6; give a layout of",
-        ),
+        ([STEP[[0, 2, 3, 4, 5]]], r"loop 0 \(outer\) has 4 corners, in the layout it has 6; give a"),
     ],
 )
 def test_a_domain_of_another_kind_is_refused_with_what_differs(polygons: list[Floats], told: str) -> None:

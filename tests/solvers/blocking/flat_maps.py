@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -21,9 +22,16 @@ def seamless_of(
     *,
     count: int = 1500,
     seed: int = 0,
+<<<<<<< HEAD
+=======
+    centre: bool = False,
+>>>>>>> main
 ) -> SeamlessMap:
-    """Return the map whose coordinates at corners z (t, 3) of triangles of centres (t, 1) are given."""
-    triangulation = triangulated(domain, count, seed)
+    """Return the map whose coordinates at corners z (t, 3) of triangles of centres (t, 1) are given.
+
+    With `centre` the origin is a vertex.
+    """
+    triangulation = triangulated(domain, count, seed, centre=centre)
     triangles, points = triangulation.triangles, triangulation.points
     z = points[:, 0] + 1j * points[:, 1]
     w = coordinates(z[triangles], z[triangles].mean(axis=1, keepdims=True))
@@ -69,7 +77,7 @@ def seamless_of(
     )
 
 
-def triangulated(domain: Domain, count: int, seed: int) -> Any:
+def triangulated(domain: Domain, count: int, seed: int, *, centre: bool) -> Any:
     """Return a Delaunay triangulation of about so many random points, corners among them."""
     rng = np.random.default_rng(seed)
     size = np.sqrt(domain.area / count)
@@ -80,7 +88,11 @@ def triangulated(domain: Domain, count: int, seed: int) -> Any:
             if loop.corners
             else [0, loop.length]
         )
+<<<<<<< HEAD
         for a, b in zip(ends[:-1], ends[1:], strict=True):
+=======
+        for a, b in pairwise(ends):
+>>>>>>> main
             steps = max(3, int(np.ceil((b - a) / size)))
             inner = (np.arange(1, steps) + rng.uniform(-0.2, 0.2, steps - 1)) / steps
             arc = a + (b - a) * np.append(0.0, inner)
@@ -96,10 +108,12 @@ def triangulated(domain: Domain, count: int, seed: int) -> Any:
     free = low + size * (grid + rng.uniform(-0.3, 0.3, grid.shape))
     inner = region.buffer(-0.5 * size)
     free = free[shapely.contains_xy(inner, free[:, 0], free[:, 1])]
+    if centre:
+        free[np.argmin(np.hypot(*free.T))] = 0.0
     every = np.concatenate([wall, free])
     triangles = Delaunay(every).simplices
-    centre = every[triangles].mean(axis=1)
-    triangles = triangles[shapely.contains_xy(region, centre[:, 0], centre[:, 1])].astype(np.intp)
+    middle = every[triangles].mean(axis=1)
+    triangles = triangles[shapely.contains_xy(region, middle[:, 0], middle[:, 1])].astype(np.intp)
     x = every[triangles]
     left = _area(x)
     triangles[left < 0] = triangles[left < 0][:, ::-1]

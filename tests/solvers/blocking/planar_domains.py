@@ -53,6 +53,7 @@ SHAPES = {
     "hexagon": [circle(0, 0, 1, 6)],
     "triangle": [wedge(60)],
     "needle": [wedge(12)],
+    "thin needle": [wedge(6)],
     "star": [np.repeat([1.0, 0.45], 1)[np.arange(10) % 2][:, None] * circle(0, 0, 1, 10)],
     "blob": [blob(3)],
     "blob with a blob": [blob(5, 1.5), blob(8, 0.35)],

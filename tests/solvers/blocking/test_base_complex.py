@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from quad_meshes import annulus, corner, disc, rectangle
+from known_meshes import annulus, corner, disc, rectangle
 
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.solvers.blocking.base_complex import base_complex

@@ -1,7 +1,7 @@
 """Chords taken out of quad meshes, and rings of quads put in."""
 
 import numpy as np
-from quad_meshes import annulus, corner, disc, lattice_in_a_circle, rectangle
+from known_meshes import annulus, corner, disc, lattice_in_a_circle, rectangle
 
 from meshonet.solvers.blocking.base_complex import base_complex
 from meshonet.solvers.blocking.collapse import widths

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flat_maps import cone, flat, logarithm, seamless_of
 
-from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.motorcycle import motorcycle_graph
@@ -29,7 +29,7 @@ def room_with_pillars(seed: int) -> Domain:
     for i, j in np.ndindex(3, 3):
         if rng.random() < 0.7:
             size = rng.uniform(0.15, 0.5, 2)
-            low = (i, j) + rng.uniform(0.15, 0.3, 2)
+            low = np.array([i, j]) + rng.uniform(0.15, 0.3, 2)
             pillars.append(box(*low, *size))
     return Domain.of_polygons([box(0, 0, 3.0, 3.0), *pillars])
 
@@ -47,7 +47,7 @@ def star_of_squares(valence: int) -> Domain:
 
 
 def checked(mesh: QuadMesh) -> QuadMesh:
-    """Assert what every mesh must be: conforming, of the domain's topology, wall nodes on their loops in order."""
+    """Assert what every mesh must be: conforming, of the domain's topology, wall nodes in order on loops."""
     loops = mesh.domain.loops
     quads_of = np.bincount(mesh.edge_of.ravel(), minlength=len(mesh.edges))
     assert set(quads_of) <= {1, 2}
@@ -156,9 +156,18 @@ def test_annulus_is_cut_once() -> None:
 @pytest.mark.parametrize("valence", [3, 5])
 def test_squares_around_a_singular_vertex(valence: int) -> None:
     domain = star_of_squares(valence)
-    seamless = seamless_of(domain, cone(valence), count=800)
-    at = np.argmin(np.hypot(*seamless.triangulation.points.T))
-    assert (seamless.valence[at] == valence) == (np.abs(seamless.triangulation.points[at]).max() < 1e-9)
+    seamless = seamless_of(domain, cone(valence), count=800, centre=True)
+    assert seamless.valence[seamless.singular].tolist() == [valence]
+    mesh = t_mesh(motorcycle_graph(seamless))
+    assert len(mesh.faces) == valence
+    fine = checked(quad_mesh(seamless, 300))
+    inner = np.flatnonzero(fine.irregular & ~fine.wall_nodes)
+    assert fine.valence[inner].tolist() == [valence]
+    assert np.abs(fine.nodes[inner]).max() < 1e-12
+    # the inverse map: unit squares of the map have equal steps there
+    w = np.abs(fine.nodes @ np.array([1, 1j])) ** (valence / 4)
+    assert w.max() == pytest.approx(np.sqrt(2), rel=1e-3)
+    assert jacobians(fine).min() > 0
 
 
 def test_same_input_same_bits() -> None:
@@ -206,3 +215,26 @@ def test_random_polygons_with_holes(seed: int) -> None:
     holes = [circle(-0.5, 0.2, 0.25), box(0.3, -0.4, 0.4, 0.3)][: seed % 3]
     seamless = seamless_map(Domain.of_polygons([outer, *holes]), 900)
     checked(quad_mesh(seamless, 600))
+
+
+def test_periodic_sides_are_one_line_of_the_mesh() -> None:
+    loops = Domain.of_polygons([box(0, 0, 3, 1), circle(1.1, 0.5, 0.2)]).loops
+    domain = Domain(loops, periodic=Periodic((0.0, 3.0), (4.0, 7.0), (0.0, 1.0)))
+    mesh = quad_mesh(seamless_map(domain, 900), 600)
+    second = np.flatnonzero(mesh.places.partner >= 0)
+    first = mesh.places.partner[second]
+    assert len(second) > 20
+    assert np.abs(mesh.nodes[second] - mesh.nodes[first] - [0.0, 1.0]).max() < 1e-12
+    assert sorted(mesh.places.arc[mesh.places.cells > 0]) == pytest.approx([0, 3, 4, 7])
+    # both sides are the same line: edge by edge
+    walls = {tuple(sorted(pair)) for pair in mesh.edges[mesh.on_wall].tolist()}
+    moved = dict(zip(first.tolist(), second.tolist(), strict=True))
+    below = [pair for pair in walls if set(pair) <= set(first.tolist())]
+    assert len(below) == len(first) - 1
+    assert all(tuple(sorted((moved[a], moved[b]))) in walls for a, b in below)
+    # and elsewhere the walls are where they were
+    assert areas(mesh).sum() == pytest.approx(domain.area, rel=2e-3)
+    on_loop = mesh.places.loop >= 0
+    for number in range(2):
+        here = on_loop & (mesh.places.loop == number)
+        assert np.abs(loops[number].at(mesh.places.arc[here]) - mesh.nodes[here]).max() < 1e-9

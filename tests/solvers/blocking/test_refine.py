@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from quad_meshes import annulus, box, corner, disc, mesh_of, rectangle
+from known_meshes import annulus, box, corner, disc, mesh_of, rectangle
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.polygon.area import polygon_area

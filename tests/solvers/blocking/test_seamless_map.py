@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from planar_domains import SHAPES, circle, domain
+from planar_domains import SHAPES, circle, domain, wedge
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.solvers.blocking.seamless_map import SeamlessMap, seamless_map
@@ -125,6 +125,14 @@ def test_triangles_are_finer_at_a_singularity():
     near = np.isin(m.vertices, m.singular).any(axis=1)
     assert m.valence[m.singular].tolist() == [3]
     assert lengths[near].mean() < 0.6 * np.median(lengths)
+
+
+def test_a_fold_is_counted_and_has_a_place():
+    m = seamless_map(Domain.of_polygons([wedge(0.5)]), count=300)
+    assert m.folded > 0
+    x, y = m.worst_place
+    assert 0 < x < 1
+    assert 0 < y < np.radians(0.5)
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1e9])
