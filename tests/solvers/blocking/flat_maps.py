@@ -22,10 +22,7 @@ def seamless_of(
     *,
     count: int = 1500,
     seed: int = 0,
-<<<<<<< HEAD
-=======
     centre: bool = False,
->>>>>>> main
 ) -> SeamlessMap:
     """Return the map whose coordinates at corners z (t, 3) of triangles of centres (t, 1) are given.
 
