@@ -131,3 +131,23 @@ def crossing_segments(points, order, low, top, ptrdiff_t limit, long long budget
     with nogil:
         count = c_crossing_segments(p, n, sorted_by, m, first, last, limit, &budget, to)
     return pairs[:count].tolist(), budget >= 0
+
+
+cdef extern from "geometry/nearest.h":
+    void c_nearest_points "nearest_points"(const double *places, ptrdiff_t m, const double *x, const double *y,
+                                           ptrdiff_t n, ptrdiff_t *index, double *square) nogil
+
+
+def nearest_points(places, points):
+    """Return the index (m,) of the nearest of `points` (n >= 1, 2) to each of `places` (m, 2), and squared distances."""
+    cdef ptrdiff_t m = len(places), n = len(points)
+    if n < 1:
+        raise ValueError("no points")
+    planes = np.ascontiguousarray(points.T)
+    index, square = np.empty(m, dtype=np.intp), np.empty(m)
+    cdef Read p = reads(places, (m, 2)), x = reads(planes[0], (n,)), y = reads(planes[1], (n,))
+    cdef ptrdiff_t *at = <ptrdiff_t *>numbers(index, b"i", sizeof(ptrdiff_t), (m,), True)
+    cdef Written out = fills(square, (m,))
+    with nogil:
+        c_nearest_points(p, m, x, y, n, at, out)
+    return index, square

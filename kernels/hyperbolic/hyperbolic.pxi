@@ -16,7 +16,7 @@ def hyperbolic_march(x, y, steps, double dissipation, double even, double tolera
 
     `steps` (levels) are the distances between levels; the others are those of ``march.h``. Level 0 closes, unless
     `ends` are two unit directions (2, 2) along which its ends move; then `widening` (n) multiplies the steps next
-    to it.
+    to it. Where level 0 closes, `widening` multiplies the ratios of a step to the one before it.
     """
     cdef ptrdiff_t n = x.shape[1], levels = len(x) - 1
     cdef MarchSettings settings = MarchSettings(dissipation, even, tolerated, bend, implicit, volume, sweeps, rise)
@@ -26,11 +26,14 @@ def hyperbolic_march(x, y, steps, double dissipation, double even, double tolera
         raise ValueError("too few nodes or levels")
     cdef Written px = fills(x, (levels + 1, n)), py = fills(y, (levels + 1, n))
     cdef Read apart = reads(steps, (levels,)), wide = apart
+    cdef const double *widens = NULL
     scratch = np.empty(hyperbolic_scratch(n))
     cdef Written room = fills(scratch, scratch.shape)
-    if ends is not None:
+    if widening is not None:
         wide = reads(widening, (n,))
+        widens = wide
+    if ends is not None:
         directions = MarchEnds(ends[0][0], ends[0][1], ends[1][0], ends[1][1])
         given = &directions
     with nogil:
-        c_hyperbolic_march(px, py, n, levels, apart, wide, given, &settings, room)
+        c_hyperbolic_march(px, py, n, levels, apart, widens, given, &settings, room)

@@ -282,7 +282,8 @@ void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const
     for (ptrdiff_t level = 0; level < levels; level++, x += n, y += n) {
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
-        const double part = ends ? 1.0 - (double)level / (OPENED * (double)levels) : 0.0;
+        const double opened = 1.0 - (double)level / (OPENED * (double)levels);
+        const double part = widening == NULL ? 0.0 : ends ? opened : (double)level;
         measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL);
         const double calm = fmin((double)level / (CALM * (double)levels), 1.0);
         smooth_areas(&m, n, calm * (double)settings->sweeps, settings->volume, ends == NULL);

@@ -6,7 +6,7 @@
 
    N is the number of cells. Pairs are opposite edges of a cell and consecutive ones along a grid line; with targets all
    of one length the last term is that over blocks. The term in brackets, A the area a cell has at first, is for folded
-   meshes: with χ > J cells would gain by shrinking to points. A batch of cells at a time: their forces are worked out
+   meshes: with χ > J cells would gain by shrinking to points. There ε is a part of A. A batch of cells at a time: their forces are worked out
    in vectors, then added to the nodes one by one. */
 #include "energy.h"
 #include "clones.h"
@@ -51,7 +51,7 @@ MESHONET_INLINE double cell_batch(Cells *b, ptrdiff_t count, double angle, doubl
         const double north_x = b->x[2][k] - b->x[3][k], north_y = b->y[2][k] - b->y[3][k];
         const double west_x = b->x[3][k] - b->x[0][k], west_y = b->y[3][k] - b->y[0][k];
         const double east_x = b->x[2][k] - b->x[1][k], east_y = b->y[2][k] - b->y[1][k];
-        const Factors f = {b->along[k], b->across[k], angle, eps2};
+        const Factors f = {b->along[k], b->across[k], angle, eps2 * b->area[k] * b->area[k]};
         const Corner p = one_corner(south_x, south_y, west_x, west_y, &f, b->area[k], size, regular);
         const Corner q = one_corner(south_x, south_y, east_x, east_y, &f, b->area[k], size, regular);
         const Corner r = one_corner(north_x, north_y, east_x, east_y, &f, b->area[k], size, regular);
@@ -59,7 +59,7 @@ MESHONET_INLINE double cell_batch(Cells *b, ptrdiff_t count, double angle, doubl
         energy += (p.energy + q.energy) + (r.energy + s.energy);
         const double south = p.jacobian < q.jacobian ? p.jacobian : q.jacobian;
         const double north = r.jacobian < s.jacobian ? r.jacobian : s.jacobian;
-        b->least[k] = south < north ? south : north;
+        b->least[k] = (south < north ? south : north) / b->area[k];
         const double sx = p.du_x + q.du_x, sy = p.du_y + q.du_y, nx = r.du_x + s.du_x, ny = r.du_y + s.du_y;
         const double wx = p.dv_x + s.dv_x, wy = p.dv_y + s.dv_y, ex = q.dv_x + r.dv_x, ey = q.dv_y + r.dv_y;
         b->x[0][k] = -(sx + wx), b->y[0][k] = -(sy + wy);

@@ -3,7 +3,7 @@
 #include <stddef.h>
 
 /* What there is of a mesh, and room to evaluate. Edges, `line` and targets as in topology.h; `aspect` (m, 2) is a of each
-   cell and 1 / a, `area` (m) that which cells are held to while folded. Corners in `eased` (k, 3) are a node and those
+   cell and 1 / a, `area` (m) that which cells are held to while folded, and what Jacobians are parts of. Corners in `eased` (k, 3) are a node and those
    before and behind it, and give away the part `ease` (k) of their angle term. */
 typedef struct {
     ptrdiff_t nodes, cells, edges, pairs, eased_count;
@@ -13,6 +13,6 @@ typedef struct {
     double shape, smoothness, epsilon, size;
 } QuadMesh;
 
-/* Return the functional at nodes x (n, 2), its gradient g (n, 2), and the smallest Jacobian; infinite if that is not
-   positive and nothing is regularised. */
+/* Return the functional at nodes x (n, 2), its gradient g (n, 2), and the smallest Jacobian as a part of its cell's
+   area; infinite if that is not positive and nothing is regularised. */
 double quad_energy(const QuadMesh *mesh, const double *x, double *g, double *smallest);

@@ -150,7 +150,7 @@ cdef class QuadDescent:
         free(self.loop)
 
     def run(self, double shape, double smoothness, double epsilon, double size, double gain, int most, bint renew):
-        """Descend; return (value, smallest Jacobian, iterations).
+        """Descend; return (value, smallest Jacobian over the area of its cell, iterations).
 
         It ends when the value falls by less than its part `gain` in each of three iterations, or after `most`. The
         preconditioner is made anew where the nodes are with `renew`.

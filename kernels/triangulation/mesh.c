@@ -168,7 +168,8 @@ int mesh_insert(Mesh *mesh, int32_t v, int32_t t)
     relink(mesh, old.beside[1], t, u);
     relink(mesh, old.beside[2], t, w);
     mesh->last = t, mesh->n_changed = 0;
-    if (note(mesh, t) || note(mesh, u) || note(mesh, w) || mesh_push(mesh, t, 0) || mesh_push(mesh, u, 0) || mesh_push(mesh, w, 0))
+    if (note(mesh, t) || note(mesh, u) || note(mesh, w) || mesh_push(mesh, t, 0) || mesh_push(mesh, u, 0) ||
+        mesh_push(mesh, w, 0))
         return OUT_OF_MEMORY;
     return legalise(mesh, 0);
 }
@@ -198,7 +199,8 @@ static int32_t towards(const Mesh *mesh, int32_t a, int32_t b, int *edge)
         const Triangle *here = &mesh->triangle[t];
         const int k = here->corner[0] == a ? 0 : here->corner[1] == a ? 1 : 2;
         const Node from = mesh->node[a], to = mesh->node[b];
-        if (turn(from, to, mesh->node[here->corner[NEXT[k]]]) < 0 && turn(from, to, mesh->node[here->corner[AFTER[k]]]) > 0) {
+        const Node right = mesh->node[here->corner[NEXT[k]]], left = mesh->node[here->corner[AFTER[k]]];
+        if (turn(from, to, right) < 0 && turn(from, to, left) > 0) {
             *edge = k;
             return t;
         }

@@ -37,15 +37,25 @@ cdef extern from "triangulation/refine.h":
     int c_shake "shake"(Mesh *mesh, ptrdiff_t first, double part, uint64_t seed) nogil
 
 cdef extern from "triangulation/walls.h":
-    int c_wall_gaps "wall_gaps"(const double *points, const double *normals, ptrdiff_t n, double part, double cone,
-                                double *size) nogil
+    ctypedef struct WallPoints:
+        ptrdiff_t n
+        const double *points
+        const double *normals
+        const double *corner
+        const ptrdiff_t *piece
+        const ptrdiff_t *beside
+    int c_wall_gaps "wall_gaps"(const WallPoints *wall, double part, double cone, double *size) nogil
     int c_wall_growth "wall_growth"(const double *points, ptrdiff_t n, double growth, double *size) nogil
 
 
-def wall_gaps(points, normals, double part, double cone, size):
-    """Lower `size` (n,) to `part` of the gap in front of points (n, 2), within a cone around the normals (n, 2)."""
+def wall_gaps(points, normals, piece, beside, corner, double part, double cone, size):
+    """Lower `size` (n,) to `part` of the gap in front of points (n, 2); see ``triangulation/walls.h``."""
+    cdef WallPoints wall
     cdef ptrdiff_t n = len(points)
-    if c_wall_gaps(reads(points, (n, 2)), reads(normals, (n, 2)), n, part, cone, fills(size, (n,))):
+    wall.n, wall.points, wall.normals = n, reads(points, (n, 2)), reads(normals, (n, 2))
+    wall.corner, wall.piece = reads(corner, (n, 2)), reads_indices(piece, (n,))
+    wall.beside = reads_indices(beside, (n, 2))
+    if c_wall_gaps(&wall, part, cone, fills(size, (n,))):
         raise MemoryError
 
 

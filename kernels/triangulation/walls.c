@@ -32,7 +32,8 @@ static int fill(Buckets *b, const double *p, ptrdiff_t n)
     b->width = larger > 0 ? larger / (1.0 + sqrt((double)n)) : 1.0;
     b->left = left, b->bottom = bottom;
     b->across = 1 + (ptrdiff_t)(wide / b->width), b->up = 1 + (ptrdiff_t)(high / b->width);
-    b->first = calloc((size_t)(b->across * b->up + 2), sizeof(ptrdiff_t)), b->point = malloc((size_t)n * sizeof(ptrdiff_t));
+    b->first = calloc((size_t)(b->across * b->up + 2), sizeof(ptrdiff_t));
+    b->point = malloc((size_t)n * sizeof(ptrdiff_t));
     if (!b->first || !b->point)
         return -1;
     for (ptrdiff_t k = 0; k < n; k++)
@@ -44,8 +45,19 @@ static int fill(Buckets *b, const double *p, ptrdiff_t n)
     return 0;
 }
 
-int wall_gaps(const double *points, const double *normals, ptrdiff_t n, double part, double cone, double *size)
+/* Whether point `other`, at a distance from point k, is only the wall behind a corner. */
+static int round_corner(const WallPoints *wall, ptrdiff_t k, ptrdiff_t other, double distance)
 {
+    for (int i = 0; i < 2; i++)
+        if (wall->piece[other] == wall->beside[2 * k + i] && distance > wall->corner[2 * k + i])
+            return 1;
+    return 0;
+}
+
+int wall_gaps(const WallPoints *wall, double part, double cone, double *size)
+{
+    const double *points = wall->points, *normals = wall->normals;
+    const ptrdiff_t n = wall->n;
     Buckets b = {0};
     if (n == 0)
         return 0;
@@ -59,7 +71,8 @@ int wall_gaps(const double *points, const double *normals, ptrdiff_t n, double p
                 const ptrdiff_t other = b.point[i];
                 const double dx = points[2 * other] - x, dy = points[2 * other + 1] - y, d2 = dx * dx + dy * dy;
                 const double ahead = dx * nx + dy * ny;
-                if (d2 < reach * reach && ahead > 0 && ahead * ahead > cone * cone * d2)
+                if (d2 < reach * reach && ahead > 0 && ahead * ahead > cone * cone * d2 &&
+                    !round_corner(wall, k, other, sqrt(d2)))
                     reach = sqrt(d2);
             }
         size[k] = part * reach < size[k] ? part * reach : size[k];

@@ -89,7 +89,7 @@ def fine_layout(
         halvings += 1
     chords = Chords.of(layout)
     least = chords.least
-    fine = None
+    fine: Layout | None = None
     for _ in range(ROUNDS):
         if cell_size and not cells:
             counts = chords.counts_for_size(cell_size * 2**halvings, least)
@@ -102,6 +102,7 @@ def fine_layout(
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
+    assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
         return multiplied(fine, 2**halvings) if halvings else fine
 

@@ -18,6 +18,7 @@ from meshonet.solvers.blocking.base_complex import BaseComplex, base_complex
 from meshonet.solvers.blocking.contract import contract
 from meshonet.solvers.blocking.errors import BlockingError
 from meshonet.solvers.blocking.score import PRICE, score
+from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
 FAILURES = 8
@@ -28,23 +29,27 @@ ITERATIONS = (6, 12, 22)
 
 
 def simplify(
-    mesh: QuadMesh, *, price: float = PRICE, iterations: tuple[int, ...] = ITERATIONS
+    mesh: QuadMesh,
+    *,
+    price: float = PRICE,
+    iterations: tuple[int, ...] = ITERATIONS,
+    sizes: SizeMetric | None = None,
 ) -> BaseComplex:
     """Return the blocks of an optimised quad mesh after collapsing chords, the narrowest first.
 
-    `price` is what a block costs, in degrees of mean deviation from 90.
+    `price` is what a block costs, in degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
     """
     current = base_complex(mesh)
-    best = score(current, price)
+    best = score(current, price, sizes.edges(mesh) if sizes else None)
     while True:
-        better = _first_gain(current, best, price, iterations)
+        better = _first_gain(current, best, price, iterations, sizes)
         if better is None:
             return current
         current, best = better
 
 
 def _first_gain(
-    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...]
+    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...], sizes: SizeMetric | None
 ) -> tuple[BaseComplex, float] | None:
     """Return the first collapse, and its score, that lowers `best`; None after `FAILURES`."""
     failures = 0
@@ -54,12 +59,12 @@ def _first_gain(
             continue
         mesh = trial.mesh
         for more in iterations:
-            optimum = optimise(mesh, iterations=more)
+            optimum = optimise(mesh, iterations=more, targets=sizes.edges(mesh) if sizes else None)
             if not optimum.valid:
                 break
             mesh = optimum.mesh
             judged = trial.moved(mesh)
-            value = score(judged, price)
+            value = score(judged, price, sizes.edges(mesh) if sizes else None)
             if value < best:
                 return judged, value
         failures += 1

@@ -26,6 +26,7 @@ from meshonet.solvers.blocking.padding import loops_to_pad, pad
 from meshonet.solvers.blocking.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.score import PRICE
 from meshonet.solvers.blocking.seamless_map import seamless_map
+from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
 ATTEMPTS = 5
@@ -63,6 +64,7 @@ def decompose(
     price: float = PRICE,
     attempts: int = ATTEMPTS,
     timings: Timings | None = None,
+    sizes: SizeMetric | None = None,
 ) -> Layout:
     """Return a layout of the blocks of a domain, its quad mesh optimised.
 
@@ -73,6 +75,7 @@ def decompose(
     price : of a block, in degrees of mean deviation from 90: the higher, the fewer blocks.
     attempts : how often to try, each time with a finer triangulation and another seed.
     timings : filled with what the stages took.
+    sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
 
     Raises BlockingError: no attempt came to a valid layout.
     """
@@ -82,40 +85,43 @@ def decompose(
         timings.attempts = attempt + 1
         finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
-            return _blocks(_quad_mesh(domain, *finer, attempt, timings), price, timings)
+            mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
+            return _blocks(mesh, price, timings, sizes)
         except SolverError as error:
             problem = error
     raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
 
 
-def _blocks(mesh: QuadMesh, price: float, timings: Timings) -> Layout:
+def _blocks(mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None) -> Layout:
     """Return the layout of a quad mesh as it comes, its nodes anywhere."""
     loops = loops_to_pad(mesh)
     with timings.stage("first optimum"):
-        mesh = _optimised(mesh, BEFORE_PADDING if loops else FIRST_ITERATIONS)
+        mesh = _optimised(mesh, BEFORE_PADDING if loops else FIRST_ITERATIONS, sizes)
         if loops:
-            mesh = _optimised(pad(mesh, loops), FIRST_ITERATIONS)
+            mesh = _optimised(pad(mesh, loops), FIRST_ITERATIONS, sizes)
     timings.blocks_found = len(base_complex(mesh).blocks)
     with timings.stage("collapse"):
-        return simplify(mesh, price=price).layout
+        return simplify(mesh, price=price, sizes=sizes).layout
 
 
-def _optimised(mesh: QuadMesh, iterations: int) -> QuadMesh:
+def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> QuadMesh:
     """Return the mesh with its nodes optimised, wall nodes where they are to begin with.
 
     A folded mesh would else be unfolded by sliding most of it along smooth walls into a small part of them.
     """
-    wall = mesh.places.loop >= 0
-    held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall)
-    optimum = optimise(held.mesh if held.valid else mesh, iterations=iterations)
+    wall, targets = mesh.places.loop >= 0, sizes.edges(mesh) if sizes else None
+    held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall, targets=targets)
+    optimum = optimise(held.mesh if held.valid else mesh, iterations=iterations, targets=targets)
     if not optimum.valid or not np.isfinite(optimum.value):
         raise BlockingError("the quad mesh stays folded")
     return optimum.mesh
 
 
-def _quad_mesh(domain: Domain, count: int, cells: int, seed: int, timings: Timings) -> QuadMesh:
+def _quad_mesh(
+    domain: Domain, count: int, cells: int, seed: int, timings: Timings, sizes: SizeMetric | None
+) -> QuadMesh:
     """Return a quad mesh along a cross field."""
     with timings.stage("map"):
         seamless = seamless_map(domain, count=count, seed=seed)
     with timings.stage("quad mesh"):
-        return quad_mesh(seamless, cells=cells)
+        return quad_mesh(seamless, cells=cells, sizes=sizes)

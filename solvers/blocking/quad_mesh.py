@@ -16,6 +16,7 @@ from meshonet.solvers.blocking.motorcycle import motorcycle_graph
 from meshonet.solvers.blocking.period import as_first, cut_open
 from meshonet.solvers.blocking.ports import stretch_ends
 from meshonet.solvers.blocking.seamless_map import SeamlessMap
+from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.blocking.t_mesh import Face, Side, TMesh, t_mesh
 from meshonet.solvers.blocking.trails import map_tables
 
@@ -23,8 +24,10 @@ SHORTEST = 0.05
 """An arc counts as at least so many cells long."""
 
 
-def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
+def quad_mesh(seamless: SeamlessMap, cells: int = 900, sizes: SizeMetric | None = None) -> QuadMesh:
     """Return a conforming mesh of about so many quads, whose irregular nodes are those of the map.
+
+    With `sizes` its edges are about as long as these say, whatever `cells`.
 
     Nodes lie where the inverse of the map puts them, so cells are nowhere folded but where they are too large
     to follow it.
@@ -32,8 +35,10 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
     Raises BlockingError: the map's lines make no T-mesh of rectangles, or so few cells cannot conform.
     """
     mesh = t_mesh(motorcycle_graph(seamless))
-    size = np.sqrt(seamless.triangulation.domain.area / cells)
-    counts = arc_counts(mesh, np.maximum(_plane_lengths(mesh) / size, SHORTEST))
+    wanted = _plane_lengths(mesh, sizes)
+    if sizes is None:
+        wanted = wanted / np.sqrt(seamless.triangulation.domain.area / cells)
+    counts = arc_counts(mesh, np.maximum(wanted, SHORTEST))
     fine = _fine(mesh, counts)
     if fine.domain.periodic is None:
         return _checked(fine)
@@ -42,10 +47,13 @@ def quad_mesh(seamless: SeamlessMap, cells: int = 900) -> QuadMesh:
     return _checked(cut_open(as_first(fine, ends), ends))
 
 
-def _plane_lengths(mesh: TMesh) -> Floats:
-    """Return the lengths (a,) of arcs in the plane."""
+def _plane_lengths(mesh: TMesh, sizes: SizeMetric | None = None) -> Floats:
+    """Return the lengths (a,) of arcs in the plane, in edges of `sizes` if given."""
     trails = mesh.graph.trails
     steps = np.abs(trails.end - trails.begin)
+    if sizes is not None:
+        middle, step = 0.5 * (trails.end + trails.begin), trails.end - trails.begin
+        steps = steps / sizes.length(_pairs(middle), _pairs(step))
     before = np.append(0.0, np.cumsum(steps))
 
     def upto(length: Floats) -> Floats:
@@ -55,6 +63,10 @@ def _plane_lengths(mesh: TMesh) -> Floats:
         return np.asarray(before[piece] + part * steps[piece] + rounds * whole)
 
     return upto(mesh.span[:, 1]) - upto(mesh.span[:, 0])
+
+
+def _pairs(points: Complexes) -> Floats:
+    return np.stack([points.real, points.imag], axis=1)
 
 
 def _within(mesh: TMesh, trail: Indices, length: Floats) -> tuple[Floats, Floats]:

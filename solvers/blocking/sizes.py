@@ -54,10 +54,17 @@ class _Samples:
     """Samples of one loop, as many in each piece as its length asks for."""
 
     piece: Indices
+    """(n,) number of the piece from a corner to the next, on this loop."""
+    beside: Indices
+    """(n, 2) the pieces before and behind; -1 on a smooth loop."""
+    corner: Floats
+    """(n, 2) distances along the wall to where they begin."""
     arc: Floats
     length: Floats
     of_piece: Floats
     """(n,) length of the piece."""
+    points: Floats
+    tangents: Floats
 
 
 def usual_size(area: float, count: int) -> float:
@@ -74,38 +81,37 @@ def pieces(loop: Loop) -> tuple[Floats, Floats]:
 def wall_sizes(domain: Domain, count: int, finer: tuple[Floats, Floats] | None = None) -> WallSizes:
     """Return sizes along the walls for about `count` nodes, in the domain's unit.
 
-    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``
-    nor 1/400 of the loop, where h0 is `usual_size` and the
-    gap is the distance to the nearest wall in front, within 53 degrees of the normal. `finer` points (m, 2)
-    have sizes (m,) of their own. Sizes change by at most .35 a length.
+    ``h = min(h0, piece / 4, gap / 3.5, .45 radius)``, not below ``h0 / 25``, or 1/400 of the loop where that
+    is less. h0 is `usual_size`, the gap the distance to the nearest wall in front, within 53 degrees of the
+    normal and not merely the other side of a wide corner. `finer` points (m, 2) have sizes (m,) of their own.
+    Sizes change by at most .35 a length.
     """
     largest = usual_size(domain.area, count)
     samples = [_sample(loop, largest) for loop in domain.loops]
-    points = np.concatenate([loop.at(s.arc) for loop, s in zip(domain.loops, samples, strict=True)])
-    tangents = np.concatenate([loop.tangent(s.arc) for loop, s in zip(domain.loops, samples, strict=True)])
-    size = np.concatenate([_own_size(t, s, largest) for t, s in _split(tangents, samples)])
-    normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
-    wall_gaps(points, normals, 1.0 / PER_GAP, CONE, size)
+    many = np.array([len(s.arc) for s in samples])
+    loop = np.repeat(np.arange(len(samples)), many)
+    first = np.cumsum([0] + [s.piece[-1] + 1 for s in samples])[loop]
+    piece = np.concatenate([s.piece for s in samples]) + first
+    beside = np.concatenate([s.beside for s in samples])
+    beside = np.where(beside >= 0, beside + first[:, None], -1)
+    points = np.concatenate([s.points for s in samples])
+    tangents = np.concatenate([s.tangents for s in samples])
     length = np.concatenate([s.length for s in samples])
-    number = np.repeat(np.arange(len(samples)), [len(s.arc) for s in samples])
+    size = np.concatenate([_own_size(s, largest) for s in samples])
+    normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
+    corner = np.concatenate([s.corner for s in samples])
+    wall_gaps(points, normals, piece, beside, corner, 1.0 / PER_GAP, CONE, size)
     smallest = FLOOR * np.minimum(largest, OF_LOOP * np.array([loop.length for loop in domain.loops]))
-    np.maximum(size, smallest[number], out=size)
+    np.maximum(size, smallest[loop], out=size)
     affordable = _affordable(length, size, MOST * count)
     np.maximum(size, affordable, out=size)
     if finer is not None:
         for point, wanted in zip(*finer, strict=True):
             np.minimum(size, wanted + GROWTH * np.hypot(*(points - point).T), out=size)
     wall_growth(points, GROWTH, size)
-    before = np.cumsum([0] + [s.piece[-1] + 1 for s in samples])
-    return WallSizes(
-        max(largest, affordable),
-        np.maximum(smallest, affordable),
-        number,
-        np.concatenate([s.piece + b for s, b in zip(samples, before, strict=False)]),
-        np.concatenate([s.arc for s in samples]),
-        length,
-        size,
-    )
+    arc = np.concatenate([s.arc for s in samples])
+    smallest = np.maximum(smallest, affordable)
+    return WallSizes(max(largest, affordable), smallest, loop, piece, arc, length, size)
 
 
 def _affordable(length: Floats, size: Floats, most: float) -> float:
@@ -116,26 +122,29 @@ def _affordable(length: Floats, size: Floats, most: float) -> float:
     return floor
 
 
-def _split(values: Floats, samples: list[_Samples]) -> list[tuple[Floats, _Samples]]:
-    parts = np.split(values, np.cumsum([len(s.arc) for s in samples])[:-1])
-    return list(zip(parts, samples, strict=True))
-
-
 def _sample(loop: Loop, largest: float) -> _Samples:
     start, stop = pieces(loop)
     long = stop - start
-    least = np.where(long < 4.0 * FLOOR * largest, 4.0, 12.0)
-    n = np.clip(5.0 * long / largest, least, 2000.0).astype(np.intp)
+    usual = min(largest, OF_LOOP * loop.length)
+    least = np.where(long < 4.0 * FLOOR * usual, 4.0, 12.0)
+    n = np.clip(5.0 * long / usual, least, 2000.0).astype(np.intp)
     piece = np.repeat(np.arange(len(n)), n)
     k = np.arange(len(piece)) - np.repeat(np.cumsum(n) - n, n)
     length = (long / n)[piece]
-    return _Samples(piece, start[piece] + (k + 0.5) * length, length, long[piece])
+    along = (k + 0.5) * length
+    if len(loop.corners):
+        beside = (piece[:, None] + np.array([-1, 1])) % len(n)
+        corner = np.stack([along, long[piece] - along], axis=1)
+    else:
+        beside, corner = np.full((len(piece), 2), -1), np.full((len(piece), 2), np.inf)
+    arc = start[piece] + along
+    return _Samples(piece, beside, corner, arc, length, long[piece], loop.at(arc), loop.tangent(arc))
 
 
-def _own_size(tangent: Floats, samples: _Samples, largest: float) -> Floats:
+def _own_size(samples: _Samples, largest: float) -> Floats:
     """Return the size (n,) that a loop itself asks for: a quarter of its pieces, part of its radius."""
     same = samples.piece[1:] == samples.piece[:-1]
-    turn = np.where(same, np.abs(angle_between(tangent[:-1], tangent[1:])), 0.0)
+    turn = np.where(same, np.abs(angle_between(samples.tangents[:-1], samples.tangents[1:])), 0.0)
     beside = np.append(turn, 0.0) + np.insert(turn, 0, 0.0)
     smooth = beside.copy()
     smooth[1:] += np.where(same, beside[:-1], 0.0)

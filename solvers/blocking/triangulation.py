@@ -12,6 +12,7 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import DelaunayMesh
+from meshonet.solvers.blocking.periodic import on_both, on_second
 from meshonet.solvers.blocking.sizes import GROWTH, WallSizes, place_nodes, wall_sizes
 
 _BOX = 4  # nodes that the kernel has before ours
@@ -71,6 +72,7 @@ class _Walls:
         self.points = np.empty((0, 2))
 
     def add(self, loop: Indices, arc: Floats) -> None:
+        loop, arc = on_both(self.domain, loop, arc)
         points = np.empty((len(arc), 2))
         size = np.empty(len(arc))
         for k, curve in enumerate(self.domain.loops):
@@ -149,7 +151,9 @@ def triangulate(
     sizes = wall_sizes(domain, count, finer)
     frame = _Frame(domain)
     walls = _Walls(domain, sizes, frame, most=10 * count + 30_000)
-    walls.add(*place_nodes(domain, sizes))
+    loop, arc = place_nodes(domain, sizes)
+    kept = ~on_second(domain, loop, arc)
+    walls.add(loop[kept], arc[kept])
     walls.recover()
     mesh, first = walls.mesh, len(walls.arc)
     sources, source_sizes = (np.empty((0, 2)), np.empty(0)) if finer is None else finer

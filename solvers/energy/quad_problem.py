@@ -18,6 +18,8 @@ from meshonet.solvers.energy.walls import Bools, Walls, turned
 ALLOWED = np.radians(30.0)  # that a wall turns by within an edge
 BENT = 5.0  # weight of the squares of what it turns by beyond that, over the number of cells
 MANY = 1000  # cells: with more, what a tip cut off wins grows with their number, and so does that weight
+SPREAD = 6  # cells away whose areas count for that of a cell
+SPOILT = 0.1  # share of cells turned over from which on areas say nothing
 
 SHARP = 320.0  # degrees: where the domain takes up more, angles are relieved
 WIDE = 160.0  # degrees of a single cell from which on they are
@@ -45,11 +47,12 @@ def unknowns_of(mesh: QuadMesh, held: Bools | None) -> Unknowns:
     return Unknowns(fixed, images, originals, tied)
 
 
-def smallest_jacobian(nodes: Floats, quads: Indices) -> float:
-    """Return the smallest corner Jacobian, an area, of `quads` (m, 4) of `nodes` (n, 2)."""
+def smallest_jacobian(nodes: Floats, quads: Indices, areas: Floats | None = None) -> float:
+    """Return the smallest corner Jacobian of `quads` (m, 4) of `nodes` (n, 2), over `areas` (m,) if given."""
     z = nodes[quads]
     u, v = np.roll(z, -1, axis=1) - z, np.roll(z, 1, axis=1) - z
-    return float((u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]).min(initial=np.inf))
+    least = (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]).min(axis=1, initial=np.inf)
+    return float((least if areas is None else least / areas).min(initial=np.inf))
 
 
 class Problem:
@@ -92,16 +95,14 @@ class Problem:
         movable = self.moves[self.mesh.quads].any(axis=1)
         self.quads = np.ascontiguousarray(self.mesh.quads[movable])
         ratio = np.ones(len(self.quads)) if aspects is None else aspects[movable]
-        z = self.nodes[self.quads]
-        across, other = z[:, 2] - z[:, 0], z[:, 3] - z[:, 1]
-        area = 0.5 * np.abs(across[:, 0] * other[:, 1] - across[:, 1] * other[:, 0])
+        self.areas = self._areas()
         line, pairs = self._lines()
         target = np.zeros(len(line)) if targets is None else np.log(targets)
         periodic = self.mesh.domain.periodic
         shift = (0.0, 0.0) if periodic is None else periodic.shift
         return QuadDescent(
             self.nodes,
-            (self.quads, np.stack([ratio, 1.0 / ratio], axis=1), np.maximum(area, 0.25 * self.cell)),
+            (self.quads, np.stack([ratio, 1.0 / ratio], axis=1), self.areas),
             (self.mesh.edges, line, pairs, target),
             self._relief(),
             self.inner,
@@ -114,6 +115,20 @@ class Problem:
             BENT / min(max(len(self.quads), 1), MANY),
             ALLOWED,
         )
+
+    def _areas(self) -> Floats:
+        """Return the areas (m,) that cells are held to while they unfold: near those they have."""
+        z, n = self.nodes[self.quads], len(self.nodes)
+        across, other = z[:, 2] - z[:, 0], z[:, 3] - z[:, 1]
+        signed = 0.5 * (across[:, 0] * other[:, 1] - across[:, 1] * other[:, 0])
+        area = np.abs(signed)
+        flat, count = self.quads.ravel(), np.maximum(np.bincount(self.quads.ravel(), minlength=n), 1)
+        around = area
+        for _ in range(SPREAD):
+            around = (np.bincount(flat, np.repeat(around, 4), n) / count)[self.quads].mean(axis=1)
+        spoilt = np.count_nonzero(signed <= 0) > SPOILT * len(signed)
+        least = 0.25 * self.cell if spoilt else 1e-9 * self.cell
+        return np.maximum(np.maximum(area, around), least)
 
     def _loop(self, number: int) -> tuple[object, ...]:
         """Return a loop as the compiled descent takes it."""
@@ -175,8 +190,8 @@ class Problem:
         return nodes
 
     def smallest(self) -> float:
-        """Return the smallest corner Jacobian of cells that can move."""
-        return smallest_jacobian(self.nodes, self.quads)
+        """Return the smallest corner Jacobian of cells that can move, as a part of its area."""
+        return smallest_jacobian(self.nodes, self.quads, self.areas)
 
     def result(self) -> QuadMesh:
         """Return the mesh where the descent is."""

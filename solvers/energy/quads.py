@@ -80,10 +80,9 @@ def optimise(
 def _unfold(problem: Problem, low: float) -> tuple[float, int]:
     """Descend with less and less regularised Jacobians; return the smallest Jacobian, and the iterations.
 
-    `low` is the smallest one at first; once none is negative it is done.
+    `low` is the smallest one at first, over its cell's area; once none is negative it is done.
     """
-    cell, done = problem.cell, 0
-    epsilon = max(0.3 * cell, min(2.0 * abs(low), 3.0 * cell))
+    done, epsilon = 0, max(0.3, min(2.0 * abs(low), 3.0))
     shape, size = UNFOLDING
     for number in range(ROUNDS):
         most = PER_ROUND if number else FIRST_ROUND
@@ -93,6 +92,6 @@ def _unfold(problem: Problem, low: float) -> tuple[float, int]:
             break
         epsilon *= 0.5
         if number < ROUNDS // 2:
-            epsilon = min(epsilon, 2.0 * abs(low) + 1e-3 * cell)
-        epsilon = max(epsilon, 1e-4 * cell)
+            epsilon = min(epsilon, 2.0 * abs(low) + 1e-3)
+        epsilon = max(epsilon, 1e-4)
     return low, done

@@ -134,3 +134,20 @@ def sagitta(mesh: QuadMesh) -> float:
         area = 0.5 * abs((np.conj(z[2] - z[0]) * (z[3] - z[1])).imag)
         worst = max(worst, float(np.abs(away).max() / np.sqrt(area)))
     return worst
+
+
+def ring(radii: Floats, count: int) -> QuadMesh:
+    """Return cells around a circle, out to another one; node (i, j), at radius i, is number i count + j."""
+    angle = np.arange(count) * 2.0 * np.pi / count
+    unit = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    fine = np.arange(8 * count) * 2.0 * np.pi / (8 * count)
+    circle = np.stack([np.cos(fine), np.sin(fine)], axis=1)
+    outer, inner = Curve(radii[-1] * circle, closed=True, corners=()), circle[::-1] * radii[0]
+    domain = Domain((Loop(outer), Loop(Curve(inner, closed=True, corners=()), names=("body",))))
+    nodes = (radii[:, None, None] * unit).reshape(-1, 2)
+    lattice = np.arange(len(nodes)).reshape(len(radii), count)
+    quads = lattice_quads(np.concatenate([lattice, lattice[:, :1]], axis=1))
+    first, last = domain.loops[1].curve.knots, domain.loops[0].curve.knots
+    walls = {int(k): (0, float(last[8 * j])) for j, k in enumerate(lattice[-1])}
+    walls |= {int(k): (1, float(first[8 * count - 1 - 8 * j])) for j, k in enumerate(lattice[0])}
+    return placed(domain, nodes, quads, walls)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from quad_meshes import butterfly, passage, placed, rectangle, sagitta
+from quad_meshes import butterfly, passage, placed, rectangle, ring, sagitta
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
@@ -119,6 +119,19 @@ def test_folded_starts_lead_to_the_same_optimum(by: float) -> None:
     found = optimise(start, iterations=300, tolerance=1e-6)
     assert found.valid
     assert found.value == pytest.approx(best.value, rel=1e-4)
+
+
+def test_small_folded_cells_beside_large_ones_come_undone() -> None:
+    """Around a circle out to a hundred radii cells differ in area by more than a thousand."""
+    mesh = ring(np.geomspace(1.0, 100.0, 24), 30)
+    random, nodes = np.random.default_rng(1), mesh.nodes.copy().reshape(24, 30, 2)
+    nodes[1:-1] += 0.2 * np.geomspace(1.0, 100.0, 24)[1:-1, None, None] * random.normal(size=(22, 30, 2))
+    start = mesh.with_nodes(nodes.reshape(-1, 2))
+    assert smallest_jacobian(start.nodes, start.quads) < 0
+    found = optimise(start, iterations=300)
+    assert found.valid
+    radii = np.hypot(*found.mesh.nodes.T).reshape(24, 30)
+    np.testing.assert_allclose(radii, radii.mean(axis=1, keepdims=True) * np.ones(30), rtol=1e-2)
 
 
 def test_what_it_calls_valid_has_no_fold_and_the_domain_s_area() -> None:

@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from known_meshes import circle
+
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
@@ -9,7 +11,6 @@ from meshonet.solvers.blocking import decompose as decomposition
 from meshonet.solvers.blocking.block_grid import block_grid, fine_layout
 from meshonet.solvers.blocking.decompose import decompose
 from meshonet.solvers.blocking.errors import BlockingError
-from known_meshes import circle
 
 STEP = np.array([[0.0, 1], [3, 1], [3, 0], [12, 0], [12, 2], [0, 2]])
 
@@ -31,7 +32,7 @@ DOMAINS = {
     "pipe": ([circle(1.0, 120)], 5, 4),
     "ring": ([circle(2.0, 120), circle(0.8, 60, (0.3, 0.1))], 1, 0),
     "cylinder in a channel": ([rectangle(2.2, 0.41), circle(0.05, 80, (0.2, 0.2))], 12, 4),
-    "wing in a tunnel": ([rectangle(6, 3), wing() + [2.0, 1.5]], 6, 0),
+    "wing in a tunnel": ([rectangle(6, 3), wing() + np.array([2.0, 1.5])], 6, 0),
     "plate": ([rectangle(4, 2), circle(0.4, 80, (1, 1)), circle(0.4, 80, (3, 1))], 40, 8),
 }
 """Loops, and the most blocks and irregular nodes that an engineer would want."""

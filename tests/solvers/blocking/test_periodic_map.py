@@ -7,8 +7,9 @@ from meshonet.geometry.domain.domain import Domain, Periodic
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import SolverError
 from meshonet.solvers.blocking.cross_field import cross_field
-from meshonet.solvers.blocking.seamless_map import map_of_field
-from meshonet.solvers.blocking.surface import Surface
+from meshonet.solvers.blocking.periodic import on_both
+from meshonet.solvers.blocking.seamless_map import map_of_field, seamless_map
+from meshonet.solvers.blocking.surface import Surface, periodic_pairs
 from meshonet.solvers.blocking.triangulation import Triangulation
 
 NI, NJ = 31, 12
@@ -92,3 +93,38 @@ def test_vertices_that_do_not_correspond_are_refused():
     moved = Triangulation(t.domain, points, t.triangles, t.loop, t.arc, t.neighbours, t.neighbour_edge)
     with pytest.raises(SolverError, match="correspond"):
         Surface.of(moved)
+
+
+def passage() -> Domain:
+    """A wavy period of pitch 1 around an ellipse that leans."""
+    t = waves()
+    lean = np.exp(-0.3j) * (0.5 * np.cos(a := np.arange(60) * np.pi / 30) - 0.12j * np.sin(a))
+    ellipse = np.stack([1.4 + lean.real, 0.6 + lean.imag], axis=1)
+    return Domain((t.domain.loops[0], Loop.of_polygon(ellipse)), periodic=t.domain.periodic)
+
+
+def test_a_triangulated_passage_has_one_vertex_for_the_other_and_a_map():
+    m = seamless_map(passage(), count=700)
+    first, second = periodic_pairs(m.triangulation)
+    assert np.allclose(m.triangulation.points[first] + SHIFT, m.triangulation.points[second], atol=1e-9)
+    assert (m.vertices != m.triangulation.triangles).any()
+    assert m.folded == 0
+    boundary = np.flatnonzero(m.on_wall)
+    inner = m.valence[m.valence > 0]
+    assert (4 - inner).sum() + (2 - m.boundary_cells[boundary]).sum() == -4  # an annulus less a disc
+    w = m.corner_coords
+    f, e = np.nonzero(m.periods)
+    g, i = m.neighbours[f, e], m.neighbour_edge[f, e]
+    here, there = w[f, (e + 1) % 3] - w[f, e], w[g, i] - w[g, (i + 1) % 3]
+    assert np.abs(there - 1j ** m.turns[f, e] * here).max() < 1e-12
+
+
+def test_places_are_copied_to_the_other_stretch_once():
+    shape = passage()
+    length = shape.loops[0].length
+    start, end = shape.periodic.first[0], shape.periodic.second[1]
+    arc = np.array([start, start + 0.5, end - 0.5, end - 0.7, length - 0.01])
+    loop, both = on_both(shape, np.zeros(5, dtype=int), arc)
+    expected = [start, start + 0.5, start + 0.7, end - 0.5, end - 0.7, length - 0.01]
+    assert np.allclose(np.sort(both), np.sort(expected))
+    assert len(loop) == 6

@@ -131,7 +131,8 @@ def test_a_fold_is_counted_and_has_a_place():
     m = seamless_map(Domain.of_polygons([wedge(0.5)]), count=300)
     assert m.folded > 0
     x, y = m.worst_place
-    assert 0 < x < 1 and 0 < y < np.radians(0.5)
+    assert 0 < x < 1
+    assert 0 < y < np.radians(0.5)
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1e9])

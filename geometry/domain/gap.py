@@ -1,0 +1,35 @@
+"""How much room a domain leaves in front of its walls."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+
+IN_FRONT = 0.6
+"""Cosine of the angle to the normal up to which a wall counts as being in front: 53 degrees."""
+_SAMPLES = 2000  # of all walls together
+_ROWS = 256
+
+
+def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
+    """Return the distance (n,) from places of a loop to the nearest wall in front of them, infinite for none.
+
+    A wall is in front within `IN_FRONT` of the inward normal, the other side of the same loop too.
+    """
+    total = sum(each.length for each in domain.loops)
+    walls = np.concatenate(
+        [each.sample(max(32, round(_SAMPLES * each.length / total))) for each in domain.loops]
+    )
+    points, along = loop.at(arcs), loop.tangent(arcs)
+    gaps = np.empty(len(arcs))
+    for start in range(0, len(arcs), _ROWS):
+        rows = slice(start, start + _ROWS)
+        dx = walls[:, 0] - points[rows, :1]
+        dy = walls[:, 1] - points[rows, 1:]
+        distance = np.hypot(dx, dy)
+        height = dy * along[rows, :1] - dx * along[rows, 1:]
+        gaps[rows] = np.where(height > IN_FRONT * distance, distance, np.inf).min(axis=1)
+    return gaps

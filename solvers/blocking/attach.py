@@ -1,0 +1,134 @@
+"""Blocks attached to a loop of a layout: layers at a wall, or rows out to a distant far field."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Lines that leave the nodes of a loop, away from the layout.
+
+    Parameters
+    ----------
+    loop : number of the loop, the same in the layout's domain and in the one it is to have.
+    nodes : (k, m, 2) the lines, in the order of `loop_nodes`; the first node of each is the layout's.
+    arcs : (k,) arc lengths at which they end on the loop of the new domain.
+    layers : whether they end at a wall whose layers no optimisation moves.
+    """
+
+    loop: int
+    nodes: Floats
+    arcs: Floats
+    layers: bool
+
+
+def loop_nodes(mesh: QuadMesh, loop: int) -> Indices:
+    """Return the nodes (k,) of a mesh on a loop, by arc length."""
+    on = np.flatnonzero(mesh.places.loop == loop)
+    return np.asarray(on[np.argsort(mesh.places.arc[on], kind="stable")])
+
+
+def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
+    """Return a layout with blocks of `rows` beside every block that has a side on their loops.
+
+    `domain` is what both cover together: the same loops, those of `rows` in new places.
+    """
+    mesh = layout.mesh
+    nodes, places = [mesh.nodes], [replace(mesh.places, loop=mesh.places.loop.copy())]
+    blocks, layers = list(layout.blocks), dict(layout.layers)
+    count = len(mesh.nodes)
+    for each in rows:
+        order = loop_nodes(mesh, each.loop)
+        places[0].loop[order] = -1
+        away = each.nodes.shape[1] - 1
+        table = np.empty((len(order), away + 1), dtype=np.intp)
+        table[:, 0] = order
+        table[:, 1:] = count + np.arange(len(order) * away).reshape(len(order), away)
+        count += len(order) * away
+        nodes.append(each.nodes[:, 1:].reshape(-1, 2))
+        places.append(_places(each, domain))
+        position = np.full(len(mesh.nodes), -1, dtype=np.intp)
+        position[order] = np.arange(len(order))
+        for block in _beside(layout.blocks, position, len(order)):
+            if each.layers:
+                layers[len(blocks)] = away
+            blocks.append(table[block][:, ::-1] if each.layers else table[block[::-1]])
+    joined = Places(
+        np.concatenate([each.loop for each in places]),
+        np.concatenate([each.arc for each in places]),
+        np.concatenate([each.cells for each in places]),
+        np.concatenate([each.partner for each in places]),
+    )
+    joined.arc[joined.loop < 0] = 0.0
+    joined.cells[joined.loop < 0] = 0
+    whole = QuadMesh(domain, np.concatenate(nodes), quads_of(blocks), joined)
+    return Layout(whole, tuple(blocks), layers)
+
+
+def quads_of(blocks: Sequence[Indices]) -> Indices:
+    """Return the quads (m, 4) of blocks, counter-clockwise, block after block."""
+    cells = [
+        np.stack([b[:-1, :-1], b[1:, :-1], b[1:, 1:], b[:-1, 1:]], axis=-1).reshape(-1, 4) for b in blocks
+    ]
+    return np.concatenate(cells)
+
+
+def _places(rows: Rows, domain: Domain) -> Places:
+    """Return the places of the new nodes: the last of each line is on the loop."""
+    k, away = len(rows.nodes), rows.nodes.shape[1] - 1
+    places = Places.inside(k * away)
+    last = np.arange(k) * away + away - 1
+    loop = domain.loops[rows.loop]
+    places.loop[last], places.arc[last] = rows.loop, rows.arcs
+    for arc, cells in zip(loop.corner_arcs, loop.corner_cells, strict=True):
+        places.cells[last[rows.arcs == arc]] = cells
+    return places
+
+
+def _beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
+    """Return positions (n,) along the loop, ascending by one, of every side of a block that lies on it."""
+    found = []
+    for block in blocks:
+        for side in (block[:, 0], block[-1], block[::-1, -1], block[0, ::-1]):
+            at = position[side]  # counter-clockwise around the block: the domain is on the left, as of a loop
+            if (at >= 0).all() and ((at[1:] - at[:-1]) % count == 1).all():
+                found.append(at)
+    return found
+
+
+def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
+    """Return lines (k, n, 2): lines (k, m, 2) at the arcs (k, n) that `law` makes of their lengths."""
+    step = np.diff(lines, axis=1)
+    length = np.hypot(step[..., 0], step[..., 1])
+    arc = np.concatenate([np.zeros((len(lines), 1)), np.cumsum(length, axis=1)], axis=1)
+    wanted = law(arc[:, -1])
+    return _hermite(lines, arc, np.minimum(wanted, arc[:, -1:]))
+
+
+def _hermite(lines: Floats, arc: Floats, at: Floats) -> Floats:
+    """Return points (k, n, 2) at arcs (k, n): cubic pieces, tangents those of parabolas through three."""
+    h = np.diff(arc, axis=1)[..., None]
+    delta = np.diff(lines, axis=1) / h
+    slope = np.empty_like(lines)
+    slope[:, 1:-1] = (delta[:, :-1] * h[:, 1:] + delta[:, 1:] * h[:, :-1]) / (h[:, :-1] + h[:, 1:])
+    slope[:, 0] = 2.0 * delta[:, 0] - slope[:, 1]
+    slope[:, -1] = 2.0 * delta[:, -1] - slope[:, -2]
+    row = np.arange(len(lines))[:, None]
+    piece = np.stack([np.searchsorted(a, s, side="right") for a, s in zip(arc, at, strict=True)]) - 1
+    piece = np.clip(piece, 0, h.shape[1] - 1)
+    step, start, stop = h[row, piece], lines[row, piece], lines[row, piece + 1]
+    q = (at - arc[row, piece])[..., None] / step
+    bend = q * (1 - q) * step * ((1 - q) * slope[row, piece] - q * slope[row, piece + 1])
+    points = start + q * q * (3 - 2 * q) * (stop - start) + bend
+    points[:, 0], points[:, -1] = lines[:, 0], lines[:, -1]
+    return np.asarray(points)

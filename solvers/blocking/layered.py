@@ -1,0 +1,212 @@
+"""Grids of blocks with layers at walls: rings around them, blocks between the rings, rows to a far field.
+
+::
+
+    walls --march--> rings    fronts, near field --decompose--> layout --counts, optimum--> fine layout
+                       |                                                                         |
+                       +------------------ columns at the nodes of the fronts -------------------+--> whole
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.attach import attach
+from meshonet.solvers.blocking.chords import Chords
+from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.feature_sizes import feature_sizes
+from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
+from meshonet.solvers.blocking.near_field import NearField
+from meshonet.solvers.blocking.refine import multiplied, refine
+from meshonet.solvers.blocking.respace import respaced
+from meshonet.solvers.blocking.rings import Ring, march_ring
+from meshonet.solvers.blocking.size_metric import SizeMetric
+from meshonet.solvers.energy.quads import optimise
+
+COLUMNS = 140
+"""Cells around a loop, if all were as long as the longest."""
+THICKNESS = 0.018
+"""Thickness of a ring where there is room, in lengths of its loop."""
+MOST_OPTIMISED = 4000
+"""Cells that are optimised at the most; finer grids are splines through these."""
+ITERATIONS = 120
+PASSES = 2
+"""Optimisations, each with the sizes at the nodes of the one before."""
+_BISECTIONS = 12
+_PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """Walls with their layers, and the domain that is left.
+
+    `rings` are by number of their loop, which is the same in both domains; `near` stands in for a distant
+    outer loop.
+    """
+
+    domain: Domain
+    rings: Mapping[int, Ring]
+    near: NearField | None
+    rest: Domain
+    settings: LayerSettings
+
+    @classmethod
+    def around(cls, domain: Domain, loops: list[int], settings: LayerSettings) -> Rings:
+        """Return the rings around some loops of a domain.
+
+        Raises InputError: no room for layers; a wall that they fold at.
+        """
+        rings = {}
+        for number in loops:
+            loop = domain.loops[number]
+            thickness, largest = THICKNESS * loop.length, loop.length / COLUMNS
+            rings[number] = march_ring(domain, loop, settings.first, thickness, largest)
+        near = NearField.of(domain)
+        outer = near.circle if near else domain.loops[0]
+        rest: list[Loop] = [outer if 0 not in rings else rings[0].front]
+        rest += [rings[k].front if k in rings else domain.loops[k] for k in range(1, len(domain.loops))]
+        return cls(domain, rings, near, Domain(tuple(rest), domain.name), settings)
+
+    @cached_property
+    def _metric(self) -> SizeMetric:
+        if not self.rings:
+            return feature_sizes(self.rest)
+        return SizeMetric.joined([ring_metric(ring, self.settings) for ring in self.rings.values()])
+
+    def metric(self, scale: float) -> SizeMetric:
+        """Return the sizes of cells outside the rings; `scale` is that of their columns."""
+        largest = self.rest.extent / 12.0 * scale**0.5
+        return replace(self._metric, along=scale * self._metric.along, largest=largest)
+
+    def rows(self, ring: Ring) -> int:
+        """Return the layers of a ring."""
+        thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
+        return self.settings.rows(float(thickness.max()))
+
+
+def layered(
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int,
+    layout: Layout | None = None, timings: Timings | None = None,
+) -> Layout:  # fmt: skip
+    """Return a fine layout of about so many cells, with layers at some loops of a domain.
+
+    `layout` is one of the rest of the domain, outside its rings, to be taken instead of one that is found.
+    Raises InputError, BlockingError; NoValidGridError: cells stay folded.
+    """
+    timings = timings or Timings()
+    with timings.stage("layers"):
+        rings = Rings.around(domain, loops, settings)
+    if layout is None:
+        plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
+        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain))
+        layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
+    fine = _outside(rings, layout, cells, timings)
+    with timings.stage("layers"):
+        return _joined(rings, fine)
+
+
+def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layout:
+    """Return the fine layout outside the rings, optimised."""
+    chords = Chords.of(layout)
+    with timings.stage("refine"):
+        counts, times, metric = _counts(rings, chords, cells)
+        coarse = refine(layout, counts, chords)
+    with timings.stage("optimum"):
+        mesh = coarse.mesh
+        for _ in range(PASSES):
+            optimum = optimise(mesh, iterations=ITERATIONS, targets=metric.edges(mesh))
+            if not optimum.valid:
+                raise NoValidGridError("cells outside the layers stay folded")
+            mesh = optimum.mesh
+    with timings.stage("refine"):
+        return multiplied(Layout(mesh, coarse.blocks), times)
+
+
+def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
+    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
+    low, high = np.log(0.1), np.log(8.0)
+    wanted = _Wanted(chords, rings.metric(1.0))
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        metric = rings.metric(float(np.exp(middle)))
+        counts = wanted.counts(metric)
+        total = chords.cells(counts) + _attached_cells(rings, chords, counts)
+        low, high = (middle, high) if total > cells else (low, middle)
+    times = 1
+    while chords.cells(counts) / times**2 > MOST_OPTIMISED:
+        times += 1
+    return np.maximum(chords.least, np.round(counts / times).astype(np.intp)), times, metric
+
+
+def _attached_cells(rings: Rings, chords: Chords, counts: Indices) -> int:
+    """Return the cells of rings and of the rows to the far field."""
+    along = np.zeros(len(rings.rest.loops), dtype=np.intp)
+    places = chords.layout.mesh.places
+    for edge in np.flatnonzero(chords.wall):
+        along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
+    total = sum(int(along[number]) * rings.rows(ring) for number, ring in rings.rings.items())
+    if rings.near is not None:
+        total += int(along[0]) * rings.near.cells(2.0 * np.pi * rings.near.radius / max(int(along[0]), 1))
+    return total
+
+
+class _Wanted:
+    """What edges of chords want, for any sizes at the same points."""
+
+    def __init__(self, chords: Chords, metric: SizeMetric) -> None:
+        self.chords = chords
+        nodes = chords.layout.mesh.nodes
+        start = nodes[np.concatenate([edge[:-1] for edge in chords.edges])]
+        step = nodes[np.concatenate([edge[1:] for edge in chords.edges])] - start
+        self.length = np.hypot(*step.T)
+        self.near = [metric.near(start + part * step, step) for part in _PARTS]
+        self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
+
+    def counts(self, metric: SizeMetric) -> Indices:
+        """Return counts (chords,): the mean, by length, of the logarithms of what edges want."""
+        parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
+        chords = self.chords
+        wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
+        weight = np.bincount(chords.chord, wanted, chords.count)
+        mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
+        return np.maximum(chords.least, np.round(np.exp(mean)).astype(np.intp))
+
+
+def _joined(rings: Rings, outside: Layout) -> Layout:
+    """Return the layout with the layers, and the rows to a distant outer loop, attached."""
+    rows = [
+        ring_rows(
+            outside.mesh, number, ring, rings.rows(ring), rings.settings, heights_inside(outside, number)
+        )
+        for number, ring in rings.rings.items()
+    ]
+    if rings.near is not None:
+        rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
+    whole = respaced(attach(outside, rings.domain, rows), rings.settings)
+    if smallest_corner(whole.mesh) <= 0.0:
+        raise NoValidGridError("layers are folded")
+    return whole
+
+
+def _smooth(loop: Loop) -> Loop:
+    """Return a loop without the corners at which the field is not to turn: nodes are put there later."""
+    corners = tuple(k for k, cells in zip(loop.corners, loop.corner_cells, strict=True) if cells != 2)
+    return loop if corners == loop.corners else Loop(loop.curve, corners, loop.names[:1])
+
+
+def smallest_corner(mesh: QuadMesh) -> float:
+    """Return the smallest Jacobian, of parallelograms at corners, of the quads of a mesh."""
+    z = mesh.nodes[mesh.quads]
+    edge = np.roll(z, -1, axis=1) - z
+    before = np.roll(edge, 1, axis=1)
+    return float((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min())

@@ -1,0 +1,105 @@
+r"""A cascade's passage as a plane domain with two holes: no side of it is periodic there.
+
+With p the pitch and z₀ a point of the blade, the conformal map
+
+    ζ = iπ (z - z₀) / p,   w = coth ζ
+
+is the same for z and z + p. The blade becomes the outer loop (it surrounds the pole z₀), and a line across
+the flow, Re ζ = ±a, the circle around ±coth 2a of radius 1/sinh 2a: inlet and outlet. Angles stay the same.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Complexes, Floats
+
+_SMALL = 1e-12
+
+
+@dataclass(frozen=True)
+class PassageMap:
+    """The map of a cascade of period `pitch`, a vector as a complex number, around the pole `centre`."""
+
+    pitch: complex
+    centre: complex
+
+    @property
+    def axis(self) -> complex:
+        """Unit vector from inlet to outlet, at a right angle to the pitch."""
+        return self.pitch / (1j * abs(self.pitch))
+
+    def axial(self, points: Floats) -> Floats:
+        """Return how far (n,) points (n, 2) are from the centre along the axis."""
+        return np.asarray(((_complex(points) - self.centre) * np.conj(self.axis)).real)
+
+    def forward(self, points: Floats) -> Floats:
+        """Return the places w (n, 2) of points z (n, 2)."""
+        zeta = 1j * np.pi * (_complex(points) - self.centre) / self.pitch
+        return _pairs(1.0 / np.tanh(zeta))
+
+    def back(self, places: Floats) -> Floats:
+        """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
+        w = _complex(places)
+        zeta = 0.5 * np.log((w + 1.0) / (w - 1.0))
+        return _pairs(self.centre + zeta * self.pitch / (1j * np.pi))
+
+    def stretching(self, places: Floats) -> Floats:
+        """Return |dw/dz| (n,) at places w (n, 2)."""
+        w = _complex(places)
+        return np.asarray(np.pi / abs(self.pitch) * np.abs(1.0 - w * w))
+
+    def line(self, distance: float, count: int) -> Floats:
+        """Return `count` places w (count, 2) of the line across the flow at an axial distance of the centre.
+
+        They run clockwise around the hole that it becomes, in equal steps along the line.
+        """
+        steps = np.arange(count) / count
+        way = -1.0 if distance > 0 else 1.0
+        points = self.centre + distance * self.axis + (way * steps) * self.pitch
+        return self.forward(_pairs(points))
+
+    def shifts(self, points: Floats, beside: Floats) -> Floats:
+        """Return how many pitches (n,) are to be added to points (n, 2) to have them nearest to others."""
+        away = (_complex(beside) - _complex(points)) / self.pitch
+        return np.asarray(np.round(away.real))
+
+
+def inner_point(polygon: Floats) -> complex:
+    """Return the point inside a polygon (n, 2) that is, of a lattice, the farthest from it."""
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    best, most = complex(*polygon.mean(axis=0)), -1.0
+    for rows in (40, 160, 640):
+        x = np.linspace(low[0], high[0], rows + 2)[1:-1]
+        for value in x:
+            y = _crossings(polygon, value)
+            if len(y) < 2:
+                continue
+            for a, b in zip(y[::2], y[1::2], strict=False):
+                middle = np.array([value, 0.5 * (a + b)])
+                room = float(np.hypot(*(polygon - middle).T).min())
+                if room > most and b - a > _SMALL:
+                    best, most = complex(*middle), room
+        if most > 0:
+            break
+    return best
+
+
+def _crossings(polygon: Floats, x: float) -> Floats:
+    """Return the ordinates, ascending, at which a closed polygon crosses the line of an abscissa."""
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+    across = (a[:, 0] > x) != (b[:, 0] > x)
+    a, b = a[across], b[across]
+    return np.sort(a[:, 1] + (x - a[:, 0]) / (b[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1]))
+
+
+def _complex(points: Floats) -> Complexes:
+    return np.asarray(points[..., 0] + 1j * points[..., 1])
+
+
+def _pairs(values: NDArray[Any]) -> Floats:
+    return np.stack([values.real, values.imag], axis=-1)

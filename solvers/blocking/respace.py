@@ -1,0 +1,80 @@
+"""Cells that grow evenly from a wall through its layers and the ring of blocks around them.
+
+A front has two blocks at each of its nodes, so the blocks around it form a ring with as many cells across it
+everywhere, whatever the room. Nodes are placed anew along the lines from the wall to the outer side of that
+ring: the first cell stays what it is, the last one becomes about as large as the one beyond.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking.attach import spaced
+from meshonet.solvers.blocking.layer_law import layer_arcs
+from meshonet.solvers.blocking.layer_rows import LayerSettings
+
+
+def respaced(layout: Layout, settings: LayerSettings) -> Layout:
+    """Return the layout with nodes moved along the lines that leave the walls of its layers.
+
+    The layers of each wall must go round it.
+    """
+    strips = _strips(layout)
+    if not strips:
+        return layout
+    nodes = layout.mesh.nodes.copy()
+    beyond = _beyond(layout, strips)
+    for strip in strips:
+        lines = layout.mesh.nodes[strip]
+        last, cells = beyond[strip[:, -1]], strip.shape[1] - 1
+
+        def law(length: Floats, last: Floats = last, cells: int = cells) -> Floats:
+            return layer_arcs(length, settings.first, last, cells, settings.constant, settings.growth)
+
+        moved = spaced(lines, law)
+        step = moved[:, 1] - moved[:, 0]
+        moved[:, 1] = moved[:, 0] + step * (settings.first / np.hypot(*step.T))[:, None]
+        nodes[strip[:, 1:-1]] = moved[:, 1:-1]
+    return replace(layout, mesh=layout.mesh.with_nodes(nodes))
+
+
+def _strips(layout: Layout) -> list[Indices]:
+    """Return the nodes (n, m) of the lines from wall to outer side, for each block of layers."""
+    ends = {}
+    for number, block in enumerate(layout.blocks):
+        if number not in layout.layers:
+            for turned in (block, block[::-1, ::-1], block.T[:, ::-1], block.T[::-1]):
+                ends[int(turned[0, 0]), int(turned[1, 0]), int(turned[-1, 0])] = turned
+    strips = []
+    for number in layout.layers:
+        block = layout.blocks[number]
+        front = block[:, -1]
+        outer = ends.get((int(front[0]), int(front[1]), int(front[-1])))
+        if outer is None or not np.array_equal(outer[:, 0], front):
+            outer = front[:, None]
+        strips.append(np.concatenate([block, outer[:, 1:]], axis=1))
+    return strips
+
+
+def _beyond(layout: Layout, strips: list[Indices]) -> Floats:
+    """Return the mean length (n,) of the edges that leave the outer side of the strips for the outside."""
+    mesh = layout.mesh
+    inside = np.zeros(len(mesh.nodes), dtype=bool)
+    outer = np.zeros(len(mesh.nodes), dtype=bool)
+    for strip in strips:
+        inside[strip] = True
+        outer[strip[:, -1]] = True
+    total, count = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
+    length = np.hypot(*(mesh.nodes[mesh.edges[:, 1]] - mesh.nodes[mesh.edges[:, 0]]).T)
+    for here, there in ((0, 1), (1, 0)):
+        a, b = mesh.edges[:, here], mesh.edges[:, there]
+        leaving = outer[a] & ~inside[b]
+        np.add.at(total, a[leaving], np.log(length[leaving]))
+        np.add.at(count, a[leaving], 1.0)
+    # between two strips nothing leaves: a constant ratio then
+    return np.where(count > 0, np.exp(total / np.maximum(count, 1.0)), np.inf)

@@ -1,0 +1,214 @@
+"""Rings of layers around the loops of a domain: marched from the wall, no thicker than the gaps allow.
+
+::
+
+    wall --march, step by step as thick as the gap in front allows--> front
+
+The front is a smooth loop that stands in for the wall when the rest of the domain is decomposed; the ring
+itself is a map from (place along the front, height) that gives a column of nodes anywhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.curves.monotone import monotone_cubic
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
+from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
+from meshonet.kernels._native import hyperbolic_march
+from meshonet.solvers.blocking.wall_columns import wall_columns
+from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
+from meshonet.solvers.hyperbolic.settings import ATTEMPTS, RISING, MarchSettings
+
+GAP_PART = 0.38
+"""Part of the gap in front of a wall that a ring may fill: two of them leave a fourth of it."""
+SLOPE = 0.25
+"""How fast the thickness of a ring may change along the wall."""
+MARCH_GROWTH = 1.2
+"""Ratio of neighbouring levels of the march; the layers themselves are placed anew on its lines."""
+THINNER = 0.6
+"""What the thickness is multiplied by when the march has folded with every setting."""
+TRIES = 4
+
+
+@dataclass(frozen=True, eq=False)
+class Ring:
+    """Layers around a loop.
+
+    Parameters
+    ----------
+    wall : the loop.
+    arcs : (n,) places on it where the columns of `levels` start, ascending from a corner's if there are any.
+    levels : (n, m, 2) nodes from the wall (0) to the front (m - 1).
+    front : the loop along the last level, its points those of the columns in order. Corners of the wall have
+        a point there too, which is a corner at which two cells meet: a node.
+    """
+
+    wall: Loop
+    arcs: Floats
+    levels: Floats
+    front: Loop
+
+    def columns(self, places: Floats) -> tuple[Floats, Floats]:
+        """Return the lines (k, m, 2) to `places` (k,), arc lengths of the front, and where they start.
+
+        These are arc lengths (k,) of the wall. Between columns, cubics through four of them that do not
+        reach over a corner.
+        """
+        n = len(self.arcs)
+        knots = np.append(self.front.curve.knots, self.front.length)
+        index = np.interp(np.mod(places, self.front.length), knots, np.arange(n + 1.0))
+        near = np.round(index)
+        index = np.where(np.abs(index - near) < 1e-7, near, index)
+        base = np.minimum(index.astype(np.intp), n - 1)
+        low, high = self._piece(base)
+        first = np.clip(base - 1, low, np.maximum(high - 3, low))
+        offset = index - first
+        nodes = np.zeros((len(places), *self.levels.shape[1:]))
+        width = np.minimum(high - first, 3)
+        for k in range(4):
+            weight = np.ones(len(places))
+            for other in range(4):
+                used = (other <= width) & (k <= width)
+                if other != k:
+                    weight *= np.where(used, (offset - other) / (k - other), 1.0)
+            weight[k > width] = 0.0
+            nodes += weight[:, None, None] * self.levels[(first + k) % n]
+        starts = (
+            monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), np.clip(index, 0.0, n))
+            % self.wall.length
+        )
+        exact = index == np.round(index)
+        starts[exact] = self.arcs[index[exact].astype(np.intp) % n]
+        wall = self.wall.at(starts)
+        step = np.diff(nodes, axis=1)
+        height = np.cumsum(np.hypot(step[..., 0], step[..., 1]), axis=1)
+        left = 1.0 - np.pad(height / height[:, -1:], ((0, 0), (1, 0)))  # of the way to the front
+        nodes += left[..., None] * (wall - nodes[:, 0])[:, None]
+        nodes[:, 0] = wall
+        return nodes, starts
+
+    def _unwrapped(self) -> Floats:
+        """Return arc lengths (n + 3,) of columns -1 to n + 1, ascending."""
+        around = np.append(self.arcs, [self.arcs[0] + self.wall.length, self.arcs[1] + self.wall.length])
+        return np.concatenate([[self.arcs[-1] - self.wall.length], around])
+
+    def _piece(self, base: Indices) -> tuple[Indices, Indices]:
+        """Return the first and last column of the stretch between corners in which a column lies."""
+        n, corners = len(self.arcs), np.array(self.front.corners, dtype=np.intp)
+        if len(corners) == 0:
+            return base - 1, base + 2
+        k = np.searchsorted(corners, base, side="right") - 1
+        low = np.where(k < 0, corners[-1] - n, corners[k])
+        high = np.where(k + 1 < len(corners), corners[(k + 1) % len(corners)], corners[0] + n)
+        return low, high
+
+
+def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, largest: float) -> Ring:
+    """Return the ring around a loop of a domain, as thick as `thickness` where there is room.
+
+    `first` is the height of first cells, `largest` the length of cells along the wall, all in the domain's
+    unit. Raises InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
+    """
+    arcs = wall_columns(loop, largest)
+    gaps = wall_gaps(domain, loop, arcs)
+    room = GAP_PART * gaps
+    place = _place(loop, arcs, int(np.argmin(room)))
+    for _ in range(TRIES):
+        wanted = graded(np.minimum(thickness, room), arcs, loop.length, SLOPE)
+        if wanted.min() < 4.0 * first:
+            raise InputError(
+                f"a gap of {gaps.min():.3g} leaves no room for layers of {first:.3g}",
+                "use thinner first cells, or none there",
+                place=place,
+            )
+        levels, folded = _marched(loop.at(arcs), wanted, first)
+        if levels is not None and not folded.any():
+            return _ring(loop, arcs, levels)
+        thickness *= THINNER
+    at = int(np.argmax(folded)) if folded.any() else 0
+    raise InputError(
+        "layers fold at the wall however thin", "smooth the wall there, or leave its layers out",
+        place=_place(loop, arcs, at),
+    )  # fmt: skip
+
+
+def _place(loop: Loop, arcs: Floats, column: int) -> str:
+    x, y = loop.at(arcs[column : column + 1])[0]
+    return f"{loop.name_at(float(arcs[column]))}, ({x:.6g}, {y:.6g})"
+
+
+def _marched(start: Floats, thickness: Floats, first: float) -> tuple[Floats | None, Floats]:
+    """Return levels (n, m, 2), and where (n,) they are folded, of the best of several marches."""
+    cells = cells_for_growth(first, float(thickness.max()), MARCH_GROWTH)
+    ratios = np.array(
+        [growth_ratio(first, each, cells) if each > cells * first else 1.0 for each in thickness]
+    )
+    best, where = None, np.ones(len(start), dtype=bool)
+    for settings in ATTEMPTS:
+        levels = _march(start, cells, first, ratios, settings)
+        if not np.isfinite(levels).all():
+            continue
+        folded = _folded(levels)
+        if best is None or folded.sum() < where.sum():
+            best, where = levels, folded
+        if not folded.any():
+            break
+    return best, where
+
+
+def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: MarchSettings) -> Floats:
+    """Return levels (n, cells + 1, 2) whose steps grow by `ratios` (n,)."""
+    levels = np.empty((2, cells + 1, len(start)))
+    levels[:, 0] = start.T
+    most = float(ratios.max())
+    knobs = (
+        settings.dissipation, settings.even, settings.tolerated, settings.bend, 1.0 + settings.theta,
+        AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
+    )  # fmt: skip
+    steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
+    hyperbolic_march(levels[0], levels[1], steps, *knobs, None, ratios / most)
+    return np.ascontiguousarray(levels.transpose(2, 1, 0))
+
+
+def _folded(levels: Floats) -> Floats:
+    """Return which columns (n,) of closed levels (n, m, 2) have a cell with a corner that is folded."""
+    z = levels[..., 0] + 1j * levels[..., 1]
+    along, across = np.roll(z, -1, axis=0) - z, np.diff(z, axis=1)
+    after = np.roll(across, -1, axis=0)
+    least = [
+        (np.conj(edge) * side).imag.min(axis=1)
+        for edge in (along[:, :-1], along[:, 1:])
+        for side in (across, after)
+    ]
+    return np.asarray(np.min(least, axis=0) <= 0.0)
+
+
+def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
+    corners = _corner_columns(loop, arcs)
+    if len(corners):  # from a corner on, so that pieces between corners do not wrap
+        arcs, levels = np.roll(arcs, -corners[0]), np.roll(levels, -corners[0], axis=0)
+        corners = corners - corners[0]
+        arcs = np.where(arcs < arcs[0], arcs + loop.length, arcs)
+    curve = Curve(levels[:, -1], closed=True, corners=())
+    front = Loop(curve, tuple(int(k) for k in corners), (loop.names[0],))
+    return Ring(loop, arcs, levels, front)
+
+
+def _corner_columns(loop: Loop, arcs: Floats) -> Indices:
+    return np.flatnonzero(np.isin(arcs, loop.corner_arcs))
+
+
+def fronts(rings: Sequence[Ring]) -> tuple[Loop, ...]:
+    """Return the loops along the fronts of rings."""
+    return tuple(ring.front for ring in rings)

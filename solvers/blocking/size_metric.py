@@ -1,0 +1,99 @@
+"""How long edges should be: at each place and in each direction, from what walls and fronts ask for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import nearest_points
+
+GRADING = 0.13
+"""How fast edges may grow with the distance from a wall."""
+
+
+@dataclass(frozen=True, eq=False)
+class Near:
+    """Edges, their nearest points of a metric, and how they lie to these.
+
+    Parameters
+    ----------
+    point : (m,) the nearest point of each edge.
+    rise : (m,) what distance adds to lengths.
+    square : (m,) square of the cosine between edge and normal.
+    scale : (m,) of the map there.
+    """
+
+    point: Indices
+    rise: Floats
+    square: Floats
+    scale: Floats
+
+    def length(self, across: Floats, along: Floats, largest: float) -> Floats:
+        """Return the lengths (m,) of the edges, from those (n,) at the points."""
+        high = np.minimum(across[self.point] + self.rise, largest)
+        wide = np.minimum(along[self.point] + self.rise, largest)
+        return np.asarray(self.scale / np.sqrt(self.square / high**2 + (1.0 - self.square) / wide**2))
+
+
+@dataclass(frozen=True, eq=False)
+class SizeMetric:
+    """Lengths of edges, across and along walls; between these the axes of an ellipse.
+
+    Parameters
+    ----------
+    points : (n, 2) places on walls and fronts.
+    normals : (n, 2) unit normals there.
+    across, along : (n,) lengths of edges in their direction and in the other.
+    largest : the length of edges far from all of them.
+    grading : by how much lengths grow with the distance.
+    scale : of a conformal map, how much longer (n,) edges at places (n, 2) of its plane are; lengths and
+        distances above are those before the map, places, points and directions those behind it.
+    """
+
+    points: Floats
+    normals: Floats
+    across: Floats
+    along: Floats
+    largest: float
+    grading: float = GRADING
+    scale: Callable[[Floats], Floats] | None = None
+
+    @classmethod
+    def joined(cls, metrics: Sequence[SizeMetric]) -> SizeMetric:
+        """Return what several ask for together."""
+        first = metrics[0]
+        return cls(
+            np.concatenate([each.points for each in metrics]),
+            np.concatenate([each.normals for each in metrics]),
+            np.concatenate([each.across for each in metrics]),
+            np.concatenate([each.along for each in metrics]),
+            min(each.largest for each in metrics),
+            first.grading,
+            first.scale,
+        )
+
+    def length(self, places: Floats, directions: Floats) -> Floats:
+        """Return the lengths (m,) of edges at `places` (m, 2) in `directions` (m, 2) of any length."""
+        return self.near(places, directions).length(self.across, self.along, self.largest)
+
+    def near(self, places: Floats, directions: Floats) -> Near:
+        """Return what `length` needs of `places` (m, 2) and `directions` (m, 2) whatever the sizes are."""
+        k, squares = nearest_points(np.ascontiguousarray(places), self.points)
+        distance = np.sqrt(squares)
+        scale = np.ones(len(k))
+        if self.scale is not None:
+            scale = self.scale(places)
+            distance = distance / np.sqrt(scale * self.scale(self.points)[k])
+        size = np.hypot(directions[:, 0], directions[:, 1])
+        cosine = np.abs((directions * self.normals[k]).sum(axis=1)) / np.maximum(size, 1e-300)
+        return Near(k, self.grading * distance, cosine**2, scale)
+
+    def edges(self, mesh: QuadMesh) -> Floats:
+        """Return the lengths (e,) of the edges of a mesh, where they are now."""
+        first, second = mesh.nodes[mesh.edges].transpose(1, 0, 2)
+        return self.length(0.5 * (first + second), second - first)
