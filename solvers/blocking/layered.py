@@ -40,6 +40,8 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
+PRICE = 0.02
+"""Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 PASSES = 2
 """Optimisations, each with the sizes at the nodes of the one before."""
 _BISECTIONS = 12
@@ -108,7 +110,7 @@ def layered(
         rings = Rings.around(domain, loops, settings)
     if layout is None:
         plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
-        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain))
+        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
     fine = _outside(rings, layout, cells, timings)
     with timings.stage("layers"):
