@@ -85,11 +85,7 @@ def triangulated(domain: Domain, count: int, seed: int, *, centre: bool) -> Any:
             if loop.corners
             else [0, loop.length]
         )
-<<<<<<< HEAD
-        for a, b in zip(ends[:-1], ends[1:], strict=True):
-=======
         for a, b in pairwise(ends):
->>>>>>> main
             steps = max(3, int(np.ceil((b - a) / size)))
             inner = (np.arange(1, steps) + rng.uniform(-0.2, 0.2, steps - 1)) / steps
             arc = a + (b - a) * np.append(0.0, inner)
