@@ -39,7 +39,7 @@ THICKNESS = 0.018
 """Thickness of a ring where there is room, in lengths of its loop."""
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
-ITERATIONS = 120
+ITERATIONS, STRIDING, UNFOLDING = 120, 60, 30
 PRICE = 0.02
 """Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 PASSES = 2
@@ -121,33 +121,51 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = _counts(rings, chords, cells)
+        counts, stride, times, metric = _counts(rings, chords, cells)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
-        mesh = coarse.mesh
+        if stride > 1:
+            coarse = multiplied(_optimised(coarse, metric, STRIDING), stride)
         for _ in range(PASSES):
-            optimum = optimise(mesh, iterations=ITERATIONS, targets=metric.edges(mesh))
-            if not optimum.valid:
-                raise NoValidGridError("cells outside the layers stay folded")
-            mesh = optimum.mesh
+            coarse = _optimised(coarse, metric, ITERATIONS)
     with timings.stage("refine"):
-        return multiplied(Layout(mesh, coarse.blocks), times)
+        fine = multiplied(coarse, times)
+    if times == 1 or smallest_corner(fine.mesh) > 0.0:
+        return fine
+    with timings.stage("optimum"):  # splines through few cells may fold where these bend
+        return _optimised(fine, metric, UNFOLDING)
 
 
-def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
+def _optimised(layout: Layout, metric: SizeMetric, iterations: int) -> Layout:
+    """Return a layout with its nodes optimised for some sizes."""
+    optimum = optimise(layout.mesh, iterations=iterations, targets=metric.edges(layout.mesh))
+    if not optimum.valid:
+        raise NoValidGridError("cells outside the layers stay folded")
+    return replace(layout, mesh=optimum.mesh)
+
+
+def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, int, SizeMetric]:
+    """Return coarse counts (chords,), and the sizes that they follow.
+
+    Between these by how much counts are multiplied before all cells are optimised, and after that.
+    """
+    multiple = rings.settings.multiple
     low, high = np.log(0.1), np.log(8.0)
     wanted = _Wanted(chords, rings.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
         metric = rings.metric(float(np.exp(middle)))
-        counts = wanted.counts(metric)
+        counts = wanted.counts(metric, multiple)
         total = chords.cells(counts) + _attached_cells(rings, chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
         times += 1
-    return np.maximum(chords.least, np.round(counts / times).astype(np.intp)), times, metric
+    while times % multiple and multiple % times:  # either divides the other
+        times -= 1
+    stride = max(multiple // times, 1)
+    counts = np.round(counts / (times * stride)).astype(np.intp)
+    return np.maximum(chords.least, counts), stride, times, metric
 
 
 def _attached_cells(rings: Rings, chords: Chords, counts: Indices) -> int:
@@ -158,7 +176,9 @@ def _attached_cells(rings: Rings, chords: Chords, counts: Indices) -> int:
         along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
     total = sum(int(along[number]) * rings.rows(ring) for number, ring in rings.rings.items())
     if rings.near is not None:
-        total += int(along[0]) * rings.near.cells(2.0 * np.pi * rings.near.radius / max(int(along[0]), 1))
+        total += int(along[0]) * rings.near.cells(
+            2.0 * np.pi * rings.near.radius / max(int(along[0]), 1), multiple=rings.settings.multiple
+        )
     return total
 
 
@@ -174,14 +194,14 @@ class _Wanted:
         self.near = [metric.near(start + part * step, step) for part in _PARTS]
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
-    def counts(self, metric: SizeMetric) -> Indices:
-        """Return counts (chords,): the mean, by length, of the logarithms of what edges want."""
+    def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
+        """Return counts (chords,): multiples near the mean, by length, of the logarithms of what edges want."""
         parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)
         mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return np.maximum(chords.least, np.round(np.exp(mean)).astype(np.intp))
+        return multiple * np.maximum(chords.least, np.round(np.exp(mean) / multiple).astype(np.intp))
 
 
 def _joined(rings: Rings, outside: Layout) -> Layout:
@@ -193,11 +213,14 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
         for number, ring in rings.rings.items()
     ]
     if rings.near is not None:
-        rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
-    whole = respaced(attach(outside, rings.domain, rows), rings.settings)
-    if smallest_corner(whole.mesh) <= 0.0:
-        raise NoValidGridError("layers are folded")
-    return whole
+        multiple = rings.settings.multiple
+        rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0), multiple=multiple))
+    whole = attach(outside, rings.domain, rows)
+    even = respaced(whole, rings.settings)
+    for each in (even, whole):
+        if smallest_corner(each.mesh) > 0.0:
+            return each
+    raise NoValidGridError("layers are folded")
 
 
 def _smooth(loop: Loop) -> Loop:

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from time import perf_counter
 
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import fine_layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
-from meshonet.solvers.blocking.request import CELLS, BlockRequest
+from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
 from meshonet.solvers.solution import Solution
 
 METHOD = "blocks"
 GROWTH = 1.2
 """Ratio of neighbouring layers where nobody asked for one."""
-LAYERED_CELLS = 20_000
-"""Cells where nobody asked for a count and there are layers."""
 
 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
@@ -39,12 +39,14 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
         raise InputError("cascades are not made yet", "leave {pitch} out", parameter="pitch")
     if height is None:
         layout = layout or decompose(domain, timings=timings)
-        fine = fine_layout(layout, cells=cells, cell_size=size, timings=timings)
+        fine = fine_layout(
+            layout, cells=cells, cell_size=size, halved=request.refine, timings=timings
+        )
     else:
         fine = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
     note = request.note(shape.unit)
-    notes = (*domain.notes, *([note] if note else []))
+    notes = (*domain.notes, *([note] if note else []), *_folded_coarser(grid, request.refine))
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
 
 
@@ -55,10 +57,10 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     """
     domain = _checked(shape.domain, request)
     layout = _given(shape, domain, request) or decompose(domain)
-    if request.cells is None and request.cell_size is None and request.res is None:
+    if not (request.cells or request.cell_size or request.res or request.refine):
         return layout
     cells, size = _wanted(domain, request)
-    return fine_layout(layout, cells=cells, cell_size=size)
+    return fine_layout(layout, cells=cells, cell_size=size, halved=request.refine)
 
 
 def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout | None:
@@ -86,10 +88,10 @@ def _with_layers(
         if others:
             problem = f"layers at a part of a loop, which is {', '.join(others)} too"
             raise InputError(problem, "name all of its parts", parameter="walls")
-    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1)
+    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
     if request.cell_size is not None or request.res is not None:
         raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
-    cells = request.cells or LAYERED_CELLS
+    cells = (request.cells or LAYERED_CELLS) * request.multiple**2
     return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
 
 
@@ -109,6 +111,16 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
     if request.cell_size is not None:
         return None, request.cell_size
     return request.cells or CELLS, None
+
+
+def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
+    """Return a note for each coarser grid of a family that has folded cells."""
+    notes = []
+    for times in (2**k for k in range(1, halvings + 1)):
+        folded = sum(count_folded(block.nodes[::times, ::times]) for block in grid.blocks)
+        if folded:
+            notes.append(f"every {times}th node makes a grid of which {folded} cells are folded")
+    return notes
 
 
 def _stages(timings: Timings, spent: float) -> dict[str, float]:
