@@ -24,6 +24,7 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.even_loops import Measure, evened_loops
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
@@ -40,8 +41,8 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
-PASSES = 2
-"""Optimisations, each with the sizes at the nodes of the one before."""
+EVEN = float(np.log(1.15))
+"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 _BISECTIONS = 12
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
@@ -88,6 +89,14 @@ class Rings:
         largest = self.rest.extent / 12.0 * scale**0.5
         return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
+    @property
+    def measures(self) -> dict[int, Measure]:
+        """What steps are even in, along the loops that stand in for others."""
+        measures = {k: (ring.index_at, ring.place_of) for k, ring in self.rings.items()}
+        if self.near is not None:
+            measures[0] = (np.asarray, np.asarray)
+        return measures
+
     def rows(self, ring: Ring) -> int:
         """Return the layers of a ring."""
         thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
@@ -123,13 +132,19 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
-        for _ in range(PASSES):
-            optimum = optimise(mesh, iterations=ITERATIONS, targets=metric.edges(mesh))
+        on = np.zeros(len(mesh.nodes), dtype=bool)
+        for held in (False, True):
+            optimum = optimise(
+                mesh, iterations=ITERATIONS, targets=metric.edges(mesh), held=on if held else None
+            )
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
+            if not held:
+                mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
+                on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
-        return multiplied(Layout(mesh, coarse.blocks), times)
+        return evened_loops(multiplied(Layout(mesh, coarse.blocks), times), rings.measures, EVEN)
 
 
 def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:

@@ -13,12 +13,14 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.even_growth import evened
 
 FAR = 4.0
 """Radii of the circle around all bodies at which an outer loop counts as distant."""
 NEAR = 2.2
 """The same radii of the circle that stands in for it."""
 _POINTS = 240
+_EVEN = 1.1
 MOST_GROWTH = 1.2
 
 
@@ -80,10 +82,10 @@ class NearField:
         arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
-        first = float(np.exp(np.log(heights).mean())) * growth**0.5
-        mean = float(length.mean())
-        share = _shares(first / mean, self.cells(first, growth))
-        nodes = start[:, None] + share[None, :, None] * (end - start)[:, None]
+        wanted = evened(heights[None], np.log(_EVEN), closed=True)[0] * growth**0.5
+        cells = self.cells(float(np.exp(np.log(wanted).mean())), growth)
+        share = np.stack([_shares(first, cells) for first in (wanted / length).tolist()])
+        nodes = start[:, None] + share[..., None] * (end - start)[:, None]
         nodes[:, -1] = end
         return Rows(0, nodes, np.mod(arcs, self.outer.length), False)
 

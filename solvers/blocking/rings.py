@@ -98,6 +98,16 @@ class Ring:
         nodes[:, 0] = wall
         return nodes, starts
 
+    def index_at(self, places: Floats) -> Floats:
+        """Return the index (k,), 0 to n, of columns at arc lengths (k,) of the front."""
+        knots = np.append(self.front.curve.knots, self.front.length)
+        return np.asarray(np.interp(places, knots, np.arange(len(knots))))
+
+    def place_of(self, index: Floats) -> Floats:
+        """Return the arc lengths (k,) of the front at an index (k,) of columns."""
+        knots = np.append(self.front.curve.knots, self.front.length)
+        return np.asarray(np.interp(index, np.arange(len(knots)), knots))
+
     def _unwrapped(self) -> Floats:
         """Return arc lengths (n + 3,) of columns -1 to n + 1, ascending."""
         around = np.append(self.arcs, [self.arcs[0] + self.wall.length, self.arcs[1] + self.wall.length])
