@@ -14,10 +14,12 @@ other are moved alike.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 
 _STEPS = 40
+_TRIES = 6
 _BEYOND = 8.0  # how far, in logarithms, cells may leave the envelopes where an end is held
 
 
@@ -25,8 +27,22 @@ def evened(cells: Floats, limit: float, closed: bool = False, start: int = 0, st
     """Return cells (k, n) of lines with the same sums, neighbours of which differ by at most a ratio.
 
     `limit` is the logarithm of the ratio. The first `start` and last `stop` cells are kept. Lines in which
-    that cannot be are returned as they are.
+    that cannot be differ by more, as little as may be.
     """
+    new, possible = _evened(cells, limit, closed, start, stop)
+    for _ in range(_TRIES):
+        if possible.all():
+            break
+        limit *= 1.25
+        again = np.flatnonzero(~possible)
+        new[again], possible[again] = _evened(cells[again], limit, closed, start, stop)
+    return new
+
+
+def _evened(
+    cells: Floats, limit: float, closed: bool, start: int, stop: int
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return cells (k, n) of lines, and which lines (k,) could be evened."""
     y = np.log(cells)
     low, high = _envelopes(y, limit, closed)
     least, most = np.full_like(y, -np.inf), np.full_like(y, np.inf)
@@ -47,7 +63,7 @@ def evened(cells: Floats, limit: float, closed: bool = False, start: int = 0, st
         lower, upper = np.where(sums < total, part, lower), np.where(sums < total, upper, part)
     new = np.exp(_between(0.5 * (lower + upper), low, high, least, most))
     possible = np.abs(new.sum(axis=1) / total - 1.0) < 1e-6
-    return np.where(possible[:, None], new, cells)
+    return np.where(possible[:, None], new, cells), possible
 
 
 def _between(part: Floats, low: Floats, high: Floats, least: Floats, most: Floats) -> Floats:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +14,10 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import loop_nodes
 from meshonet.solvers.blocking.even_growth import evened
 
-Measure = tuple[Callable[[Floats], Floats], Callable[[Floats], Floats]]
-"""From arc lengths in [0, length] of a loop to an index that rises along it, and back."""
+Measure = tuple[Floats, Floats]
+"""Arc lengths (m,) along a loop, from 0 to its length, and what rises with them from 0."""
+TURNS = 4
+"""Arc length and the other measure are evened in turn so often."""
 
 
 def evened_loops(layout: Layout, measures: Mapping[int, Measure], limit: float) -> Layout:
@@ -41,18 +43,18 @@ def evened_loops(layout: Layout, measures: Mapping[int, Measure], limit: float) 
 
 def _evened_arcs(mesh: QuadMesh, number: int, order: Indices, measure: Measure, limit: float) -> Floats:
     """Return new arc lengths (k,) of the nodes `order` (k,) of a loop."""
-    length = mesh.domain.loops[number].length
-    index = measure[0](mesh.places.arc[order])
-    whole = float(measure[0](np.array([length]))[0])
-    steps = np.diff(index, append=index[0] + whole)
+    old = mesh.places.arc[order]
     corners = np.flatnonzero(mesh.places.cells[order] > 0)
-    new = _evened_steps(steps, corners, limit)
-    begin = int(corners[0]) if len(corners) else 0
-    around = np.roll(new, -begin)
-    at = index[begin] + np.concatenate([[0.0], np.cumsum(around[:-1])])
-    arcs = np.mod(measure[1](np.mod(np.roll(at, begin), whole)), length)
-    arcs[corners] = mesh.places.arc[order][corners]
-    arcs[begin] = mesh.places.arc[order][begin]
+    kept = corners if len(corners) else np.zeros(1, dtype=np.intp)
+    begin, arcs = int(kept[0]), old
+    for turn in range(TURNS):
+        table = measure if turn % 2 == 0 else (measure[0], measure[0])
+        index, whole = np.interp(arcs, *table), float(table[1][-1])
+        steps = _evened_steps(np.diff(index, append=index[0] + whole), corners, limit)
+        around = np.concatenate([[0.0], np.cumsum(np.roll(steps, -begin)[:-1])])
+        at = np.mod(index[begin] + np.roll(around, begin), whole)
+        arcs = np.interp(at, table[1], table[0])
+        arcs[kept] = old[kept]
     return np.asarray(arcs)
 
 

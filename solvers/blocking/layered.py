@@ -91,10 +91,10 @@ class Rings:
 
     @property
     def measures(self) -> dict[int, Measure]:
-        """What steps are even in, along the loops that stand in for others."""
-        measures = {k: (ring.index_at, ring.place_of) for k, ring in self.rings.items()}
+        """What steps are to be even in, besides arc length, along the loops that stand in for others."""
+        measures = {k: ring.along_wall for k, ring in self.rings.items()}
         if self.near is not None:
-            measures[0] = (np.asarray, np.asarray)
+            measures[0] = (np.array([0.0, self.near.circle.length]),) * 2
         return measures
 
     def rows(self, ring: Ring) -> int:
