@@ -26,11 +26,10 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).parents[1]
-sys.path[:0] = [str(ROOT / "tests" / "formats"), str(ROOT)]
+sys.path[:0] = [str(ROOT / "tests" / "formats"), str(ROOT / "tests"), str(ROOT)]
 
-from hostile import READABLE, corpus, foreign, good, mutate
+from hostile import READABLE, corpus, foreign, good, mutate, record_of
 
-from meshonet.formats.registry import format_named
 from meshonet.formats.source import Source
 from meshonet.geometry.errors import MeshonetError
 from meshonet_cli.__main__ import main as command_line
@@ -42,7 +41,7 @@ FAILURES = Path("fuzz-failures")
 
 def judge(name: str, data: bytes) -> str:
     """Return ``read`` or ``refused``, or what is wrong with how the reader took `data`."""
-    record = format_named(name)
+    record = record_of(name)
     begun, outcome = time.process_time(), "read"
     for read in (record.read_shapes, record.read_grids):
         if read is None:
@@ -127,7 +126,7 @@ def through_the_command_line() -> dict[str, object]:
 def _converted(place: Path, name: str, data: bytes) -> str:
     """Return what ``meshonet convert`` makes of a file, in a process of its own with all loaded."""
     place.mkdir()
-    file = place / f"hostile{format_named(name).suffixes[0]}"
+    file = place / f"hostile{record_of(name).suffixes[0]}"
     file.write_bytes(data)
     process = os.fork()
     if process == 0:

@@ -52,12 +52,33 @@ Look here for the files that meshonet reads and writes. `meshonet convert IN OUT
 `--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
 table.
 
-*names*: names of patches are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *many*: one file
-can hold several grids or boundaries. *options* are written behind a colon, for example `--to gmsh:4.1,ascii`,
-one of each group. The first of a group is the default unless the ending says otherwise.
+*names*: names of patches are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *blocks*: a grid
+of several blocks is written with its blocks kept, or merged to one mesh; other formats refuse it. *many*: one
+file can hold several grids or boundaries. *options* are written behind a colon, one of each group, for
+example `--to gmsh:4.1,ascii`. The first of a group is the default unless the ending says otherwise.
 
 """
 FORMATS_REST = """
+## Grids of several blocks
+
+`meshonet convert blocks.cgns mesh.su2` makes one mesh of a file of blocks: nodes on interfaces stand once, no
+inner face is left, the names of the outer ones are kept.
+
+Where blocks join stands in CGNS (one-to-one interfaces) and in the `.nmf` beside a Plot3D file. Where a file
+does not say, sides and parts of sides whose nodes coincide are joined, to a millionth of a cell or to the
+digits that the file has. Sides that are boundaries by name or condition, both sides of a thin plate for
+example, are not. Joined nodes are made equal to the last bit. Left-handed blocks get i reversed. Outer edges
+without a name are called by the line they are part of: `outer`, `body`, `body2`.
+
+Blocks of one file that touch are one grid, others are grids by themselves; so a file of a batch stays a
+batch. Files of this program say which block belongs to which grid. In a `.vtm` a grid of several blocks is a
+`Block`, a grid of one block stands by itself.
+
+Periodic sides are joined by a shift or a rotation about z, which is taken from the nodes, since conventions
+of files differ. They become periodic interfaces in CGNS, `cyclic` patches in OpenFOAM, `$Periodic` in Gmsh;
+of an SU2 mesh the first lines have the `MARKER_PERIODIC` to copy into the configuration. Rows of type
+PERIODIC in a `.nmf` are this program's own.
+
 ## Boundaries from meshes and drawings
 
 Lines of Gmsh, SU2 and DXF files are joined to closed curves. Names of physical groups, markers and layers
@@ -76,9 +97,10 @@ needs `pip install 'meshonet[dxf]'`.
 Plot3D files do not state their variant. From the length of the file and the orientation of the cells, these
 are found: count of blocks, dimensions, iblank, records, byte order, precision, the index that runs in z. Text
 may have repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3d fortran,big` overrides this;
-the same words choose the variant to write. `single` omits the count of blocks, `planes` writes the
-coordinates of one k after the other, and `span-i` repeats the grid in z along its first index. iblank is
-reported but not kept.
+the same words choose the variant to write. A grid of several blocks gets a neutral map beside the file,
+`NAME.nmf`, and a map of that name is read with any file: its types, or the names in its comments, become
+names of patches. `single` omits the count of blocks, `planes` writes the coordinates of one k after the
+other, and `span-i` repeats the grid in z along its first index. iblank is reported but not kept.
 
 ## HDF5
 

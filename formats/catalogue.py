@@ -3,7 +3,7 @@
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
 
-_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "many", "what it is", "options")
+_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many", "what it is", "options")
 
 
 def rows() -> list[dict[str, str]]:
@@ -35,14 +35,20 @@ def _row(record: Format) -> tuple[str, ...]:
         record.name,
         " ".join(record.suffixes),
         _what(record.read_grids is not None, record.read_shapes is not None),
-        _what(record.write_grids is not None, record.write_boundaries is not None),
+        _what(
+            record.write_grids is not None,
+            record.write_boundaries is not None,
+            record.write_layouts is not None,
+        ),
         "yes" if record.names_patches else "",
         "yes" if record.extrudes else "",
+        record.blocks,
         "yes" if record.many else "",
         record.description,
         " ".join("/".join(row) for row in record.choices),
     )
 
 
-def _what(grids: bool, boundaries: bool) -> str:
-    return ", ".join(word for word, can in (("grids", grids), ("boundaries", boundaries)) if can)
+def _what(grids: bool, boundaries: bool, layouts: bool = False) -> str:
+    each = ("grids", grids), ("boundaries", boundaries), ("layouts", layouts)
+    return ", ".join(word for word, can in each if can)

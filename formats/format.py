@@ -7,12 +7,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 
 Heights: TypeAlias = tuple[float, ...]
@@ -30,10 +31,12 @@ class Format:
     name, suffixes, description : for users; file endings in lower case with the dot.
     read_shapes : yields what can be sampled into a boundary; None when the format holds grids (whose
         outer edges then serve) or cannot be read.
-    read_grids, write_grids, write_boundaries : None when the format cannot.
+    read_grids, write_grids, write_boundaries, write_layouts : None when the format cannot.
     sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
     extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
+    blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh;
+        not at all if empty.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that it cannot be written to a stream.
@@ -51,9 +54,11 @@ class Format:
     read_grids: Callable[[Source], Iterator[Grid]] | None = None
     write_grids: Callable[..., None] | None = None
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
+    write_layouts: Callable[[Path, Iterable[Layout]], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
     extrudes: bool = False
     names_patches: bool = False
+    blocks: Literal["", "kept", "merged"] = ""
     many: bool = False
     one_size: bool = False
     beside: bool = False
@@ -124,3 +129,10 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
     if first is None:
         raise InputError("there is no grid to write", "check the input")
     return first
+
+
+def size_of(sample: Boundary | Grid) -> str:
+    """Return the counts of nodes and the topology of a grid or boundary, as words."""
+    if isinstance(sample, Grid) and sample.topology == "blocks":
+        return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
+    return f"{sample.ni}x{sample.nj} {sample.topology}"

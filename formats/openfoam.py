@@ -18,6 +18,8 @@ from meshonet.formats.mesh.names import kinds, words
 from meshonet.formats.mesh.unstructured import Indices, Unstructured, layer_points, unstructured
 from meshonet.formats.output import whole_file, whole_folder
 from meshonet.formats.text.number_table import write_rows
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind
 
@@ -34,11 +36,12 @@ _DICTIONARIES = {
 
 
 class Patch(NamedTuple):
-    """Outer faces that lie behind each other in the list of faces."""
+    """Outer faces that lie behind each other in the list of faces; `more` are further entries."""
 
     name: str
     kind: str
     size: int
+    more: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -67,7 +70,7 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0, 1.0)
     """
     grid = only_one(grids, "a case")
     mesh = unstructured(grid)
-    faces = layer_faces(mesh, _kinds(grid), len(heights) - 1)
+    faces = layer_faces(mesh, _patches(grid, mesh), len(heights) - 1)
     for name in ("constant", "system"):
         (path.parent / name).mkdir(exist_ok=True)
     with whole_folder(path.parent / "constant" / "polyMesh") as folder:
@@ -102,6 +105,8 @@ def layer_faces(mesh: Unstructured, kinds: Mapping[str, Patch], layers: int) -> 
         owner, neighbour, nodes = owner[order], neighbour[order], np.concatenate([nodes, *plates])[order]
     back, front = mesh.quads[:, ::-1], mesh.quads + count * layers
     beside = [_walls(rows, count, layers) for rows, _ in edges.values()]
+    turned = {pair.partner for pair in mesh.periodic}  # coupled faces begin at points that are coupled
+    beside = [np.roll(w, -1, 1) if name in turned else w for name, w in zip(edges, beside, strict=True)]
     behind = [(cell + cells * layer).ravel() for _, cell in edges.values()]
     ends = [Patch(EMPTY, "empty", 2 * cells)]
     if layers > 1:
@@ -136,11 +141,30 @@ def _walls(edges: Indices, count: int, layers: int) -> Indices:
     return np.concatenate([wall + count * k for k in range(layers)])
 
 
-def _kinds(grid: Grid) -> dict[str, Patch]:
-    """Return title and type of the patch of each part."""
+def _patches(grid: Grid, mesh: Unstructured) -> dict[str, Patch]:
+    """Return title, type and further entries of the patch of each part; periodic sides are ``cyclic``."""
     kind = kinds(grid, grid.outer_patches())
-    word = words(kind, taken=[EMPTY, "back", "front"], letter=True)
-    return {name: Patch(word[name], _TYPES.get(kind[name], "patch"), 0) for name in kind}
+    word = words(mesh.edges, taken=[EMPTY, "back", "front"], letter=True)
+    found = {name: Patch(word[name], _TYPES.get(kind.get(name, "other"), "patch"), 0) for name in mesh.edges}
+    for pair in mesh.periodic:
+        ends = (pair.name, pair.partner, pair.motion), (pair.partner, pair.name, pair.motion.inverse())
+        for name, partner, motion in ends:
+            more = f"neighbourPatch  {word[partner]};", *_transform(motion)
+            found[name] = Patch(word[name], "cyclic", 0, more)
+    return found
+
+
+def _transform(motion: Motion) -> tuple[str, ...]:
+    """Return how the faces of a cyclic patch come to its neighbour's."""
+    angle, centre = motion.rotation
+    if angle:
+        axis = "transform       rotational;", "rotationAxis    (0 0 1);"
+        return *axis, f"rotationCentre  {_vector(centre)};"
+    return "transform       translational;", f"separationVector {_vector(motion.translation)};"
+
+
+def _vector(values: Floats) -> str:
+    return f"({values[0] + 0.0:.17g} {values[1] + 0.0:.17g} 0)"
 
 
 def _write_list(path: Path, kind: str, form: str, rows: NDArray[Any], note: str = "") -> None:
@@ -165,7 +189,8 @@ def _write_boundary(path: Path, faces: Faces) -> None:
     """Write names, types and face counts of the patches."""
     text, start = f"{_head('polyBoundaryMesh', 'boundary')}{len(faces.patches)}\n(\n", len(faces.neighbour)
     for patch in faces.patches:
-        text += f"    {patch.name}\n    {{\n        type            {patch.kind};\n"
+        entries = "".join(f"        {entry}\n" for entry in patch.more)
+        text += f"    {patch.name}\n    {{\n        type            {patch.kind};\n{entries}"
         text += f"        nFaces          {patch.size};\n        startFace       {start};\n    }}\n"
         start += patch.size
     path.write_text(f"{text})\n", encoding="ascii")

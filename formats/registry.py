@@ -14,7 +14,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError, MeshonetError, in_source
 from meshonet.geometry.shapes.shape import Shape
 
-Kind = Literal["grids", "boundaries"]
+Kind = Literal["grids", "boundaries", "layouts"]
 T = TypeVar("T")
 
 

@@ -1,11 +1,12 @@
 """SU2's own mesh, ``.su2``: merged seams, counter-clockwise cells, a marker for every patch.
 
 Written as text with 17 significant digits, nodes counted from 0; markers are words
-(`meshonet.formats.mesh.names`), since configuration files list them by name. Of a mesh that is read, points,
+(`meshonet.formats.mesh.names`), since configuration files list them by name. How periodic markers are coupled
+stands there, so that a mesh of periodic sides begins with the line to copy. Of a mesh that is read, points,
 cells and the lines of the markers make boundaries. https://su2code.github.io/docs_v7/Mesh-File/
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
@@ -14,7 +15,7 @@ import numpy as np
 from meshonet.formats.format import Heights, only_one
 from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.surface import Surface, shapes_of
-from meshonet.formats.mesh.unstructured import Indices, extruded, unstructured
+from meshonet.formats.mesh.unstructured import Indices, Unstructured, extruded, unstructured
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import parsed, write_rows
 from meshonet.geometry.arrays import Floats
@@ -34,16 +35,36 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> Non
 
     Repeated in z: hexahedra, and quadrilaterals, those of the outer planes as markers ``back`` and ``front``.
     """
-    points, markers, cells = extruded(unstructured(only_one(grids, "a .su2 file")), heights)
+    mesh = unstructured(only_one(grids, "a .su2 file"))
+    points, markers, cells = extruded(mesh, heights)
+    word = words(markers)
     with path.open("wb") as stream:
+        stream.write(_periodic(mesh, word).encode("ascii"))
         stream.write(f"NDIME= {points.shape[1]}\nNELEM= {len(cells)}\n".encode("ascii"))
         _write_cells(stream, cells)
         stream.write(f"NPOIN= {len(points)}\n".encode("ascii"))
         write_rows(stream, " ".join(["%e"] * points.shape[1]), points)
         stream.write(f"NMARK= {len(markers)}\n".encode("ascii"))
-        for name, word in words(markers).items():
-            stream.write(f"MARKER_TAG= {word}\nMARKER_ELEMS= {len(markers[name])}\n".encode("ascii"))
-            _write_cells(stream, markers[name])
+        for name, faces in markers.items():
+            stream.write(f"MARKER_TAG= {word[name]}\nMARKER_ELEMS= {len(faces)}\n".encode("ascii"))
+            _write_cells(stream, faces)
+
+
+def _periodic(mesh: Unstructured, word: Mapping[str, str]) -> str:
+    """Return, as comments, the lines of a configuration file that couple periodic markers.
+
+    SU2 takes them from there alone: two markers, centre and angles in degrees of the rotation, translation.
+    """
+    if not mesh.periodic:
+        return ""
+    pairs = []
+    for pair in mesh.periodic:
+        angle, (x, y) = pair.motion.rotation
+        shift = np.zeros(2) if angle else pair.motion.translation
+        numbers = x, y, 0, 0, 0, np.degrees(angle), *shift, 0
+        listed = ", ".join(f"{number + 0.0:.17g}" for number in numbers)
+        pairs.append(f"{word[pair.name]}, {word[pair.partner]}, {listed}")
+    return f"% The configuration file needs this line:\n% MARKER_PERIODIC= ( {', '.join(pairs)} )\n"
 
 
 def _write_cells(stream: BinaryIO, nodes: Indices) -> None:

@@ -1,13 +1,19 @@
 """Every format that is read or written. Only the functions of those in use are loaded."""
 
 import re
+from collections.abc import Callable, Iterable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from meshonet.formats.format import Format, later
 from meshonet.formats.plot3d import CHOICES
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 
 _DRAW = "meshonet.formats.figure.figure:write_grids"
+_OF_ANY_BLOCKS = ("hdf5",)
+"""Formats that hold blocks in space and on surfaces too."""
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 _MESHIO = {
@@ -58,24 +64,44 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
     """Return a record; `functions`, ``module:field``, are loaded when they are called."""
     for function in functions.split():
         more[function.partition(":")[2]] = later(f"meshonet.formats.{function}")
+    if "write_grids" in more and name not in _OF_ANY_BLOCKS:
+        more["write_grids"] = partial(_write, more["write_grids"], name)
     return Format(name, tuple(endings.split()), description, **more)
 
 
-_FORMATS = (
+def _write(
+    write: Callable[..., None], name: str, path: Path, grids: Iterable[Grid], *rest: Any, **more: Any
+) -> None:
+    """Write grids by `write`, of the format `name`, once each of them is one that the format can hold."""
+    write(path, (_held(grid, name) for grid in grids), *rest, **more)
+
+
+def _held(grid: Grid, name: str) -> Grid:
+    if any(block.nodes.shape[2:] != (2,) for block in grid.blocks):
+        remedy = f"write {', '.join(_OF_ANY_BLOCKS)}"
+        raise InputError(f"{name} files hold grids in the plane and this one is in space", remedy)
+    if len(grid.blocks) > 1 and not TABLE[name].blocks:
+        able = ", ".join(record.name for record in _FORMATS if record.blocks)
+        problem = f"{name} files hold one block and the grid has {len(grid.blocks)}"
+        raise InputError(problem, f"write one of {able}")
+    return grid
+
+
+_FORMATS: tuple[Format, ...] = (
     _format(
         "hdf5", ".h5 .hdf5", "HDF5 dataset of boundaries or grids",
         "hdf5.read:read_shapes hdf5.read:read_grids hdf5.write:write_grids hdf5.write:write_boundaries",
-        sniff=is_hdf5, names_patches=True, many=True, one_size=True,
+        sniff=is_hdf5, names_patches=True, many=True, one_size=True, blocks="kept",
     ),
     _format(
         "vts", ".vts", "VTK XML structured grid", "vtk.vts_read:read_grids vtk.vts:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), extrudes=True, names_patches=True,
     ),
     _format(
-        "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts",
+        "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
         "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
-        extrudes=True, names_patches=True, many=True, beside=True,
+        extrudes=True, names_patches=True, blocks="kept", many=True, beside=True,
     ),
     _format(
         "vtk", ".vtk", "legacy VTK structured grid", "vtk.legacy:read_grids vtk.legacy:write_grids",
@@ -83,40 +109,40 @@ _FORMATS = (
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
-        "vtk.vtu:write_grids", extrudes=True,
+        "vtk.vtu:write_grids", extrudes=True, blocks="merged",
     ),
     _format(
         "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",
         "gmsh.read:read_shapes gmsh.msh:write_grids", sniff=partial(holds, (b"$MeshFormat",)),
-        extrudes=True, names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")),
+        extrudes=True, names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")), blocks="merged",
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
-        "cgns.read:read_grids cgns.write:write_grids",
+        "cgns.read:read_grids cgns.write:write_grids", blocks="kept",
         sniff=is_cgns, extrudes=True, names_patches=True, many=True,
     ),
     _format(
         "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-        "openfoam:write_grids", extrudes=True, names_patches=True, fills_folder=True,
+        "openfoam:write_grids", extrudes=True, names_patches=True, fills_folder=True, blocks="merged",
     ),
     _format(
         "geo", ".geo", "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
-        "gmsh.geo:write_grids", names_patches=True,
+        "gmsh.geo:write_grids", names_patches=True, blocks="merged",
     ),
     _format(
-        "nmf", ".nmf", "NASA neutral map file: the boundary conditions and the cut of a Plot3D block",
-        "plot3d.nmf:write_grids", extrudes=True, names_patches=True,
+        "nmf", ".nmf", "NASA neutral map file: boundary conditions and interfaces of Plot3D blocks",
+        "plot3d.nmf:write_grids", extrudes=True, names_patches=True, blocks="kept",
     ),
     _format(
         "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
         "su2:read_shapes su2:write_grids", sniff=partial(holds, (b"NDIME", b"=")),
-        extrudes=True, names_patches=True,
+        extrudes=True, names_patches=True, blocks="merged",
     ),
     _format(
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
-        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt)",
+        "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), with the .nmf beside it",
         "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
-        extrudes=True, many=True, choices=CHOICES, reads_options=True,
+        extrudes=True, blocks="kept", many=True, choices=CHOICES, reads_options=True,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
     _format(
@@ -126,6 +152,11 @@ _FORMATS = (
     _format(
         "wkt", ".wkt", "outlines as well-known text", "",
         read_shapes=later("meshonet.formats.outlines.vector:read_wkt"), sniff=is_wkt, many=True,
+    ),
+    _format(
+        "layout", ".json", "layout of blocks as JSON; read as its coarse grid or its domain",
+        "layout.read:read_shapes layout.read:read_grids layout.write:write_layouts",
+        sniff=partial(holds, (b'"meshonet-layout"',)), names_patches=True,
     ),
     _format(
         "geojson", ".geojson .json", "outlines as GeoJSON", "",
@@ -144,7 +175,7 @@ _FORMATS = (
     _format("pdf", ".pdf", "picture of a grid, lines as vectors", "", write_grids=later(_DRAW, kind="pdf")),
     _format(
         "meshio", " ".join(_MESHIO), "surfaces of viewers, decks of solid mechanics, without patches",
-        "meshio_export:write_grids", suffix_options=_MESHIO,
+        "meshio_export:write_grids", blocks="merged", suffix_options=_MESHIO,
         choices=(tuple(dict.fromkeys(_MESHIO.values())),),
     ),
 )  # fmt: skip

@@ -72,12 +72,17 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: the indices of its lower-left node and its centre."""
+    """A folded cell: the indices of its lower-left node and its centre; of many blocks, which of them."""
 
     i: int
     j: int
     x: float
     y: float
+    block: int | None = None
+
+    def __str__(self) -> str:
+        block = "" if self.block is None else f"block={self.block}, "
+        return f"{block}i={self.i}, j={self.j}, x={self.x:.6g}, y={self.y:.6g}"
 
 
 class NoValidGridError(MeshonetError):
@@ -94,7 +99,7 @@ class NoValidGridError(MeshonetError):
 
     def text(self, spelling: Callable[[str], str]) -> str:
         """Return the message, the names of parameters in braces passed through `spelling`."""
-        cells = ", ".join(f"(i={c.i}, j={c.j}, x={c.x:.6g}, y={c.y:.6g})" for c in self.worst[:10])
+        cells = ", ".join(f"({cell})" for cell in self.worst[:10])
         problem = spelled(self.problem, spelling)
         return f"{problem}; worst cells: {cells}" if cells else problem
 

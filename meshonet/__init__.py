@@ -24,16 +24,19 @@ if TYPE_CHECKING:
     from meshonet.api.grid import sample_family as sample_family
     from meshonet.api.grid import solve_pde as solve_pde
     from meshonet.api.grid import tfi as tfi
+    from meshonet.api.layout import layout as layout
     from meshonet.api.models import models as models
     from meshonet.api.plot import plot as plot
     from meshonet.api.quality import quality as quality
     from meshonet.api.train import train as train
     from meshonet.geometry.blocks.boundary import Boundary as Boundary
     from meshonet.geometry.blocks.grid import Grid as Grid
+    from meshonet.geometry.domain.domain import Domain as Domain
     from meshonet.geometry.errors import InputError as InputError
     from meshonet.geometry.errors import MeshonetError as MeshonetError
     from meshonet.geometry.errors import NoValidGridError as NoValidGridError
     from meshonet.geometry.errors import SolverError as SolverError
+    from meshonet.geometry.layout.layout import Layout as Layout
     from meshonet.geometry.spacing.sampling import Sampling as Sampling
     from meshonet.solvers.method import METHODS as METHODS
     from meshonet.solvers.pipeline.make_grid import Result as Result
@@ -48,13 +51,16 @@ _MODULES = {
     "meshonet.api.convert": ("convert",),
     "meshonet.api.files": ("read", "read_all", "write"),
     "meshonet.api.grid": ("grid", "infer", "sample_boundary", "sample_family", "solve_pde", "tfi"),
+    "meshonet.api.layout": ("layout",),
     "meshonet.api.models": ("models",),
     "meshonet.api.plot": ("plot",),
     "meshonet.api.quality": ("quality",),
     "meshonet.api.train": ("train",),
     "meshonet.geometry.blocks.boundary": ("Boundary",),
     "meshonet.geometry.blocks.grid": ("Grid",),
+    "meshonet.geometry.domain.domain": ("Domain",),
     "meshonet.geometry.errors": ("InputError", "MeshonetError", "NoValidGridError", "SolverError"),
+    "meshonet.geometry.layout.layout": ("Layout",),
     "meshonet.geometry.spacing.sampling": ("Sampling",),
     "meshonet.solvers.method": ("METHODS",),
     "meshonet.solvers.pipeline.make_grid": ("Result", "make_grid", "make_grids"),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
-from meshonet.formats.registry import read_grids, read_shapes
+from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
@@ -18,7 +18,7 @@ from meshonet.solvers.progress import Row, listening
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item
 from meshonet_cli.batch.run import deliver, prepare
-from meshonet_cli.batch.sources import items
+from meshonet_cli.batch.sources import shape_items
 from meshonet_cli.convergence import Live, check_file, write
 from meshonet_cli.provenance import provenance
 from meshonet_cli.report.grid import Report
@@ -53,12 +53,18 @@ class GridMaker:
 def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
     """Return the grid of `member` with the command in its provenance, and the report."""
     solution, grid = result.solution, result.grid
+    counts = grid.blocks[0].counts if len(grid.blocks) == 1 else (None, None)
     report = Report(
-        member, method=solution.method, ni=grid.ni, nj=grid.nj, topology=grid.topology,
+        member, method=solution.method, ni=counts[0], nj=counts[1], topology=grid.topology,
         quality=result.quality, model=solution.model, path=solution.path, residual=solution.residual,
         cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
+    if grid.topology == "blocks":
+        from meshonet.geometry.quality.blocks import block_figures
+
+        with report.timed("quality"):
+            report.blocks = block_figures(grid)
     return grid.with_provenance(**provenance()), report
 
 
@@ -81,17 +87,18 @@ def request_of(
 
 def write_grids(
     sources: Sequence[str], output: str, request: GridRequest, checks: CheckOptions, files: FileOptions,
-    session: Session, *, history: str | None = None, jobs: int = 1,
+    session: Session, *, history: str | None = None, assemble: bool = False, jobs: int = 1,
 ) -> int:  # fmt: skip
     """Turn every boundary of `sources` into a grid in `output` and return the exit code.
 
-    The gates of `checks` end the program with 1; the cycles go to the file `history`.
+    With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the
+    file `history`.
     """
     destination = Destination(output, files.to_format, "grids")
-    prepare(sources, destination, session)
+    prepare(sources[:1] if assemble else sources, destination, session)
     check_file(history)
     gates = parse_gates(checks.fail_on)
-    members = items(sources, lambda source: read_shapes(source, files.from_format), session)
+    members = shape_items(sources, files.from_format, session, request.sampling if assemble else None)
     cycles: list[tuple[str, Iterable[Row]]] = []
 
     def written(report: Report, path: str) -> None:

@@ -9,6 +9,7 @@ from meshonet.formats.registry import format_for_output, read_grids
 from meshonet.formats.vtk.metrics import write_metrics
 from meshonet.geometry.blocks.match_grids import GridMatcher, Pairing
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.blocks import BLOCK_FIGURES
 from meshonet.geometry.quality.gates import parse_gates
 from meshonet.geometry.quality.report import COMPARED
 from meshonet_cli.batch.destination import Destination
@@ -30,7 +31,7 @@ def measure_grids(
     `pairing`. `summary` prints one table over all; `plot` and `per_cell` are pictures and files of metrics to
     write.
     """
-    gates = parse_gates(fail_on, COMPARED if compare else ())
+    gates = parse_gates(fail_on, (*BLOCK_FIGURES, *(COMPARED if compare else ())))
     outputs = [picture_file(plot, None, Picture())] if plot else []
     outputs += [_metrics_file(per_cell)] if per_cell else []
     for destination in outputs:

@@ -24,3 +24,12 @@ def figure(value: float) -> str:
 def span(seconds: float) -> str:
     """Return a time span for people, in seconds or milliseconds."""
     return f"{seconds:.2f} s" if seconds >= 1 else f"{1e3 * seconds:.1f} ms"
+
+
+def named(at: tuple[int, ...]) -> str:
+    """Return the place (i, j) or (block, i, j) of a node or cell in words.
+
+    >>> named((3, 0, 7))
+    'block=3, i=0, j=7'
+    """
+    return ", ".join(f"{name}={k}" for name, k in zip(("block", "i", "j")[-len(at) :], at, strict=True))

@@ -1,57 +1,126 @@
-"""Reading CGNS: the structured zones of a file, each a plane grid or a layer one cell thick."""
+"""Reading CGNS: the structured zones of a file, each a plane block or a layer one cell thick.
 
-from collections.abc import Iterator
-from dataclasses import replace
+Zones that this package wrote say which grid they belong to. Of others, those that touch are one grid, be they
+joined one to one in the file or found to coincide, whatever bases they are in.
+"""
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from meshonet.formats.cgns.boundaries import conditions, interfaces
 from meshonet.formats.cgns.nodes import Node, array, children, is_adf, text
 from meshonet.formats.hdf5.check import opened
-from meshonet.formats.mesh.metadata import grid_with
-from meshonet.formats.mesh.slices import planar
+from meshonet.formats.mesh.gather import Joint, Piece, grids_of
+from meshonet.formats.mesh.metadata import Facts, grid_of_blocks, grid_with, number_of_grid
+from meshonet.formats.mesh.slices import plane_of
+from meshonet.formats.mesh.spans import span_of
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
-_FACTS = ("topology", "name", "parts", "provenance")
+_FACTS = ("topology", "name", "parts", "provenance", "block", "connections")
 _MOST_NODES = 1 << 40
 
 
-def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of every structured zone, named by its zone when the file has several.
+class _Zone(NamedTuple):
+    """A structured zone: names of its base and of itself, plane nodes, the index that is not in them."""
 
-    Parts are those that this package wrote, or the boundary conditions of the zone where its nodes are
-    taken as they stand.
+    base: Node
+    node: Node
+    title: str
+    facts: Facts
+    nodes: Floats
+    dropped: int
+
+    @property
+    def path(self) -> str:
+        return str(self.node.name)
+
+
+def read_grids(source: Source) -> Iterator[Grid]:
+    """Yield the grids of the structured zones, each named by its zone when the file has several.
+
+    Parts are those that this package wrote, or else the boundary conditions, called by their families.
 
     Raises InputError: a container of the old kind, no HDF5, no structured zone, a zone that is not right.
     """
     if is_adf(source.head(64)):
         raise InputError("is CGNS in an ADF container", "turn it into HDF5: adf2hdf OLD.cgns NEW.cgns")
     with opened(source) as file:
-        zones = [item for _, base in children(file, "CGNSBase_t") for item in children(base, "Zone_t")]
-        structured = [(name, zone) for name, zone in zones if _kind(zone) == "Structured"]
+        zones = [
+            (base, name, zone)
+            for _, base in children(file, "CGNSBase_t")
+            for name, zone in children(base, "Zone_t")
+        ]
+        structured = [item for item in zones if _kind(item[2]) == "Structured"]
         if not structured:
             problem = "its zones are unstructured" if zones else "holds no CGNS zone"
             raise InputError(problem, "give a CGNS file with a structured zone")
-        for name, zone in structured:
-            try:
-                yield _grid(zone, printable(name) if len(structured) > 1 else source.stem)
-            except InputError as error:
-                error.place = error.place or f"zone {printable(name)!r}"
-                raise
+        if any("topology" not in _facts(zone) for _, _, zone in structured):
+            yield from _foreign([_zone(*item) for item in structured], source.stem)
+        else:
+            yield from _own(structured, source.stem)
 
 
-def _grid(zone: Node, name: str) -> Grid:
-    nodes = planar(_coordinates(zone))
-    facts = {
+def _own(structured: Sequence[tuple[Node, str, Node]], stem: str) -> Iterator[Grid]:
+    """Yield the grids of zones that this package wrote; those of one block as they come."""
+    groups: dict[object, list[tuple[Node, str, Node]]] = {}
+    for item in structured:
+        number = number_of_grid(_facts(item[2]))
+        groups.setdefault(item[1] if number is None else number, []).append(item)
+    for items in groups.values():
+        read = [_zone(*item) for item in items]
+        if number_of_grid(read[0].facts) is not None:
+            yield grid_of_blocks([(zone.nodes, zone.facts) for zone in read], stem)
+            continue
+        for zone in read:
+            with _placed(zone.title):
+                yield grid_with(zone.nodes, zone.facts, zone.title if len(structured) > 1 else stem)
+
+
+def _foreign(zones: Sequence[_Zone], stem: str) -> Iterator[Grid]:
+    """Yield the grids of zones that others wrote."""
+    pieces, joints = [], list[Joint]()
+    numbers = {zone.path: k for k, zone in enumerate(zones)}
+    for k, zone in enumerate(zones):
+        with _placed(zone.title):
+            shape = zone.nodes.shape[:2]
+            patches = tuple(conditions(zone.base, zone.node, shape, zone.dropped))
+            pieces.append(Piece(zone.nodes, zone.title, patches))
+            for title, own, path, points in interfaces(zone.base, zone.node, shape, zone.dropped):
+                donor = numbers.get(path)
+                if donor is None:
+                    continue
+                end = span_of(points, zones[donor].nodes.shape[:2], zones[donor].dropped)
+                if end is not None:
+                    joints.append(Joint((k, *own), (donor, *end), title))
+    yield from grids_of(pieces, joints, stem)
+
+
+@contextlib.contextmanager
+def _placed(title: str) -> Iterator[None]:
+    """Name a zone in errors raised inside."""
+    try:
+        yield
+    except InputError as error:
+        error.place = error.place or f"zone {title!r}"
+        raise
+
+
+def _zone(base: Node, name: str, node: Node) -> _Zone:
+    with _placed(printable(name)):
+        nodes, dropped = plane_of(_coordinates(node))
+        return _Zone(base, node, printable(name), _facts(node), nodes, dropped)
+
+
+def _facts(zone: Node) -> Facts:
+    return {
         label: text(node).split("\n") for label, node in children(zone, "Descriptor_t") if label in _FACTS
     }
-    grid = grid_with(nodes, facts, name)
-    if facts.get("topology") or not np.array_equal(grid.nodes, nodes):
-        return grid
-    return replace(grid, patches=tuple(_conditions(zone, grid)) or grid.patches)
 
 
 def _coordinates(zone: Node) -> list[Floats]:
@@ -75,22 +144,6 @@ def _coordinates(zone: Node) -> list[Floats]:
     if len(coordinates) < 2:
         raise InputError("has no CoordinateX and CoordinateY", "write Cartesian coordinates")
     return coordinates
-
-
-def _conditions(zone: Node, grid: Grid) -> Iterator[Patch]:
-    """Yield the boundary conditions that cover a stretch of one side, called by their family."""
-    for _, group in children(zone, "ZoneBC_t"):
-        for name, condition in children(group, "BC_t"):
-            family = next((text(node) for _, node in children(condition, "FamilyName_t")), name)
-            ranges = dict(children(condition, "IndexRange_t"))
-            span = array(ranges["PointRange"], 2) if "PointRange" in ranges else np.empty((0, 0))
-            if span.shape not in ((2, 2), (2, 3)):
-                continue
-            (i0, j0), (i1, j1) = (np.sort(span, axis=0)[:, :2].astype(np.int64) - 1).tolist()
-            if j0 == j1 and j0 in (0, grid.nj - 1) and 0 <= i0 < i1 < grid.ni:
-                yield Patch(printable(family) or "part", "south" if j0 == 0 else "north", i0, i1)
-            elif i0 == i1 and i0 in (0, grid.ni - 1) and 0 <= j0 < j1 < grid.nj:
-                yield Patch(printable(family) or "part", "west" if i0 == 0 else "east", j0, j1)
 
 
 def _kind(zone: Node) -> str:

@@ -1,7 +1,7 @@
-"""CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, the cut joined one to one.
+"""CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, connected sides joined one to one.
 
-Written so that libraries from 3.4 on read it. Topology, name, parts and provenance are Descriptor_t
-nodes of the zone, which others pass over.
+Written so that libraries from 3.4 on read it: a zone for every block. Topology, name, parts and provenance
+are Descriptor_t nodes of the zone, which others pass over.
 https://cgns.org/standard/SIDS/SIDS.html
 """
 
@@ -10,19 +10,18 @@ from itertools import chain
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshonet.formats.cgns.joints import write_connections
 from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child, root
+from meshonet.formats.cgns.ranges import range_of
 from meshonet.formats.format import Heights, at_least_one
 from meshonet.formats.hdf5.file import created
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.names import kinds, words
-from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind
-
-Integers = NDArray[np.int32]
 
 _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
@@ -33,7 +32,7 @@ _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 
 
 def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> None:
-    """Write one zone for each grid: of two dimensions, or with `heights` of three, repeated in z."""
+    """Write one zone for each block of each grid: of two dimensions, or with `heights` of three, extruded."""
     rest = iter(grids)
     first = at_least_one(rest)
     dimension = 3 if heights else 2
@@ -42,85 +41,74 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> Non
         child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
         zones: set[str] = set()
         families: dict[str, Kind] = {}
-        for grid in chain([first], rest):
-            title = grid.name or "Zone"
-            zone = words([title], NAME_LENGTH, {"DataClass", *zones, *families})[title]
-            zones.add(zone)
-            role = _write_zone(base, zone, grid, heights, zones)
+        for number, grid in enumerate(chain([first], rest)):
+            names = _zone_names(grid, {"DataClass", *zones, *families})
+            zones |= set(names)
+            nodes = [_write_zone(base, names[k], grid, k, number, heights) for k in range(len(names))]
+            write_connections(nodes, names, grid, len(heights))
+            role = _write_conditions(nodes, grid, len(heights), zones)
             families = {**role, **families}
         for family, kind in families.items():
             node = child(base, family, "Family_t")
             child(node, "FamilyBC", "FamilyBC_t", _CONDITIONS.get(kind, "BCGeneral"))
 
 
-def _write_zone(base: Node, name: str, grid: Grid, heights: Heights, zones: set[str]) -> dict[str, Kind]:
-    """Add a zone and return the families of its parts, called otherwise than all `zones`."""
-    dims = [grid.ni, grid.nj, len(heights)][: 3 if heights else 2]
+def _zone_names(grid: Grid, taken: set[str]) -> list[str]:
+    """Return a name for the zone of each block: those it had in its file, else the grid's, with numbers."""
+    own = grid.provenance.get("zones")
+    count = len(grid.blocks)
+    if not isinstance(own, list) or len(own) != count or not all(isinstance(name, str) for name in own):
+        title = grid.name or "Zone"
+        own = [title] if count == 1 else [f"{title[: NAME_LENGTH - 5]}-{k}" for k in range(1, count + 1)]
+    names: list[str] = []
+    for name in own:
+        names.append(words([name], NAME_LENGTH, {*taken, *names})[name])
+    return names
+
+
+def _write_zone(base: Node, name: str, grid: Grid, block: int, number: int, heights: Heights) -> Node:
+    """Add the zone of a block of a grid, the file's `number`, and return it."""
+    dims = [*grid.blocks[block].counts, len(heights)][: 3 if heights else 2]
     size = np.array([dims, [n - 1 for n in dims], [0] * len(dims)], np.int32)
     zone = child(base, name, "Zone_t", size)
     child(zone, "ZoneType", "ZoneType_t", "Structured")
-    for fact, texts in facts_of(grid).items():
+    for fact, texts in facts_of(grid, block, number).items():
         child(zone, fact, "Descriptor_t", "\n".join(texts))
     coordinates = child(zone, "GridCoordinates", "GridCoordinates_t")
-    for axis, values in enumerate(_coordinates(grid, heights)):
+    for axis, values in enumerate(_coordinates(grid.blocks[block], heights)):
         node = child(coordinates, f"Coordinate{'XYZ'[axis]}", "DataArray_t", values)
         child(node, "DimensionalExponents", "DimensionalExponents_t", _METRE)
-    _write_connections(zone, name, grid, len(heights))
-    return _write_conditions(zone, grid, len(heights), zones)
+    return zone
 
 
-def _coordinates(grid: Grid, heights: Heights) -> Iterator[Floats]:
+def _coordinates(block: Block, heights: Heights) -> Iterator[Floats]:
     """Yield x, y[, z] as (nj, ni) or (nk, nj, ni)."""
-    for values in (grid.x.T, grid.y.T):
+    ni, nj = block.counts
+    for values in (block.nodes[..., 0].T, block.nodes[..., 1].T):
         yield np.stack([values] * len(heights)) if heights else np.ascontiguousarray(values)
     if heights:
-        yield np.broadcast_to(np.array(heights)[:, None, None], (len(heights), grid.nj, grid.ni)).copy()
+        yield np.broadcast_to(np.array(heights)[:, None, None], (len(heights), nj, ni)).copy()
 
 
-def _write_conditions(zone: Node, grid: Grid, planes: int, zones: set[str]) -> dict[str, Kind]:
-    """Add a boundary condition for each outer stretch and, of a layer, for its two planes."""
+def _write_conditions(zones: list[Node], grid: Grid, planes: int, names: set[str]) -> dict[str, Kind]:
+    """Add a boundary condition for each outer stretch and, of layers, for their outermost planes."""
     patches = grid.outer_patches()
     role = kinds(grid, patches)
-    ranges = [(p.name, _range(p.side, p.start, p.stop, grid, planes)) for p in patches]
+    counts = [block.counts for block in grid.blocks]
+    ranges = [(p.block, p.name, range_of(p.side, p.start, p.stop, counts[p.block], planes)) for p in patches]
     for plane, k in (("back", 1), ("front", planes))[:planes]:
         role.setdefault(plane, "symmetry")
-        ranges.append((plane, np.array([[1, 1, k], [grid.ni, grid.nj, k]], np.int32)))
-    family = words(role, NAME_LENGTH, {"DataClass", *zones})
-    node = child(zone, "ZoneBC", "ZoneBC_t")
-    taken: set[str] = set()
-    for name, span in ranges:
+        for block, (ni, nj) in enumerate(counts):
+            ranges.append((block, plane, np.array([[1, 1, k], [ni, nj, k]], np.int32)))
+    family = words(role, NAME_LENGTH, {"DataClass", *names})
+    conditions: dict[int, tuple[Node, set[str]]] = {}
+    for block, name, span in ranges:
+        if block not in conditions:
+            conditions[block] = child(zones[block], "ZoneBC", "ZoneBC_t"), set()
+        node, taken = conditions[block]
         word = words([name], NAME_LENGTH, taken)[name]
         taken.add(word)
         condition = child(node, word, "BC_t", "FamilySpecified")
         child(condition, "PointRange", "IndexRange_t", span)
         child(condition, "FamilyName", "FamilyName_t", family[name])
     return {family[name]: role[name] for name in role}
-
-
-def _write_connections(zone: Node, name: str, grid: Grid, planes: int) -> None:
-    """Join the two sides of each connection of the block to itself, once from each."""
-    if not grid.connections:
-        return
-    node = child(zone, "ZoneGridConnectivity", "ZoneGridConnectivity_t")
-    count = 0
-    for connection in grid.connections:
-        (along,) = connection.orientation
-        first, second = connection.stretches(0)
-        for own, donor in ((first, second), (second, first)):
-            count += 1
-            joint = child(node, f"Cut{count}", "GridConnectivity1to1_t", name)
-            (side, *ends), across = donor, PLACES[own[0]]
-            start, stop = ends[::along]
-            child(joint, "PointRange", "IndexRange_t", _range(*own, grid, planes))
-            child(joint, "PointRangeDonor", "IndexRange_t", _range(side, start, stop, grid, planes))
-            transform = np.array([along, along, 3], np.int32)[: 3 if planes else 2]
-            transform[across[0]] = -1 if across[1] == PLACES[side][1] else 1
-            transform[:2] *= [1, 2]
-            child(joint, "Transform", '"int[IndexDimension]"', transform)
-
-
-def _range(side: Side, first: int, last: int, grid: Grid, planes: int) -> Integers:
-    """Return the first and the last node (2, 2 or 3) of a stretch, counted from 1."""
-    i, j = (1 if side == "west" else grid.ni), (1 if side == "south" else grid.nj)
-    ends = [[k + 1, j] if side in ("south", "north") else [i, k + 1] for k in (first, last)]
-    return np.array([[*ends[0], 1], [*ends[1], planes]] if planes else ends, np.int32)

@@ -12,8 +12,28 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.figure.layers import INK, Box, Colouring, Part, body, in_view, outline, paint, rule
+from meshonet.formats.figure.blocks import (
+    Lines,
+    lines_of_blocks,
+    mark_vertices,
+    outline_blocks,
+    shown_counts,
+)
+from meshonet.formats.figure.layers import (
+    INK,
+    Box,
+    Colouring,
+    Part,
+    body,
+    in_view,
+    line_gaps,
+    line_step,
+    outline,
+    paint,
+    rule,
+)
 from meshonet.formats.format import only_one
+from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -35,26 +55,34 @@ def draw(
     Of a grid around a small body, one view near it and one of the whole. Each `every`-th grid line is drawn;
     None chooses. Raises InputError for a zoom that shows nothing.
     """
+    singles = _singles(grid)
     views = [zoom] if zoom else _views(grid)
-    parts = [_visible(grid, view) for view in views]
+    parts = [_visible(grid, singles, view) for view in views]
     figure, axes, bar = _frame([_ratio(view) for view in views], colouring is not None)
     mesh = None
-    limits = _limits(colouring, parts[0]) if colouring else (0.0, 1.0)
-    for ax, view, part in zip(axes, views, parts, strict=True):
+    # near a body one block has the colours of what matters there; many blocks have those of the whole
+    ruling = parts[-1] if grid.topology == "blocks" else parts[0]
+    limits = _limits(colouring, ruling) if colouring else (0.0, 1.0)
+    for ax, view, seen in zip(axes, views, parts, strict=True):
         pixels = ax.get_window_extent().width / (view[1] - view[0])
-        if colouring:
-            mesh = paint(ax, grid, colouring, part, pixels, limits)
-        steps = rule(ax, grid, part, pixels, every, faint=colouring is not None)
-        outline(ax, grid)
+        lines = _lines(grid, singles, seen, pixels, every)
+        for k, (single, part, (steps, flipped)) in enumerate(zip(singles, seen, lines, strict=True)):
+            if not part:
+                continue
+            if colouring:
+                values, low = colouring.parts[k], colouring.worst_is_low
+                mesh = paint(ax, single, values, part, pixels, limits, low=low)
+            rule(ax, single, part, steps, faint=colouring is not None, flipped=flipped)
+        _outlines(ax, grid)
         ax.set(xlim=view[:2], ylim=view[2:])
-        if max(steps) > 1:
-            _note(ax, _drawn_lines(*steps))
+        _note_lines(ax, [steps for steps, _ in lines])
     if bar is not None and mesh is not None and colouring:
         scale = figure.colorbar(mesh, cax=bar, extend=_beyond(colouring, limits))
         scale.set_label(colouring.label, color=INK, size=9)
         bar.tick_params(labelsize=8, color=INK, labelcolor=INK)
     name = grid.name if len(grid.name) <= _NAME else grid.name[: _NAME - 1] + "…"
-    title = f"{name}   {grid.ni} × {grid.nj} nodes".strip()
+    size = shown_counts(grid) if grid.topology == "blocks" else f"{grid.ni} × {grid.nj} nodes"
+    title = f"{name}   {size}".strip()
     axes[0].set_title(title, size=10, color=INK, loc="left", pad=4)
     return figure
 
@@ -81,12 +109,38 @@ def write_grids(path: Path, grids: Iterable[Grid], *, kind: str) -> None:
     write(path, only_one(grids, f"a .{kind} file"), kind)
 
 
-def _visible(grid: Grid, view: Box) -> Part:
-    part = in_view(grid, view)
-    if part is None:
+def _singles(grid: Grid) -> list[Grid]:
+    """Return the grid, or those of its blocks."""
+    if grid.topology != "blocks":
+        return [grid]
+    planar(grid)
+    return [Grid((block,)) for block in grid.blocks]
+
+
+def _lines(
+    grid: Grid, singles: list[Grid], seen: list[Part | None], pixels: float, every: int | None
+) -> list[Lines]:
+    if grid.topology == "blocks":
+        return lines_of_blocks(grid, singles, seen, pixels, every)
+    part = seen[0]
+    steps = (1, 1) if part is None else tuple(line_step(*gap, pixels) for gap in line_gaps(grid, part))
+    return [((every or steps[0], every or steps[1]), (False, False))]
+
+
+def _outlines(ax: Axes, grid: Grid) -> None:
+    if grid.topology == "blocks":
+        outline_blocks(ax, grid)
+        mark_vertices(ax, grid)
+    else:
+        outline(ax, grid)
+
+
+def _visible(grid: Grid, singles: list[Grid], view: Box) -> list[Part | None]:
+    parts = [in_view(single, view) for single in singles]
+    if not any(parts):
         spans = "x {:.4g} to {:.4g}, y {:.4g} to {:.4g}".format(*_whole(grid))
         raise InputError(f"zoom {view} shows none of the grid", f"the grid spans {spans}")
-    return part
+    return parts
 
 
 def _views(grid: Grid) -> list[Box]:
@@ -94,9 +148,13 @@ def _views(grid: Grid) -> list[Box]:
     whole = _whole(grid)
     pad = 0.02 * max(whole[1] - whole[0], whole[3] - whole[2])
     whole = (whole[0] - pad, whole[1] + pad, whole[2] - pad, whole[3] + pad)
-    if not grid.around_body:
+    if grid.topology == "blocks":
+        walls = [grid.face(p.block, p.side)[p.start : p.stop + 1] for p in grid.walls()]
+        wall = np.concatenate(walls) if walls else np.empty((0, 2))
+    else:
+        wall = body(grid) if grid.around_body else np.empty((0, 2))
+    if not len(wall):
         return [whole]
-    wall = body(grid)
     low, high = wall.min(axis=0), wall.max(axis=0)
     size, (x, y) = float((high - low).max()), ((low + high) / 2).tolist()
     if size <= 0 or whole[1] - whole[0] < 5 * size:
@@ -106,17 +164,24 @@ def _views(grid: Grid) -> list[Box]:
 
 
 def _whole(grid: Grid) -> Box:
-    return float(grid.x.min()), float(grid.x.max()), float(grid.y.min()), float(grid.y.max())
+    low = np.min([block.nodes.min(axis=(0, 1)) for block in grid.blocks], axis=0)
+    high = np.max([block.nodes.max(axis=(0, 1)) for block in grid.blocks], axis=0)
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
 def _ratio(box: Box) -> float:
     return min(max((box[1] - box[0]) / (box[3] - box[2]), 0.02), 50.0)
 
 
-def _limits(colouring: Colouring, part: Part) -> tuple[float, float]:
+def _limits(colouring: Colouring, parts: list[Part | None]) -> tuple[float, float]:
     if colouring.limits:
         return colouring.limits
-    values = colouring.values[part.i0 : part.i1, part.j0 : part.j1][part.mask]
+    seen = [
+        values[part.i0 : part.i1, part.j0 : part.j1][part.mask]
+        for values, part in zip(colouring.parts, parts, strict=True)
+        if part
+    ]
+    values = np.concatenate(seen)
     finite = values[np.isfinite(values)]
     low, high = np.percentile(finite, (1, 99)) if finite.size else (0.0, 1.0)
     return float(low), float(max(high, low + 1e-9 * abs(low) + 1e-30))
@@ -124,7 +189,8 @@ def _limits(colouring: Colouring, part: Part) -> tuple[float, float]:
 
 def _beyond(colouring: Colouring, limits: tuple[float, float]) -> str:
     """Return at which ends values lie beyond the colour bar, in matplotlib's words."""
-    below, above = bool((colouring.values < limits[0]).any()), bool((colouring.values > limits[1]).any())
+    below = any(bool((values < limits[0]).any()) for values in colouring.parts)
+    above = any(bool((values > limits[1]).any()) for values in colouring.parts)
     return ("neither", "min", "max", "both")[below + 2 * above]
 
 
@@ -153,6 +219,17 @@ def _frame(ratios: list[float], bar: bool) -> tuple[Figure, list[Axes], Axes | N
         return figure, axes, None
     place = ((at - gap + 0.15) / width, low / total, 0.14 / width, height / total)
     return figure, axes, figure.add_axes(place)
+
+
+def _note_lines(ax: Axes, steps: list[tuple[int, int]]) -> None:
+    """Say in the picture which lines are drawn, unless all are."""
+    each = {step for pair in steps for step in pair}
+    if max(each) == 1:
+        return
+    if len(steps) == 1 or len(each) == 1:
+        _note(ax, _drawn_lines(*steps[0]))
+    else:
+        _note(ax, f"every {_ordinal(min(each)) or '1st '}to {_ordinal(max(each))}line")
 
 
 def _note(ax: Axes, text: str) -> None:

@@ -30,7 +30,7 @@ _SAMPLE = 200_000
 
 @dataclass(frozen=True)
 class Colouring:
-    """Values (ni-1, nj-1) of the cells and how to show them.
+    """Values (ni-1, nj-1) of the cells, of each block in a tuple if there are many, and how to show them.
 
     Parameters
     ----------
@@ -39,10 +39,15 @@ class Colouring:
     worst_is_low : small values are the bad ones and keep the strong colours.
     """
 
-    values: NDArray[Any]
+    values: NDArray[Any] | tuple[NDArray[Any], ...]
     label: str
     limits: tuple[float, float] | None = None
     worst_is_low: bool = False
+
+    @property
+    def parts(self) -> tuple[NDArray[Any], ...]:
+        """Values of each block."""
+        return self.values if isinstance(self.values, tuple) else (self.values,)
 
 
 class Part(NamedTuple):
@@ -66,12 +71,21 @@ def in_view(grid: Grid, box: Box) -> Part | None:
 
 
 def paint(
-    ax: Axes, grid: Grid, colouring: Colouring, part: Part, pixels: float, limits: tuple[float, float]
+    ax: Axes,
+    grid: Grid,
+    values: NDArray[Any],
+    part: Part,
+    pixels: float,
+    limits: tuple[float, float],
+    *,
+    low: bool,
 ) -> QuadMesh:
-    """Colour the cells of `part`, a block of cells where they are below a pixel, by the worst value in it."""
-    low = colouring.worst_is_low
+    """Colour the cells of `part`, a block of cells where they are below a pixel, by the worst value in it.
+
+    `values` (ni-1, nj-1) are those of all cells; the worst are the low ones if `low`.
+    """
     nodes = grid.nodes[part.i0 : part.i1 + 1, part.j0 : part.j1 + 1]
-    shown = colouring.values[part.i0 : part.i1, part.j0 : part.j1]
+    shown = values[part.i0 : part.i1, part.j0 : part.j1]
     columns = _blocks(_extents(nodes, part.mask, 0) * pixels)
     rows = _blocks(_extents(nodes, part.mask, 1) * pixels)
     shown = _reduced(np.minimum if low else np.maximum, shown, columns, rows)
@@ -82,18 +96,27 @@ def paint(
 
 
 def rule(
-    ax: Axes, grid: Grid, part: Part, pixels: float, every: int | None, *, faint: bool
-) -> tuple[int, int]:
-    """Draw every k-th grid line and the last ones; returns k of the lines i = const and j = const."""
+    ax: Axes,
+    grid: Grid,
+    part: Part,
+    steps: tuple[int, int],
+    *,
+    faint: bool,
+    flipped: tuple[bool, bool] = (False, False),
+) -> None:
+    """Draw every k-th grid line and the last ones; `steps` are k of the lines i = const and j = const.
+
+    Where `flipped`, these are counted from the last one.
+    """
     from matplotlib.collections import LineCollection
 
-    steps = (every, every) if every else _steps(grid, part, pixels)
-    along_j = [grid.nodes[i, part.j0 : part.j1 + 1] for i in _every(part.i0, part.i1, steps[0], grid.ni)]
-    along_i = [grid.nodes[part.i0 : part.i1 + 1, j] for j in _every(part.j0, part.j1, steps[1], grid.nj)]
+    columns = _every(part.i0, part.i1, steps[0], grid.ni, flipped=flipped[0])
+    rows = _every(part.j0, part.j1, steps[1], grid.nj, flipped=flipped[1])
+    along_j = [grid.nodes[i, part.j0 : part.j1 + 1] for i in columns]
+    along_i = [grid.nodes[part.i0 : part.i1 + 1, j] for j in rows]
     width, alpha = (0.35, 0.45) if faint else (0.45, 0.8)
     lines = LineCollection(along_j + along_i, colors=INK, linewidths=width, alpha=alpha, zorder=2)
     ax.add_collection(lines)
-    return steps
 
 
 def outline(ax: Axes, grid: Grid) -> None:
@@ -148,22 +171,24 @@ def _blocks(sizes: Floats) -> NDArray[np.intp]:
     return np.concatenate([[0], np.flatnonzero(new) + 1, [len(sizes)]])
 
 
-def _steps(grid: Grid, part: Part, pixels: float) -> tuple[int, int]:
-    """Return how many-th lines keep `_LINE_GAP` where half of the coloured area lies."""
+def line_gaps(grid: Grid, part: Part) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    """Return distances (n,) of neighbouring lines i = const and j = const, each with the areas there."""
     i, j = np.nonzero(part.mask)
     stride = max(1, len(i) // _SAMPLE)
     i, j = i[::stride] + part.i0, j[::stride] + part.j0
     corner = grid.nodes[i, j]
     along, across = grid.nodes[i + 1, j] - corner, grid.nodes[i, j + 1] - corner
     area = np.abs(along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0])
-    steps = []
-    for edge in (along, across):
-        length = np.hypot(edge[:, 0], edge[:, 1]) * pixels
-        order = np.argsort(length)
-        weight = np.cumsum(area[order])
-        typical = length[order[min(int(np.searchsorted(weight, weight[-1] / 2)), len(order) - 1)]]
-        steps.append(max(1, _round(_LINE_GAP / typical)) if typical > 0 else 1)
-    return steps[0], steps[1]
+    return (np.hypot(along[:, 0], along[:, 1]), area), (np.hypot(across[:, 0], across[:, 1]), area)
+
+
+def line_step(length: Floats, area: Floats, pixels: float) -> int:
+    """Return how many-th lines keep `_LINE_GAP` where half of the coloured area lies, from `line_gaps`."""
+    length = length * pixels
+    order = np.argsort(length)
+    weight = np.cumsum(area[order])
+    typical = length[order[min(int(np.searchsorted(weight, weight[-1] / 2)), len(order) - 1)]]
+    return max(1, _round(_LINE_GAP / typical)) if typical > 0 else 1
 
 
 def _round(step: float) -> int:
@@ -174,8 +199,11 @@ def _round(step: float) -> int:
     return int(next(m * power for m in (1, 2, 5, 10) if m * power >= step * 0.999))
 
 
-def _every(start: int, stop: int, step: int, count: int) -> list[int]:
+def _every(start: int, stop: int, step: int, count: int, *, flipped: bool = False) -> list[int]:
     """Return the multiples of `step` from `start` to `stop`, and the last line when it is in view."""
+    if flipped:
+        last = count - 1
+        return [last - k for k in _every(last - stop, last - start, step, count)]
     first = -(-start // step) * step
     lines = list(range(first, stop + 1, step))
     return [*lines, count - 1] if stop == count - 1 and count - 1 not in lines else lines

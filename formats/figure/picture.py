@@ -9,7 +9,7 @@ from meshonet.formats.format import Format, only_one
 from meshonet.formats.registry import format_for_output
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.measure import per_cell
+from meshonet.geometry.quality.measure import per_cell_of_blocks
 from meshonet.geometry.quality.metrics import METRICS, NAMES
 
 KINDS = ("png", "svg", "pdf")
@@ -55,7 +55,7 @@ class Picture:
         for metric in METRICS:
             if metric.name == self.metric:
                 label = f"{metric.name} ({metric.unit})" if metric.unit else metric.name
-                values = per_cell(grid, metric.name)
+                values = tuple(per_cell_of_blocks(grid, metric.name))
                 colouring = Colouring(values, label, worst_is_low=metric.worst == "min")
         write(path, grid, kind, colouring, self.zoom, self.every)
 

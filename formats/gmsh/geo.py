@@ -1,7 +1,7 @@
 """Gmsh's ``.geo``: the outer edges as transfinite curves, for those who mesh or change it in Gmsh.
 
-The nodes of the boundary are kept; those inside are Gmsh's own interpolation. O and C grids become two
-surfaces, split at the middle of i, since no transfinite surface may meet itself.
+The nodes of the boundary are kept; those inside are Gmsh's own interpolation. Each block is a surface; O and
+C grids become two, split at the middle of i, since no transfinite surface may meet itself.
 https://gmsh.info/doc/texinfo/gmsh.html#Structured-grids
 """
 
@@ -13,24 +13,21 @@ import numpy as np
 
 from meshonet.formats.format import only_one
 from meshonet.formats.gmsh.msh import INTERIOR, quotable
-from meshonet.formats.mesh.unstructured import Indices, node_numbers, unstructured
+from meshonet.formats.mesh.unstructured import Indices, Unstructured, node_numbers, unstructured
 from meshonet.geometry.blocks.grid import Grid
 
 
 def write_grids(path: Path, grids: Iterable[Grid]) -> None:
     """Write the outer edges of the one grid of `grids`, a line for each cell at them."""
     grid = only_one(grids, "a .geo file")
-    number = node_numbers(grid) + 1
-    ends = (0, grid.ni - 1) if not grid.connections else (0, (grid.ni - 1) // 2, grid.ni - 1)
-    loops = [_loop(number, first, last) for first, last in pairwise(ends)]
+    mesh = unstructured(grid)
+    loops = [loop for k, number in enumerate(node_numbers(grid)) for loop in _loops(grid, k, number + 1)]
     sides = np.concatenate([np.stack([loop, np.roll(loop, -1)], axis=1) for loop, _ in loops])
     lines, which = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
     signed = np.where(sides[:, 0] < sides[:, 1], 1, -1) * (which.ravel() + 1)
-    points, first = np.unique(number.ravel(), return_index=True)
+    used = np.unique(lines)
     with path.open("w", encoding="utf-8") as stream:
-        used = np.isin(points, lines)
-        rows = np.column_stack([points, grid.nodes.reshape(-1, 2)[first]])[used]
-        for k, x, y in rows.tolist():
+        for k, x, y in np.column_stack([used, mesh.points[used - 1]]).tolist():
             stream.write(f"Point({k:.0f}) = {{{x:.17g}, {y:.17g}, 0}};\n")
         for k, (start, stop) in enumerate(lines.tolist(), start=1):
             stream.write(f"Line({k}) = {{{start}, {stop}}};\n")
@@ -43,9 +40,17 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
             stream.write(
                 f"Transfinite Surface {{{k}}} = {{{_listed(corners)}}};\nRecombine Surface {{{k}}};\n"
             )
-        for name, edges in _named(grid, number, lines).items():
+        for name, edges in _named(mesh, lines).items():
             stream.write(f'Physical Curve("{quotable(name)}") = {{{_listed(edges)}}};\n')
         stream.write(f'Physical Surface("{INTERIOR}") = {{1:{len(loops)}}};\n')
+
+
+def _loops(grid: Grid, block: int, number: Indices) -> list[tuple[Indices, Indices]]:
+    """Return nodes and corners of the surfaces that a block becomes: two where it meets itself."""
+    last = len(number) - 1
+    itself = any(each.block == each.donor == block for each in grid.connections if not each.transform)
+    ends = (0, last // 2, last) if itself else (0, last)
+    return [_loop(number, first, stop) for first, stop in pairwise(ends)]
 
 
 def _loop(number: Indices, first: int, last: int) -> tuple[Indices, Indices]:
@@ -56,17 +61,12 @@ def _loop(number: Indices, first: int, last: int) -> tuple[Indices, Indices]:
     return loop, np.array([south[0], south[-1], north[-1], north[0]])
 
 
-def _named(grid: Grid, number: Indices, lines: Indices) -> dict[str, Indices]:
+def _named(mesh: Unstructured, lines: Indices) -> dict[str, Indices]:
     """Return the numbers of the lines of each part."""
-    mesh = unstructured(grid)
-    own = np.unique(number)  # the mesh counts its points without gaps
-    width = int(number.max()) + 1
+    width = len(mesh.points) + 1
     keys = lines[:, 0] * width + lines[:, 1]
-    line_numbers = {}
-    for name, edges in mesh.edges.items():
-        ends = np.sort(own[edges], axis=1)
-        line_numbers[name] = np.searchsorted(keys, ends[:, 0] * width + ends[:, 1]) + 1
-    return line_numbers
+    ends = {name: np.sort(edges + 1, axis=1) for name, edges in mesh.edges.items()}
+    return {name: np.searchsorted(keys, rows[:, 0] * width + rows[:, 1]) + 1 for name, rows in ends.items()}
 
 
 def _listed(numbers: Indices) -> str:

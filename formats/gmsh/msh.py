@@ -7,21 +7,39 @@ converters such as OpenFOAM's insist on. https://gmsh.info/doc/texinfo/gmsh.html
 import struct
 from collections.abc import Iterable
 from pathlib import Path
-from typing import BinaryIO, TypeAlias
+from typing import BinaryIO, NamedTuple, TypeAlias
 
 import numpy as np
 
 from meshonet.formats.format import Heights, Options, only_one
-from meshonet.formats.mesh.unstructured import CELLS, Indices, extruded, in_space, unstructured
+from meshonet.formats.mesh.unstructured import (
+    CELLS,
+    Indices,
+    extruded,
+    in_space,
+    periodic_nodes,
+    unstructured,
+)
 from meshonet.formats.source import printable
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.grid import Grid
 
 INTERIOR = "fluid"
 """Name of the group of all cells."""
 _KINDS = {2: 1, 4: 3, 8: 5}
 """Gmsh's numbers of lines, quads and hexahedra by their nodes."""
+
+
+class Link(NamedTuple):
+    """A periodic patch: its tag, its master's, the matrix from there, its nodes and the master's (n, 2)."""
+
+    tag: int
+    master: int
+    affine: list[float]
+    nodes: Indices
+
 
 Block: TypeAlias = "tuple[str, Indices]"
 """Name of a group of cells and their nodes (m, k) counted from 0."""
@@ -34,10 +52,30 @@ def write_grids(
 
     Repeated in z: hexahedra, and faces in groups.
     """
-    points, patches, cells = extruded(unstructured(only_one(grids, "a .msh file")), heights)
+    mesh = unstructured(only_one(grids, "a .msh file"))
+    points, patches, cells = extruded(mesh, heights)
+    tags = {name: tag for tag, name in enumerate(patches, start=1)}
+    links = [
+        Link(
+            tags[pair.partner],
+            tags[pair.name],
+            _affine(pair.motion),
+            periodic_nodes(pair, mesh, len(heights))[:, ::-1],
+        )
+        for pair in mesh.periodic
+    ]
     inside = INTERIOR if INTERIOR not in patches else f"{INTERIOR}-cells"
     write = _write_41 if "4.1" in options else _write_22
-    write(path, in_space(points), [*patches.items(), (inside, cells)], text="ascii" in options)
+    write(path, in_space(points), [*patches.items(), (inside, cells)], links, text="ascii" in options)
+
+
+def _affine(motion: Motion) -> list[float]:
+    """Return a motion in the plane as a matrix (4, 4) row by row."""
+    matrix = np.eye(4)
+    if motion.turn:
+        matrix[:2, :2] = motion.turn
+    matrix[:2, 3] = motion.translation
+    return [float(value) for value in matrix.ravel()]
 
 
 def quotable(name: str) -> str:
@@ -45,7 +83,7 @@ def quotable(name: str) -> str:
     return printable(name).replace('"', "'")
 
 
-def _write_22(path: Path, points: Floats, blocks: list[Block], *, text: bool) -> None:
+def _write_22(path: Path, points: Floats, blocks: list[Block], links: list[Link], *, text: bool) -> None:
     import meshio
 
     tags = [np.full(len(nodes), tag) for tag, (_, nodes) in enumerate(blocks, start=1)]
@@ -57,6 +95,10 @@ def _write_22(path: Path, points: Floats, blocks: list[Block], *, text: bool) ->
             for tag, (name, nodes) in enumerate(blocks, start=1)
         },
         cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+        gmsh_periodic=[
+            [_dimension(blocks[0][1]), (link.tag, link.master), link.affine, link.nodes] for link in links
+        ]
+        or None,
     )
     meshio.gmsh.write(str(path), mesh, fmt_version="2.2", binary=not text, float_fmt=".16e")
 
@@ -65,7 +107,7 @@ def _dimension(nodes: Indices) -> int:
     return int(nodes.shape[1]).bit_length() - 1
 
 
-def _write_41(path: Path, points: Floats, blocks: list[Block], *, text: bool) -> None:
+def _write_41(path: Path, points: Floats, blocks: list[Block], links: list[Link], *, text: bool) -> None:
     """Write the patches, entities 1, 2 ... of a dimension, and the cells, entity 1 of the next."""
     dim = _dimension(blocks[-1][1])
     entities = [(dim - 1, tag, nodes) for tag, (_, nodes) in enumerate(blocks[:-1], start=1)]
@@ -95,6 +137,20 @@ def _write_41(path: Path, points: Floats, blocks: list[Block], *, text: bool) ->
             _rows(stream, np.column_stack([np.arange(first, first + len(nodes)), nodes + 1]), text=text)
             first += len(nodes)
         stream.write(b"$EndElements\n")
+        if links:
+            _write_periodic(stream, dim - 1, links, text=text)
+
+
+def _write_periodic(stream: BinaryIO, dimension: int, links: list[Link], *, text: bool) -> None:
+    stream.write(b"$Periodic\n")
+    _numbers(stream, "q", (len(links),), text=text)
+    for link in links:
+        _numbers(stream, "i", (dimension, link.tag, link.master), text=text)
+        _numbers(stream, "q", (len(link.affine),), text=text, end=b" ")
+        _numbers(stream, "d", tuple(link.affine), text=text)
+        _numbers(stream, "q", (len(link.nodes),), text=text)
+        _rows(stream, link.nodes + 1, text=text)
+    stream.write(b"$EndPeriodic\n")
 
 
 def _write_entities(

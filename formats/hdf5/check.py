@@ -10,7 +10,6 @@ https://support.hdfgroup.org/documentation/hdf5/latest/_f_m_t3.html
 from __future__ import annotations
 
 import contextlib
-import json
 import mmap
 import re
 import struct
@@ -19,11 +18,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from meshonet.formats.mesh.connection_text import connections_from
 from meshonet.formats.mesh.recover_topology import known_topology
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import SIDES, Floats, Topology
-from meshonet.geometry.blocks.block import Range
-from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -190,26 +189,6 @@ def check_stored(data: h5py.Dataset, what: str, place: str = "") -> None:
     if data.size * data.dtype.itemsize > _DEFLATE_LIMIT * max(data.id.get_storage_size(), 1):
         problem = f"{what} claims shape {data.shape} but holds next to nothing"
         raise InputError(problem, "write the file again", place=place)
-
-
-def connections_from(text: str) -> tuple[Connection, ...]:
-    """Return the connections of a JSON text (`meshonet.formats.hdf5.write.connections_text`)."""
-    try:
-        rows = json.loads(text or "[]")
-        return tuple(
-            Connection(k, side, _range(span), donor, face, _range(other), tuple(ways), _motion(move))
-            for k, side, span, donor, face, other, ways, move in rows
-        )
-    except (ValueError, TypeError, KeyError, RecursionError):
-        raise InputError("its connections are not those of blocks", "write the dataset again") from None
-
-
-def _range(span: list[list[int]]) -> Range:
-    return tuple((int(first), int(last)) for first, last in span)
-
-
-def _motion(move: dict[str, Any] | None) -> Motion | None:
-    return Motion(tuple(move["shift"]), tuple(map(tuple, move["turn"]))) if move else None
 
 
 @contextlib.contextmanager

@@ -5,17 +5,17 @@ from __future__ import annotations
 import contextlib
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from meshonet.formats.format import size_of
 from meshonet.formats.hdf5.file import created
+from meshonet.formats.mesh.connection_text import connections_text
 from meshonet.formats.mesh.metadata import plain
 from meshonet.geometry.arrays import SIDES, Floats
 from meshonet.geometry.blocks.boundary import Boundary
-from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -80,7 +80,7 @@ class Writer:
     def _check_size(self, sample: Boundary | Grid) -> None:
         """Raise InputError when a sample is not as the first one, which the file's attributes describe."""
         several = _is_of_blocks(sample)
-        size = _size_of(sample)
+        size = size_of(sample)
         connections = connections_text(sample.connections) if several else ""
         if not self._first:
             self._first = size, connections
@@ -158,19 +158,8 @@ def _write(path: Path, kind: Kind, samples: Iterable[Boundary | Grid]) -> None:
         raise InputError(f"there is no {kind.removeprefix('meshonet-')} to write", "check the input")
 
 
-def connections_text(connections: Iterable[Connection]) -> str:
-    """Return connections as JSON: their fields in order, the transform as an object or null."""
-    return json.dumps([[*astuple(c)[:-1], asdict(c.transform) if c.transform else None] for c in connections])
-
-
 def _is_of_blocks(sample: Boundary | Grid) -> bool:
     return isinstance(sample, Grid) and sample.topology == "blocks"
-
-
-def _size_of(sample: Boundary | Grid) -> str:
-    if isinstance(sample, Grid) and sample.topology == "blocks":
-        return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
-    return f"{sample.ni}x{sample.nj} {sample.topology}"
 
 
 def _arrays_of(sample: Boundary | Grid) -> dict[str, Floats]:

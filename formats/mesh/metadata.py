@@ -2,32 +2,78 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypeAlias
 
+from meshonet.formats.mesh.connection_text import connections_from, connections_text
 from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import check_connections
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
+Facts: TypeAlias = Mapping[str, Sequence[str]]
+"""Texts by the name of what they say."""
 
-def facts_of(grid: Grid) -> dict[str, list[str]]:
+
+def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
     """Return the topology, name, parts and provenance of `grid` as lists of texts by name.
 
-    `grid_with` makes a grid from them. A part reads ``side start stop name``. What is empty is left out.
+    `grid_with` makes a grid from them. A part reads ``side start stop name``. What is empty is left out. Of a
+    grid of blocks they are those of one `block`, the first of which has the connections and the provenance;
+    with the grid's `number` in its file, by which its blocks know each other, `grid_of_blocks` makes a grid.
     """
+    several = grid.topology == "blocks"
+    first = block == 0
+    provenance = json.dumps(dict(grid.provenance), default=plain) if grid.provenance and first else ""
     facts: dict[str, list[str]] = {
         "topology": [grid.topology],
         "name": [grid.name],
-        "parts": [f"{part.side} {part.start} {part.stop} {part.name}" for part in grid.patches],
-        "provenance": [json.dumps(dict(grid.provenance), default=plain) if grid.provenance else ""],
+        "parts": [f"{p.side} {p.start} {p.stop} {p.name}" for p in grid.patches if p.block == block],
+        "provenance": [provenance],
+        "block": [f"{number} {block}" if several else ""],
+        "connections": [connections_text(grid.connections) if several and first else ""],
     }
     return {name: texts for name, texts in facts.items() if any(texts)}
 
 
-def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "") -> Grid:
+def number_of_grid(facts: Facts) -> int | None:
+    """Return the number, in its file, of the grid of several blocks that one with `facts` belongs to."""
+    words = facts["block"][0].split() if facts.get("block") else []
+    return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
+
+
+def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
+    """Return the grid of blocks, each its nodes (ni, nj, 2) and facts, in the order that the facts say.
+
+    Raises InputError: a block is missing or there twice; connections that do not fit the nodes.
+    """
+    rows = sorted(((int(facts["block"][0].split()[1]), nodes, facts) for nodes, facts in blocks), key=_first)
+    if [k for k, _, _ in rows] != list(range(len(rows))):
+        problem = f"has blocks {', '.join(str(k) for k, _, _ in rows[:9])} of a grid"
+        raise InputError(problem, "keep all blocks of the grid in the file, once")
+    facts = rows[0][2]
+    name = printable(facts["name"][0]) if facts.get("name") else name
+    connections = connections_from(facts["connections"][0]) if facts.get("connections") else ()
+    patches = (replace(_part(text), block=k) for k, _, own in rows for text in own.get("parts", ()))
+    made = tuple(Block(usable(nodes)) for _, nodes, _ in rows)
+    check_connections(connections, [block.counts for block in made])
+    made = with_equal_nodes(made, connections)
+    return Grid(made, tuple(patches), connections, name, _provenance(facts))
+
+
+def _first(row: tuple[int, Floats, Facts]) -> int:
+    return row[0]
+
+
+def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
     """Return the grid of `nodes` (ni, nj, 2) and the facts of its file; without a topology it is recovered.
+
+    A block of a grid of several is one with four sides by itself.
 
     `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
     """
@@ -35,13 +81,18 @@ def grid_with(nodes: Floats, facts: Mapping[str, Sequence[str]], name: str = "")
     if not facts.get("topology"):
         return recovered(nodes, name)
     parts = tuple(_part(text) for text in facts.get("parts", ()))
+    if number_of_grid(facts) is not None:  # a block taken out of a grid of several
+        return Grid.from_nodes(usable(nodes), "quad", parts, name)
+    topology = known_topology(facts["topology"][0])
+    return Grid.from_nodes(usable(nodes), topology, parts, name, _provenance(facts))
+
+
+def _provenance(facts: Facts) -> dict[str, Any]:
     try:
         provenance = json.loads(facts["provenance"][0]) if facts.get("provenance") else {}
     except (ValueError, RecursionError):
-        provenance = {}
-    topology = known_topology(facts["topology"][0])
-    provenance = provenance if isinstance(provenance, dict) else {}
-    return Grid.from_nodes(usable(nodes), topology, parts, name, provenance)
+        return {}
+    return provenance if isinstance(provenance, dict) else {}
 
 
 def plain(value: object) -> object:

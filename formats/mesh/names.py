@@ -1,7 +1,7 @@
 """Names and kinds of patches as solvers' files take them."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind, Patch
@@ -26,13 +26,18 @@ def words(
         stem = re.sub(r"[^A-Za-z0-9_.+-]+", "_", name).strip("_.")[:limit] or "part"
         if letter and not stem[0].isalpha():
             stem = f"part_{stem}"[:limit]
-        word, count = stem, 1
-        while word in used:
-            count += 1
-            word = f"{stem[: limit - len(str(count)) - 1]}-{count}"
-        result[name] = word
+        result[name] = word = unused(stem, used, limit)
         used.add(word)
     return result
+
+
+def unused(stem: str, used: Container[str], limit: int = 64) -> str:
+    """Return `stem`, or with a number behind it in at most `limit` characters where it is one of `used`."""
+    word, count = stem, 1
+    while word in used:
+        count += 1
+        word = f"{stem[: limit - len(str(count)) - 1]}-{count}"
+    return word
 
 
 def kinds(grid: Grid, patches: Iterable[Patch]) -> dict[str, Kind]:

@@ -9,15 +9,20 @@ from meshonet.geometry.blocks.connection import wake_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.shapes.shape import Shape
 
 _SEAM = 1e-6
 
 
-def boundary_of(grid: Grid) -> Boundary:
-    """Return the four outer edges of `grid`, with its topology, parts and name.
+def boundary_of(grid: Grid) -> Shape:
+    """Return the four outer edges of `grid`, with its topology, parts and name; of many blocks, their domain.
 
     Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point.
     """
+    if grid.topology == "blocks":
+        from meshonet.geometry.shapes.given_blocks import given_blocks
+
+        return given_blocks(grid)
     nodes = grid.nodes
     edges = nodes[:, 0], nodes[:, -1], nodes[0], nodes[-1]
     return Boundary(*edges, grid.topology, grid.patches, grid.name, origin=grid.origin)
@@ -66,8 +71,13 @@ def right_handed(nodes: Floats) -> Floats:
 
     The signed areas of the cells add up to that of the outline, so only the outline is looked at.
     """
+    return nodes[::-1] if is_left_handed(nodes) else nodes
+
+
+def is_left_handed(nodes: Floats) -> bool:
+    """Return whether the area of a block of `nodes` (ni, nj, 2) is negative."""
     outline = np.concatenate([nodes[:-1, 0], nodes[-1, :-1], nodes[:0:-1, -1], nodes[0, :0:-1]])
-    return nodes[::-1] if polygon_area(outline) < 0 else nodes
+    return polygon_area(outline) < 0
 
 
 def known_topology(text: str) -> Topology:

@@ -20,11 +20,16 @@ def planar(coordinates: Sequence[Floats]) -> Floats:
 
     Raises InputError: the grid is truly three-dimensional, or its plane is curved.
     """
+    return plane_of(coordinates)[0]
+
+
+def plane_of(coordinates: Sequence[Floats]) -> tuple[Floats, int]:
+    """Return the nodes as `planar` does, and which index was dropped: 0, 1 or 2."""
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
-        return _planar(coordinates)
+        return _plane_of(coordinates)
 
 
-def _planar(coordinates: Sequence[Floats]) -> Floats:
+def _plane_of(coordinates: Sequence[Floats]) -> tuple[Floats, int]:
     dims = coordinates[0].shape
     counts = "x".join(str(n) for n in dims)
     for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
@@ -33,14 +38,14 @@ def _planar(coordinates: Sequence[Floats]) -> Floats:
             problem = f"a grid of {counts} nodes has no cells"
             raise InputError(problem, "give at least 2 nodes in two directions")
         if dims[axis] == 1:
-            return _nodes(_without_constant(first, counts))
+            return _nodes(_without_constant(first, counts)), axis
         kept = list(range(len(coordinates)))
         for index in range(1, dims[axis]):
             if not kept:
                 break
             kept = _unshifted(first, [_plane(c, axis, index) for c in coordinates], kept)
         if kept:
-            return _nodes([first[k] for k in kept])
+            return _nodes([first[k] for k in kept]), axis
     remedy = "give a plane one: one plane, or copies of one, in some direction"
     raise InputError(f"a grid of {counts} nodes is three-dimensional", remedy)
 

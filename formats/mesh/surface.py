@@ -1,30 +1,37 @@
 """Boundaries out of unstructured meshes and drawings: closed curves of named edges.
 
-One curve is the outline of a domain or a body; of two, one within the other, the inner one is the body and
-the outer one its far field; several beside each other are a shape each.
+One curve is the outline of a domain or a body; curves within another one are the holes of a domain; several
+beside each other are a shape each.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
-from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.mesh.loops import Loop, closed_loops
 from meshonet.formats.mesh.unstructured import Indices
 from meshonet.formats.source import LARGEST, printable
 from meshonet.geometry.arrays import SIDES, Floats, Side
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.domain.loop import CORNER_DEG
+from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.named_edges import Labelled, runs
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 MOST_EDGES = 400_000
 """A longer boundary is a mistake."""
+NAMELESS = "boundary"
+"""What edges without a name are called beside others that have one."""
 
 
 @dataclass(frozen=True)
@@ -63,11 +70,13 @@ def shapes_of(surface: Surface, name: str) -> Iterator[Shape]:
     if not (np.abs(surface.points[used]) < LARGEST).all():
         raise InputError("a coordinate is not finite or far too large", "check its numbers")
     loops = closed_loops(edges, surface.points)
-    if len(loops) == 2 and (pair := _nested(loops, surface.points)):
-        yield _annulus(*pair, surface, name)
-        return
-    for number, loop in enumerate(loops, start=1):
-        yield _domain(loop, surface, name if len(loops) == 1 else f"{name}-{number}")
+    groups = nested([surface.points[loop.nodes] for loop in loops])
+    for number, (outer, holes) in enumerate(groups, start=1):
+        called = name if len(groups) == 1 else f"{name}-{number}"
+        if holes:
+            yield _with_holes(loops[outer], [loops[k] for k in holes], surface, called)
+        else:
+            yield _domain(loops[outer], surface, called)
 
 
 def _free_edges(cells: list[Indices]) -> Indices:
@@ -80,27 +89,31 @@ def _free_edges(cells: list[Indices]) -> Indices:
     return edges[np.sort(first[count == 1])]
 
 
-def _nested(loops: list[Loop], points: Floats) -> tuple[Loop, Loop] | None:
-    """Return (inner, outer), both clockwise, of two curves of which one lies in the box of the other."""
-    inner, outer = sorted(loops, key=lambda loop: abs(polygon_area(points[loop.nodes])))
-    within, around = points[inner.nodes], points[outer.nodes]
-    if (within.min(axis=0) <= around.min(axis=0)).any() or (within.max(axis=0) >= around.max(axis=0)).any():
-        return None
-    turned = [loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop for loop in (inner, outer)]
-    return turned[0], turned[1]
-
-
-def _annulus(inner: Loop, outer: Loop, surface: Surface, name: str) -> Shape:
-    """Return the shape of two curves; the nodes of an O grid are kept, west and east with them."""
+def _with_holes(outer: Loop, holes: list[Loop], surface: Surface, name: str) -> Shape:
+    """Return the domain of curves; the nodes of an O grid are kept, west and east with them."""
     points = surface.points
-    cut = _cut(inner, outer, surface) if len(inner.nodes) == len(outer.nodes) else []
-    if cut:
-        outer = outer.begun_at(int(np.flatnonzero(outer.nodes == cut[-1])[0]))
-    south, north = (points[np.append(loop.nodes, loop.nodes[0])] for loop in (inner, outer))
-    if cut:
-        return Boundary(south, north, points[cut], points[cut], "o", _o_parts(inner, outer), name)
-    shape = Annulus(closed_curve(south[:-1], name), Outline(north[:-1], name).curve, name)
-    return _labelled(shape, [inner, outer], points)
+    if len(holes) == 1 and len(outer.nodes) == len(holes[0].nodes):
+        inner, around = (_clockwise(loop, points) for loop in (holes[0], outer))
+        cut = _cut(inner, around, surface)
+        if cut:
+            around = around.begun_at(int(np.flatnonzero(around.nodes == cut[-1])[0]))
+            south, north = (points[np.append(loop.nodes, loop.nodes[0])] for loop in (inner, around))
+            return Boundary(south, north, points[cut], points[cut], "o", _o_parts(inner, around), name)
+    return polygon_shape([_ring(loop, points) for loop in (outer, *holes)], name)
+
+
+def _clockwise(loop: Loop, points: Floats) -> Loop:
+    return loop.reversed() if polygon_area(points[loop.nodes]) > 0 else loop
+
+
+def _ring(loop: Loop, points: Floats) -> Ring:
+    """Return a curve with its corners: where it turns, and where its edges change their name."""
+    ring, names = points[loop.nodes], [printable(name) for name in loop.names]
+    if len(set(names)) == 1:
+        return Ring(ring, None, names[:1] if names[0] else ())
+    turns = np.flatnonzero(np.abs(turning(ring, closed=True)) > np.radians(CORNER_DEG))
+    corners = sorted({*turns.tolist(), *loop.changes})
+    return Ring(ring, corners, [names[k] or NAMELESS for k in corners])
 
 
 def _cut(inner: Loop, outer: Loop, surface: Surface) -> list[int]:
@@ -153,7 +166,12 @@ def _domain(loop: Loop, surface: Surface, name: str) -> Shape:
     points = surface.points
     corners = _corners(loop, surface)
     if corners is None:
-        return _labelled(closed_curve(points[loop.nodes], name), [loop], points)
+        curve = closed_curve(points[loop.nodes], name)
+        meshed = bool(surface.cells) and not isinstance(curve, Airfoil)
+        if not meshed and isinstance(domain_or_body(curve), Outline | Airfoil):
+            return _labelled(curve, [loop], points)
+        shape = polygon_shape([_ring(loop, points)], name)
+        return replace(shape, one=partial(_labelled, curve, [loop], points))
     count, first = len(loop.nodes), 0
     if polygon_area(points[loop.nodes]) < 0:
         loop, first = loop.reversed(), count - 1

@@ -1,4 +1,8 @@
-"""A structured grid as an unstructured one: seams merged, cells and named edges by node number."""
+"""A structured grid as an unstructured one: seams merged, cells and named edges by node number.
+
+The nodes of all blocks make one table, in which those that connections say are the same stand once. Nothing
+else is merged: two walls that touch stay two.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,9 +11,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.formats.mesh.periodic import PeriodicPair, periodic_pairs
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.shared_nodes import shared_nodes
 
 Indices: TypeAlias = NDArray[np.int64]
 CELLS = {2: "line", 4: "quad", 8: "hexahedron"}
@@ -24,27 +30,37 @@ class Unstructured:
     ----------
     points : (n, 2), unit of the grid.
     quads : (m, 4) node numbers, counter-clockwise for a right-handed grid, i fastest.
-    edges : (k, 2) node numbers of each named part, the domain on the left.
+    edges : (k, 2) node numbers of each named part, the domain on the left; periodic ones last.
+    periodic : pairs of names among `edges` whose rows face each other.
     """
 
     points: Floats
     quads: Indices
     edges: dict[str, Indices]
+    periodic: tuple[PeriodicPair, ...] = ()
 
 
 def unstructured(grid: Grid) -> Unstructured:
-    """Return `grid` with the nodes along its O cut or C wake merged.
+    """Return planar `grid` with the nodes of connected sides merged.
 
-    Edges inside the domain (the cut, the wake) belong to no part; an outer edge that nobody named is
-    called by its side.
+    Edges inside the domain (interfaces, the cut, the wake) belong to no part; an outer edge that nobody named
+    is called by its side.
     """
-    number = node_numbers(grid)
-    used, first = np.unique(number.ravel(order="F"), return_index=True)
-    number = np.searchsorted(used, number)
-    points = np.stack([grid.x.ravel(order="F")[first], grid.y.ravel(order="F")[first]], axis=-1)
-    corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
-    quads = np.stack([corner.ravel(order="F") for corner in corners], axis=-1)
-    return Unstructured(points, quads, _edges(grid, number))
+    numbers = node_numbers(grid)
+    flat = np.concatenate([number.ravel(order="F") for number in numbers])
+    _, first = np.unique(flat, return_index=True)
+    nodes = [np.stack([b.nodes[..., k].ravel(order="F") for k in (0, 1)], axis=-1) for b in grid.blocks]
+    quads = [
+        np.stack(
+            [part.ravel(order="F") for part in (n[:-1, :-1], n[1:, :-1], n[1:, 1:], n[:-1, 1:])], axis=-1
+        )
+        for n in numbers
+    ]
+    edges = _edges(grid, numbers)
+    pairs = tuple(periodic_pairs(grid, numbers, edges))
+    for pair in pairs:
+        edges |= {pair.name: pair.edges, pair.partner: pair.partner_edges}
+    return Unstructured(np.concatenate(nodes)[first], np.concatenate(quads), edges, pairs)
 
 
 def extruded(mesh: Unstructured, heights: Sequence[float]) -> tuple[Floats, dict[str, Indices], Indices]:
@@ -63,6 +79,11 @@ def extruded(mesh: Unstructured, heights: Sequence[float]) -> tuple[Floats, dict
     return layer_points(mesh, heights), faces, _repeated(columns, layers, count)
 
 
+def periodic_nodes(pair: PeriodicPair, mesh: Unstructured, planes: int) -> Indices:
+    """Return (n, 2) the nodes of a periodic side and their partners, on all planes of an extruded `mesh`."""
+    return _repeated(pair.nodes, max(planes, 1), len(mesh.points))
+
+
 def in_space(points: Floats) -> Floats:
     """Return points (n, 2) in the plane z = 0, those of (n, 3) as they are."""
     return points if points.shape[1] == 3 else np.column_stack([points, np.zeros(len(points))])
@@ -79,25 +100,28 @@ def _repeated(rows: Indices, layers: int, count: int) -> Indices:
     return np.concatenate([rows + layer * count for layer in range(layers)])
 
 
-def node_numbers(grid: Grid) -> Indices:
-    """Return a number (ni, nj) for every node, i fastest, the same for nodes that are one."""
-    ni, nj = grid.ni, grid.nj
-    number = np.arange(ni * nj, dtype=np.int64).reshape((ni, nj), order="F")
-    for connection in grid.connections:
-        own, donor = connection.nodes(lambda _block, side: face_of(number[..., None], side))
-        donor[...] = own
-    return number
+def node_numbers(grid: Grid) -> list[Indices]:
+    """Return the number (ni, nj) of every node of every block, the same for nodes that are one.
+
+    Numbers ascend from 0 without gaps in the order of blocks, i fastest.
+    """
+    labels = shared_nodes([block.counts for block in grid.blocks], grid.connections)
+    flat = np.concatenate([label.ravel(order="F") for label in labels])
+    _, first, which = np.unique(flat, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), dtype=np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    ends = np.cumsum([label.size for label in labels])[:-1]
+    parts = np.split(rank[which.ravel()], ends)
+    return [part.reshape(label.shape, order="F") for part, label in zip(parts, labels, strict=True)]
 
 
-def _edges(grid: Grid, number: Indices) -> dict[str, Indices]:
-    """Return the outer edges by part, without those of the cut."""
-    sides: dict[Side, Indices] = {
-        "south": np.stack([number[:-1, 0], number[1:, 0]], axis=-1),
-        "east": np.stack([number[-1, :-1], number[-1, 1:]], axis=-1),
-        "north": np.stack([number[1:, -1], number[:-1, -1]], axis=-1),
-        "west": np.stack([number[0, 1:], number[0, :-1]], axis=-1),
-    }
+def _edges(grid: Grid, numbers: Sequence[Indices]) -> dict[str, Indices]:
+    """Return the outer edges by part, without those of connections."""
     edges: dict[str, list[Indices]] = {}
     for patch in grid.outer_patches():
-        edges.setdefault(patch.name, []).append(sides[patch.side][patch.start : patch.stop])
+        number = numbers[patch.block]
+        line = face_of(number, patch.side)[patch.start : patch.stop + 1]
+        rows = np.stack([line[:-1], line[1:]], axis=-1)
+        backwards = patch.side in ("north", "west")  # the domain is on the left of a side's other direction
+        edges.setdefault(patch.name, []).append(rows[:, ::-1] if backwards else rows)
     return {name: np.concatenate(pieces) for name, pieces in edges.items()}

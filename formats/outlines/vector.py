@@ -1,25 +1,26 @@
-"""Outlines from vector geometry: WKT (one geometry a file or a line) and GeoJSON.
+"""Domains and outlines from vector geometry: WKT (one geometry a file or a line) and GeoJSON.
 
-Polygons and closed lines are outlines, a polygon with one hole is a body in its far field; collections hold
-several. A third coordinate is dropped.
+A polygon is a domain, with its holes; a closed line is a body, or an outline with corners; collections hold
+several. A third coordinate is dropped. Properties of a GeoJSON feature besides ``name``: ``names``, for each
+ring one name or a list of one for each stretch between corners, and ``corners``, for each ring a list of
+numbers of its points, counted from 0.
 https://www.ogc.org/standards/sfa , https://www.rfc-editor.org/rfc/rfc7946
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.source import LARGEST, Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.polygon.area import polygon_area
-from meshonet.geometry.shapes.annulus import Annulus
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
 if TYPE_CHECKING:
@@ -28,18 +29,30 @@ if TYPE_CHECKING:
 _ASK = "give a POLYGON or a closed LINESTRING"
 
 
+@dataclass(frozen=True)
+class _Drawn:
+    """A geometry, what it is called, where it stands, and the properties of its rings."""
+
+    name: str
+    place: str
+    geometry: BaseGeometry
+    properties: Mapping[str, Any]
+
+
 def read_wkt(source: Source) -> Iterator[Shape]:
-    """Yield the outlines of a WKT file.
+    """Yield the shapes of a WKT file.
 
     Raises InputError: text that is no WKT, a geometry that is no outline; with its line.
     """
-    yield from _named([(source.stem, place, geometry) for place, geometry in _geometries(_text(source))])
+    geometries = _geometries(_text(source))
+    yield from _named([_Drawn(source.stem, place, geometry, {}) for place, geometry in geometries])
 
 
 def read_geojson(source: Source) -> Iterator[Shape]:
-    """Yield the outlines of a GeoJSON file, called by the property ``name`` of their features.
+    """Yield the shapes of a GeoJSON file, called by the property ``name`` of their features.
 
-    Raises InputError: text that is no GeoJSON, a geometry that is no outline; with the number of its feature.
+    Raises InputError: text that is no GeoJSON, a geometry that is no outline, properties that do not fit its
+    rings; with the number of its feature.
     """
     from shapely.errors import ShapelyError
     from shapely.geometry import shape
@@ -48,17 +61,18 @@ def read_geojson(source: Source) -> Iterator[Shape]:
         features = _features(json.loads(_text(source)))
     except (ValueError, RecursionError) as error:
         raise InputError(f"is not JSON ({_short(error)})", "give a GeoJSON file") from None
-    shapes: list[tuple[str, str, BaseGeometry]] = []
-    for number, (name, geometry) in enumerate(features, start=1):
+    drawn: list[_Drawn] = []
+    for number, (properties, geometry) in enumerate(features, start=1):
         place = f"feature {number}" if len(features) > 1 else ""
+        name = printable(str(properties.get("name") or "")) or source.stem
         if not isinstance(geometry, dict) or not isinstance(geometry.get("type"), str):
             raise InputError("is not a GeoJSON geometry (it names no type)", _ASK, place=place)
         try:
             with np.errstate(all="ignore"):  # of NaN and infinity, which are refused later
-                shapes.append((name or source.stem, place, shape(geometry)))
+                drawn.append(_Drawn(name, place, shape(geometry), properties))
         except (ShapelyError, ValueError, TypeError, LookupError, AttributeError, RecursionError) as error:
             raise InputError(f"is not a GeoJSON geometry ({_short(error)})", _ASK, place=place) from None
-    yield from _named(shapes)
+    yield from _named(drawn)
 
 
 def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
@@ -82,28 +96,63 @@ def _geometries(text: str) -> list[tuple[str, BaseGeometry]]:
     return geometries
 
 
-def _named(geometries: list[tuple[str, str, BaseGeometry]]) -> Iterator[Shape]:
-    """Yield the outlines of (name, place, geometry), numbered where several share a name."""
-    shapes = [
-        (name, place, rings) for name, place, geometry in geometries for rings in _rings(geometry, place)
-    ]
-    if not shapes:
+def _named(drawn: list[_Drawn]) -> Iterator[Shape]:
+    """Yield the shapes of what is drawn, numbered where several share a name."""
+    parts = [(each, rings) for each in drawn for rings in _rings(each.geometry, each.place)]
+    if not parts:
         raise InputError("holds no geometry", _ASK)
-    names = [name for name, _, _ in shapes]
-    for number, (name, place, rings) in enumerate(shapes, start=1):
+    names = [each.name for each, _ in parts]
+    for number, (each, rings) in enumerate(parts, start=1):
         try:
-            yield _shape(*map(_points, rings), name=name if names.count(name) == 1 else f"{name}-{number}")
+            yield _shape(each, rings, each.name if names.count(each.name) == 1 else f"{each.name}-{number}")
         except InputError as error:
-            error.place = error.place or place
+            error.place = ", ".join(dict.fromkeys(place for place in (each.place, error.place) if place))
             raise
 
 
-def _shape(outer: Floats, hole: Floats | None = None, *, name: str) -> Shape:
-    """Return the outline of a ring (n, 2), or the body that is the hole (m, 2) in it."""
-    if hole is None:
-        return Outline(outer, name)
-    clockwise = outer[::-1] if polygon_area(outer) > 0 else outer
-    return Annulus(closed_curve(hole, name), Outline(clockwise, name).curve, name)
+def _shape(drawn: _Drawn, rings: list[Any], name: str) -> Shape:
+    """Return the domain of a polygon, or the body or outline that a closed line is."""
+    points = [_points(ring) for ring in rings]
+    if rings[0].geom_type == "LineString":
+        return domain_or_body(Outline(points[0], name))
+    corners = _of_rings(drawn.properties, "corners", len(rings))
+    names = _of_rings(drawn.properties, "names", len(rings))
+    return polygon_shape(
+        [
+            Ring(ring, _corners(own, k), _names(label, k))
+            for k, (ring, own, label) in enumerate(zip(points, corners, names, strict=True), start=1)
+        ],
+        name,
+    )
+
+
+def _of_rings(properties: Mapping[str, Any], key: str, count: int) -> list[Any]:
+    """Return what a property says of each ring, None where there is none."""
+    values = properties.get(key)
+    if values is None:
+        return [None] * count
+    if not isinstance(values, list) or len(values) != count:
+        told = f"{len(values)} entries" if isinstance(values, list) else "no list"
+        problem = f"property {key!r} has {told} and the polygon {count} ring{'' if count == 1 else 's'}"
+        raise InputError(problem, "give one entry for each ring, or leave it out")
+    return values
+
+
+def _corners(values: Any, ring: int) -> list[int] | None:
+    if values is None:
+        return None
+    if not isinstance(values, list) or not all(type(value) is int for value in values):
+        problem = "property 'corners' holds no list of point numbers"
+        raise InputError(problem, "give e.g. [[0, 4, 8, 12]], counted from 0", place=f"ring {ring}")
+    return values
+
+
+def _names(values: Any, ring: int) -> list[str]:
+    names = [values] if isinstance(values, str) else [] if values is None else values
+    if not isinstance(names, list) or not all(isinstance(name, str) and name.strip() for name in names):
+        remedy = "give a name, or a list of them, one for each stretch between corners"
+        raise InputError("property 'names' holds no names", remedy, place=f"ring {ring}")
+    return [printable(name.strip()) for name in names]
 
 
 def _points(ring: Any) -> Floats:
@@ -115,7 +164,9 @@ def _points(ring: Any) -> Floats:
 
 
 def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
-    """Yield the closed line, and that of the hole in it, of a geometry and of its members."""
+    """Yield the rings of each polygon, the outer one first, and each closed line of a geometry."""
+    from shapely.geometry import LineString
+
     if hasattr(geometry, "geoms"):
         for member in geometry.geoms:
             yield from _rings(member, place)
@@ -124,17 +175,14 @@ def _rings(geometry: BaseGeometry, place: str) -> Iterator[list[Any]]:
     if geometry.is_empty or kind not in ("Polygon", "LineString", "LinearRing"):
         raise InputError(f"has an empty {kind} or a {kind}, which is no outline", _ASK, place=place)
     holes = list(geometry.interiors) if kind == "Polygon" else []
-    if len(holes) > 1:
-        remedy = "give one hole, which is a body in its far field, or each ring by itself"
-        raise InputError(f"polygon has {len(holes)} holes", remedy, place=place)
-    ring = geometry.exterior if kind == "Polygon" else geometry
+    ring = geometry.exterior if kind == "Polygon" else LineString(geometry.coords)
     if ring.coords[0] != ring.coords[-1]:
         raise InputError("line is not closed", "repeat its first point at its end", place=place)
     yield [ring, *holes]
 
 
-def _features(data: Any) -> list[tuple[str, Any]]:
-    """Return (name, geometry) of every feature of a GeoJSON object."""
+def _features(data: Any) -> list[tuple[Mapping[str, Any], Any]]:
+    """Return (properties, geometry) of every feature of a GeoJSON object."""
     if not isinstance(data, dict):
         raise ValueError("not an object")
     members = data.get("features")
@@ -142,9 +190,8 @@ def _features(data: Any) -> list[tuple[str, Any]]:
         return [feature for member in members for feature in _features(member)]
     if data.get("type") == "Feature":
         properties = data.get("properties")
-        name = properties.get("name") if isinstance(properties, dict) else None
-        return [(printable(str(name)) if name else "", data.get("geometry"))]
-    return [("", data)]
+        return [(properties if isinstance(properties, dict) else {}, data.get("geometry"))]
+    return [({}, data)]
 
 
 def _text(source: Source) -> str:

@@ -13,7 +13,7 @@ from math import prod
 
 import numpy as np
 
-from meshonet.formats.mesh.slices import planar
+from meshonet.formats.mesh.slices import plane_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
@@ -104,11 +104,15 @@ class Candidate:
             raise InputError(problem, "write 0, 1, 2 or numbers of blocks")
         return {f"{value:.0f}": int(count) for value, count in zip(values, counts, strict=True)}
 
-    def plane(self, block: int) -> Floats:
-        """Return nodes (ni, nj, 2) of a block; InputError where it is not plane."""
-        dims = (*self.layout.dims[block], 1)[:3]
+    def size(self, block: int) -> tuple[int, int, int]:
+        """Return the nodes of a block along all three indices."""
+        ni, nj, nk = (*self.layout.dims[block], 1)[:3]
+        return ni, nj, nk
+
+    def plane(self, block: int) -> tuple[Floats, int]:
+        """Return nodes (ni, nj, 2) of a block and the index left out; InputError where it is not plane."""
         arrays = self.arrays(block)[: self.layout.axes]
-        return planar([np.asarray(values).reshape(dims, order="F") for values in arrays])
+        return plane_of([np.asarray(values).reshape(self.size(block), order="F") for values in arrays])
 
     def regularity(self) -> float:
         """Return the share of cells whose area has the prevailing sign; negative when it makes no sense.
@@ -123,7 +127,7 @@ class Candidate:
             if self.layout.iblank and not _is_iblank(self.arrays(block)[-1]):
                 return -2.0
             try:
-                nodes = self.plane(block)
+                nodes, _ = self.plane(block)
             except InputError:
                 return -1.0
             area = _areas(nodes)

@@ -8,9 +8,11 @@ from typing import NoReturn
 import numpy as np
 
 from meshonet.formats.format import Options
-from meshonet.formats.mesh.recover_topology import recovered
+from meshonet.formats.mesh.gather import Piece, grids_of
+from meshonet.formats.mesh.recover_topology import usable
 from meshonet.formats.plot3d import binary, text
 from meshonet.formats.plot3d.layouts import Candidate, best
+from meshonet.formats.plot3d.nmf_read import read_map
 from meshonet.formats.source import HEAD_BYTES, Source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -21,25 +23,32 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 
 
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
-    """Yield the grid of every block, right-handed, its topology recovered from its nodes.
+    """Yield the grids of the blocks, right-handed: those that touch are one, others one each.
 
-    Where there is an iblank array, the provenance says how many nodes have which value. `options` say what
-    is known of the layout. Raises InputError where none fits the file's length, or a block is not plane.
+    Where blocks join, and what their sides are, stands in a neutral map file beside the file, or else is
+    found by position; of a block alone the topology is recovered from its nodes. Where there is an iblank
+    array, the provenance says how many nodes have which value. `options` say what is known of the layout.
+    Raises InputError where none fits the file's length, or a block is not plane.
     """
     data = source.read_bytes()
     every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)
     wanted = options - _WRITTEN_ONLY
     reading = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
-    blocks = len(reading.layout.dims)
-    for block in range(blocks):
-        name = source.stem if blocks == 1 else f"{source.stem}-{block + 1}"
+    pieces, dropped = [], []
+    for block in range(len(reading.layout.dims)):
         try:
-            grid = recovered(reading.plane(block), name)
-            flags = reading.iblank(block)
-            yield replace(grid, provenance={"iblank": flags}) if flags else grid
+            nodes, axis = reading.plane(block)
+            pieces.append(Piece(usable(nodes), iblank=reading.iblank(block)))
+            dropped.append(axis)
         except InputError as error:
             error.place = error.place or f"block {block + 1}, read as {reading.numbers}"
             raise
+    beside = source.path.with_suffix(".nmf") if source.path else None
+    if beside is None or not beside.is_file():
+        return grids_of(pieces, [], source.stem)
+    known = read_map(beside, [reading.size(k) for k in range(len(pieces))], dropped)
+    named = [replace(piece, patches=tuple(own)) for piece, own in zip(pieces, known.patches, strict=True)]
+    return grids_of(named, known.joints, source.stem)
 
 
 def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:

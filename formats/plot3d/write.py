@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.format import Heights, Options
+from meshonet.formats.output import PART_SUFFIX, final_name, whole_file
+from meshonet.formats.plot3d.nmf import write_map
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
@@ -19,12 +21,12 @@ _LINE = 4
 
 
 class Block:
-    """One grid as Plot3D stores it: dims, and x, y[, z] the first index fastest; no heights, no z."""
+    """A plane block as Plot3D stores it: dims, and x, y[, z] the first index fastest; no heights, no z."""
 
-    def __init__(self, grid: Grid, heights: Heights, options: Options) -> None:
-        self.grid, self.heights, self.iblank = grid, heights, "iblank" in options
-        self._span = 0 if "span-i" in options else 1 if "span-j" in options else 2
-        dims = [grid.ni, grid.nj]
+    def __init__(self, lattice: Floats, heights: Heights, options: Options) -> None:
+        self.lattice, self.heights, self.iblank = lattice, heights, "iblank" in options
+        self._span = _span(options)
+        dims = list(lattice.shape[:2])
         if heights:
             dims.insert(self._span, len(heights))
         self.dims = tuple(dims)
@@ -32,7 +34,7 @@ class Block:
     def arrays(self) -> Iterator[Floats]:
         """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
         for axis in (0, 1):
-            plane = self.grid.nodes[..., axis]
+            plane = self.lattice[..., axis]
             if len(self.heights) > 1:
                 plane = np.broadcast_to(np.expand_dims(plane, self._span), self.dims)
             yield plane.ravel(order="F")
@@ -50,7 +52,10 @@ class Block:
 def write_grids(
     path: Path, grids: Iterable[Grid], heights: Heights = (), *, options: Options = frozenset()
 ) -> None:
-    """Write a block for each of `grids`: a plane of its nodes at each of `heights`, or one without z.
+    """Write the blocks of `grids`: a plane of their nodes at each of `heights`, or one without z.
+
+    Where a grid has several blocks, a neutral map file beside the file says where they join, and what is
+    what.
 
     Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
     can hold.
@@ -59,15 +64,32 @@ def write_grids(
         heights = (0.0,)  # VTK takes a counted flat C binary file of float64 for a solid one of float32
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")
-    blocks = [Block(grid, heights, options) for grid in grids]
+    grids = list(grids)
+    blocks = [Block(each.nodes, heights, options) for grid in grids for each in grid.blocks]
     if not blocks:
         raise InputError("there is no grid to write", "check the input")
     if "single" in options and len(blocks) > 1:
-        problem = f"{len(blocks)} grids do not fit in a file without a count"
+        what = "grids" if len(grids) > 1 else "blocks"
+        problem = f"{len(blocks)} {what} do not fit in a file without a count"
         raise InputError(problem, "leave out the word single")
     put = _put_bytes if options & {"binary", "fortran"} else _put_text
     with path.open("wb") as stream:
         put(stream, blocks, options)
+    beside = map_of(path)
+    if beside is not None and any(grid.topology == "blocks" for grid in grids):
+        with whole_file(str(beside)) as part:
+            write_map(part, grids, len(heights) or 1, _span(options) if heights else 2)
+
+
+def _span(options: Options) -> int:
+    """Return the index that counts the planes in z."""
+    return 0 if "span-i" in options else 1 if "span-j" in options else 2
+
+
+def map_of(path: Path) -> Path | None:
+    """Return where the neutral map of the file at `path` is, or goes; none of a stream."""
+    name = final_name(path)
+    return None if name.endswith(PART_SUFFIX) else path.with_name(name).with_suffix(".nmf")
 
 
 def _put_text(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> None:

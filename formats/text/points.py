@@ -1,45 +1,50 @@
-"""Lists of points: one closed curve, or the four edges of a domain in four blocks divided by blank lines.
+"""Lists of points: closed curves, or the four edges of a domain in four blocks divided by blank lines.
 
 Columns are divided by commas, semicolons, blanks or tabs; a header line and lines that start with ``#`` are
 allowed; a third column is z and is left out. An open curve is closed by a straight line.
 
 Four blocks are edges in any order and direction as long as they meet; the first is south. Where opposite
 edges have equal counts, the points are the nodes of the boundary as they stand; otherwise curves to sample.
-A single curve that ends in one trailing edge is taken for an airfoil.
+A single curve that ends in one trailing edge is taken for an airfoil. Several closed curves are divided by
+blank lines, or each repeats its first point; those in another one are holes in the domain that it bounds.
 """
 
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
-from meshonet.formats.mesh.closed_curve import closed_curve
 from meshonet.formats.source import Source
 from meshonet.formats.text.rows import Line, decode, left_out, read_lines, table
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.domain.nesting import nested
 from meshonet.geometry.errors import InputError, in_source
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.polygon.self_intersection import check_outline
 from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.closed_curve import closed_curve
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.polygon_shape import Ring, domain_or_body, polygon_shape
 from meshonet.geometry.shapes.shape import Shape
 
+AnyOutline = TypeVar("AnyOutline", bound=Boundary | Outline | Airfoil)
 MOST_POINTS = 100_000
 _JOIN = 1e-6
 """How far apart, in extents, the ends of two edges may lie and still meet."""
 
 
 def read_shapes(source: Source) -> Iterator[Shape]:
-    """Yield the shape of a file; InputError, with its line, where there is none."""
-    yield parse(decode(source.read_bytes()), source.name, source.stem)
+    """Yield the shapes of a file; InputError, with its line, where there is none."""
+    yield from parse(decode(source.read_bytes()), source.name, source.stem)
 
 
-def parse(text: str, source: str, stem: str = "") -> Shape:
-    r"""Return the shape that the text of a list of points describes, called `stem` or else as `source`.
+def parse(text: str, source: str, stem: str = "") -> list[Shape]:
+    r"""Return the shapes that the text of a list of points describes, called `stem` or else as `source`.
 
-    >>> square = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
+    >>> (square,) = parse("x,y\n0,0\n1,0\n1,1\n0,1\n", "square.csv")
     >>> square.name, square.topology
     ('square', 'quad')
     """
@@ -52,13 +57,15 @@ def parse(text: str, source: str, stem: str = "") -> Shape:
             raise InputError(f"{count} points", f"give at most {MOST_POINTS}")
         if len(blocks) > 4 and max(map(len, blocks)) == 1:
             blocks = [[line for block in blocks for line in block]]  # a blank line behind each
-        if len(blocks) == 4 and min(map(len, blocks)) >= 2:
-            return _with_notes(_four_edges(blocks, name), left_out(lines))
-        if len(blocks) != 1:
-            remedy = "give one closed curve, or four edges divided by blank lines"
-            place = f"line {blocks[1][0].number}" if len(blocks) > 1 else ""
-            raise InputError(f"{len(blocks)} blocks of points", remedy, place=place)
-        return _with_notes(_closed_curve(blocks[0], name), left_out(lines))
+        notes = left_out(lines)
+        rings = [ring for block in blocks for ring in _rings(block)]
+        if len(blocks) == 4 == len(rings) and min(map(len, blocks)) >= 2 and not all(map(_closed, rings)):
+            return [_with_notes(_four_edges(blocks, name), notes)]
+        if not rings:
+            raise InputError("0 blocks of points", "give closed curves, or four edges divided by blank lines")
+        if len(rings) == 1:
+            return [domain_or_body(_with_notes(_closed_curve(rings[0], name), notes))]
+        return _domains(rings, name, notes)
 
 
 def sniff(head: bytes) -> bool:
@@ -72,11 +79,49 @@ def sniff(head: bytes) -> bool:
     return few >= 3 and few >= 0.8 * len(rows)
 
 
-def _with_notes(shape: Boundary | Outline | Airfoil, notes: tuple[str, ...]) -> Shape:
+def _with_notes(shape: AnyOutline, notes: tuple[str, ...]) -> AnyOutline:
     if isinstance(shape, Boundary):
         return replace(shape, notes=(*notes, *shape.notes))
     shape.notes = (*notes, *shape.notes)
     return shape
+
+
+def _closed(rows: list[Line]) -> bool:
+    return len(rows) > 3 and rows[0].values[:2] == rows[-1].values[:2]
+
+
+def _rings(rows: list[Line]) -> list[list[Line]]:
+    """Return the closed curves that follow each other in a block, each ending with its first point, or it."""
+    rings, start = [], 0
+    while start < len(rows):
+        first = rows[start].values[:2]
+        end = next((k for k in range(start + 3, len(rows)) if rows[k].values[:2] == first), None)
+        if end is None:
+            return [rows]
+        rings.append(rows[start : end + 1])
+        start = end + 1
+    return rings
+
+
+def _domains(rings: list[list[Line]], name: str, notes: tuple[str, ...]) -> list[Shape]:
+    """Return the domain of each ring that lies in no other; the rings in it are its holes."""
+    few = next((ring for ring in rings if len(ring) < 3), None)
+    if few is not None:
+        problem, place = f"{len(rings)} blocks of points, one of {len(few)}", f"line {few[0].number}"
+        raise InputError(problem, "give closed curves, or four edges divided by blank lines", place=place)
+    drawn = [
+        Ring(np.array([line.values[:2] for line in ring]), places=[f"line {line.number}" for line in ring])
+        for ring in rings
+    ]
+    groups = nested([ring.points for ring in drawn])
+    shapes: list[Shape] = []
+    for number, (outer, holes) in enumerate(groups, start=1):
+        called = name if len(groups) == 1 else f"{name}-{number}"
+        if holes:
+            shapes.append(polygon_shape([drawn[outer], *(drawn[k] for k in holes)], called, notes))
+        else:
+            shapes.append(domain_or_body(_with_notes(_closed_curve(rings[outer], called), notes)))
+    return shapes
 
 
 def _closed_curve(rows: list[Line], name: str) -> Outline | Airfoil:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.source import printable
-from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.errors import InputError
 
 _KINDS = {
@@ -147,15 +147,16 @@ def _inflater(compressor: str) -> Callable[[memoryview, int], bytes]:
     raise InputError(f"compressor {compressor[:60]!r} cannot be read", remedy)
 
 
-def plane_points(grid: Grid, height: float, dtype: str) -> Iterator[NDArray[Any]]:
-    """Yield the points (n, 3) of a plane z = `height`, i fastest, some rows at a time in the same memory."""
-    rows = max(1, _BLOCK_NODES // grid.ni)
-    block = np.empty((rows, grid.ni, 3), dtype)
+def plane_points(nodes: Floats, height: float, dtype: str) -> Iterator[NDArray[Any]]:
+    """Yield nodes (ni, nj, 2) as points (n, 3) at z = `height`, i fastest, some rows at a time."""
+    ni, nj = nodes.shape[:2]
+    rows = max(1, _BLOCK_NODES // ni)
+    block = np.empty((rows, ni, 3), dtype)
     block[..., 2] = height
-    for start in range(0, grid.nj, rows):
-        part = block[: grid.nj - start]
-        part[..., 0] = grid.x[:, start : start + rows].T
-        part[..., 1] = grid.y[:, start : start + rows].T
+    for start in range(0, nj, rows):
+        part = block[: nj - start]
+        part[..., 0] = nodes[:, start : start + rows, 0].T
+        part[..., 1] = nodes[:, start : start + rows, 1].T
         yield part.reshape(-1, 3)
 
 

@@ -45,7 +45,7 @@ def write_grids(
         stream.write(f"DIMENSIONS {grid.ni} {grid.nj} {len(heights)}\n".encode())
         stream.write(f"POINTS {grid.ni * grid.nj * len(heights)} double\n".encode())
         for height in heights:
-            for points in plane_points(grid, height, ">f8"):
+            for points in plane_points(grid.nodes, height, ">f8"):
                 if text:
                     write_rows(stream, "%e %e %e", points)
                 else:

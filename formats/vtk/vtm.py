@@ -1,19 +1,26 @@
-"""VTK multi-block files, ``.vtm``: an index beside a folder ``NAME_blocks`` with a ``.vts`` for every grid.
+"""VTK multi-block files, ``.vtm``: an index beside a folder ``NAME_blocks`` with a ``.vts`` for every block.
 
-https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
+A grid of several blocks is a ``Block`` in the index, and its blocks say which grid they belong to; a grid of
+one block stands there by itself and says that it is whole. Blocks that say neither are another's: those that
+touch make one grid. https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html
 """
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from itertools import count, groupby
 from pathlib import Path, PurePosixPath
+from typing import NamedTuple
 
 from meshonet.formats.format import Heights
+from meshonet.formats.mesh.gather import Piece, grids_of
+from meshonet.formats.mesh.metadata import Facts, grid_of_blocks, grid_with, number_of_grid
+from meshonet.formats.mesh.recover_topology import usable
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import escaped
 from meshonet.formats.vtk.vts import write
-from meshonet.formats.vtk.vts_read import read_grids as read_block
+from meshonet.formats.vtk.vts_read import read_block
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -30,14 +37,23 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) ->
     if folder.is_dir() and not all(_OURS.fullmatch(entry.name) for entry in folder.iterdir()):
         shown = printable(str(folder.name))
         raise InputError(f"folder {shown} holds other files, which would be lost", "choose another name")
-    lines = []
+    lines: list[str] = []
+    files = count()
     with whole_folder(folder) as part:
-        for k, grid in enumerate(grids):
-            write(part / f"block-{k}.vts", grid, heights=heights)
-            title = escaped(grid.name or f"block-{k}")
-            lines.append(
-                f'    <DataSet index="{k}" name="{title}" file="{escaped(folder.name)}/block-{k}.vts"/>'
-            )
+        for number, grid in enumerate(grids):
+            several = grid.topology == "blocks"
+            title = escaped(grid.name or f"block-{number}")
+            if several:
+                lines.append(f'    <Block index="{number}" name="{title}">')
+            for block in range(len(grid.blocks)):
+                name = f"block-{next(files)}.vts"
+                write(part / name, grid, heights=heights, block=block, number=number)
+                place = f'index="{block if several else number}"'
+                told = f"block-{block}" if several else title
+                file = f"{escaped(folder.name)}/{name}"
+                lines.append(f'    <DataSet {place} name="{told}" file="{file}"/>')
+            if several:
+                lines.append("    </Block>")
         if not lines:
             raise InputError("there is no grid to write", "check the input")
     tag = '<VTKFile type="vtkMultiBlockDataSet" version="1.0" byte_order="LittleEndian">'
@@ -47,7 +63,7 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) ->
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of every ``.vts`` that the index names, in its folder or below.
+    """Yield the grids that the ``.vts`` make which the index names, in its folder or below.
 
     Raises InputError: no such index; a file that is not below its folder, is missing or no ``.vts``.
     """
@@ -66,12 +82,49 @@ def read_grids(source: Source) -> Iterator[Grid]:
     names = [block.get("file", "") for block in root.iter("DataSet")]
     if not any(names):
         raise InputError("names no files", "write the file again")
-    for block in root.iter("DataSet"):
-        if block.get("file"):
-            yield from _block(source.path.parent, block.get("file", ""), block.get("name", ""))
+    blocks = (
+        _Block(*_read(source.path.parent, name), block.get("name", ""), Path(name).stem)
+        for block in root.iter("DataSet")
+        if (name := block.get("file", ""))
+    )
+    yield from _grids(blocks, source.stem)
 
 
-def _block(folder: Path, name: str, title: str) -> Iterator[Grid]:
+class _Block(NamedTuple):
+    """Nodes (ni, nj, 2), what their file says of them, the name in the index, that of the file."""
+
+    nodes: Floats
+    facts: Facts
+    title: str
+    stem: str
+
+    @property
+    def name(self) -> str:
+        """What to call it when its file does not say."""
+        return printable(self.title or self.stem)
+
+
+def _grids(blocks: Iterator[_Block], stem: str) -> Iterator[Grid]:
+    """Yield the grids that this package wrote, then those that the blocks of others make."""
+    foreign: list[_Block] = []
+
+    def kind(block: _Block) -> object:
+        number = number_of_grid(block.facts)
+        return bool(block.facts.get("topology")) if number is None else f"grid {number}"
+
+    for which, group in groupby(blocks, key=kind):
+        if isinstance(which, str):
+            yield grid_of_blocks([(block.nodes, block.facts) for block in group], stem)
+        elif which:
+            for block in group:
+                yield grid_with(block.nodes, block.facts, block.name)
+        else:
+            foreign += group
+    pieces = [Piece(block.nodes, block.name) for block in foreign]
+    yield from grids_of(pieces, [], pieces[0].name if len(pieces) == 1 else stem)
+
+
+def _read(folder: Path, name: str) -> tuple[Floats, Facts]:
     shown = printable(name)[:60]
     parts = PurePosixPath(name)
     if parts.is_absolute() or ".." in parts.parts or "\0" in name:
@@ -82,8 +135,8 @@ def _block(folder: Path, name: str, title: str) -> Iterator[Grid]:
     if not path.is_file():
         raise InputError(f"names {shown!r}, which is not there", "keep the blocks beside it")
     try:
-        for grid in read_block(Source(printable(str(path)), path=path)):
-            yield replace(grid, name=printable(title)) if title and grid.name == path.stem else grid
+        nodes, facts = read_block(Source(printable(str(path)), path=path))
+        return usable(nodes), facts
     except InputError as error:
         error.place = error.place or shown
         raise

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.formats.mesh.metadata import grid_with
+from meshonet.formats.mesh.metadata import Facts, grid_with
 from meshonet.formats.mesh.slices import planar
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import CUT, Encoded, Encoding, decode
@@ -28,6 +28,12 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
     Raises InputError: not such a file, damaged, compressed with LZ4, three-dimensional.
     """
+    nodes, facts = read_block(source)
+    yield grid_with(nodes, facts, source.stem)
+
+
+def read_block(source: Source) -> tuple[Floats, Facts]:
+    """Return the nodes (ni, nj, 2) of a ``.vts`` file and what it says of them; raises as `read_grids`."""
     raw = source.read_bytes()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
@@ -41,7 +47,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
     else:
         points = _assembled(pieces, whole, encoding)
     facts = {array.get("Name", ""): _texts(array, encoding) for array in dataset.iterfind("FieldData/Array")}
-    yield grid_with(planar([points[..., k].T for k in range(3)]), facts, source.stem)
+    return planar([points[..., k].T for k in range(3)]), facts
 
 
 def _parsed(raw: bytes) -> tuple[Element, int, int]:

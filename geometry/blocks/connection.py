@@ -12,15 +12,17 @@
 As in the 1-to-1 interfaces of CGNS (Standard Interface Data Structures, 8.2).
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Range
+from meshonet.geometry.blocks.block import PLACES, Range, face_counts
 from meshonet.geometry.errors import InputError
 
 Face: TypeAlias = Callable[[int, Side], NDArray[Any]]
@@ -38,9 +40,42 @@ class Motion:
     turn: tuple[tuple[float, ...], ...] = ()
 
     def __call__(self, nodes: Floats) -> Floats:
-        """Return `nodes` (..., d) moved."""
-        moved = nodes @ np.array(self.turn).T if self.turn else nodes
+        """Return `nodes` (..., d) moved; a node comes out the same to the last bit, alone or with others."""
+        moved = nodes
+        if self.turn:  # written out: what a matrix product rounds to depends on the count of rows
+            terms = [np.array(row) * nodes for row in self.turn]
+            moved = np.stack([sum(term[..., k] for k in range(term.shape[-1])) for term in terms], axis=-1)
         return np.asarray(moved + np.array(self.shift) if self.shift else moved)
+
+    @property
+    def translation(self) -> Floats:
+        """The shift (2 or 3,), zero where there is none."""
+        return np.array(self.shift or (0.0,) * (len(self.turn) or 2))
+
+    @property
+    def rotation(self) -> tuple[float, Floats]:
+        """Angle in radians, counter-clockwise, and centre (2,) of a motion in the plane.
+
+        Without a turn the angle is 0 and the centre the origin, and the shift is all there is.
+        """
+        if not self.turn:
+            return 0.0, np.zeros(2)
+        turn = np.array(self.turn)
+        angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
+        return angle, np.linalg.solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
+
+    def alike(self, other: Motion, tolerance: float) -> bool:
+        """Return whether two motions in the plane carry nodes to the same place, to a part of the shifts."""
+        size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
+        frame = size * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        return bool(np.abs(self(frame) - other(frame)).max() <= tolerance * size)
+
+    def inverse(self) -> Motion:
+        """Return the motion back, to rounding."""
+        turn = np.array(self.turn).T
+        back = Motion(turn=tuple(map(tuple, turn.tolist())) if self.turn else ())
+        shift = back(-np.array(self.shift)) if self.shift else np.empty(0)
+        return replace(back, shift=tuple(float(x) + 0.0 for x in shift))
 
 
 @dataclass(frozen=True)
@@ -84,6 +119,14 @@ class Connection:
             "make the nodes of both sides the same, or leave the connection out",
         )
 
+    def reversed(self) -> Connection:
+        """Return it as seen from the donor; its transform is the inverse one, to rounding."""
+        ways = [0] * len(self.orientation)
+        for k, way in enumerate(self.orientation, start=1):
+            ways[abs(way) - 1] = k if way > 0 else -k
+        ends = self.donor, self.donor_side, self.donor_range, self.block, self.side, self.range
+        return Connection(*ends, tuple(ways), self.transform.inverse() if self.transform else None)
+
     def __str__(self) -> str:
         ends = f"{self.side} of block {self.block} to {self.donor_side} of block {self.donor}"
         return f"the connection of {ends}"
@@ -92,6 +135,26 @@ class Connection:
         """Return side, first and last node of the parts of a planar block's boundary that it connects."""
         ends = ((self.block, self.side, self.range), (self.donor, self.donor_side, self.donor_range))
         return [(side, *nodes[0]) for number, side, nodes in ends if number == block]
+
+
+def check_connections(connections: Sequence[Connection], counts: Sequence[tuple[int, ...]]) -> None:
+    """Raise InputError for a connection of blocks, sides or nodes that there are none of.
+
+    `counts` are the nodes of every block along each direction.
+    """
+    for each in connections:
+        ends = (each.block, each.side, each.range), (each.donor, each.donor_side, each.donor_range)
+        for block, side, span in ends:
+            known = 0 <= block < len(counts) and side in tuple(PLACES)[: 2 * len(counts[block])]
+            most = face_counts(counts[block], side) if known else ()
+            if len(span) != len(most) or any(
+                not 0 <= start < stop < n for (start, stop), n in zip(span, most, strict=True)
+            ):
+                raise InputError(f"{each} leaves its side", "connect sides and nodes that there are")
+        if len(each.orientation) != len(each.range):
+            raise InputError(f"{each} has {len(each.orientation)} directions", f"give {len(each.range)}")
+        if sorted(abs(way) for way in each.orientation) != list(range(1, len(each.range) + 1)):
+            raise InputError(f"{each} has directions {each.orientation}", "give each direction once")
 
 
 def _part(nodes: NDArray[Any], span: Range) -> NDArray[Any]:

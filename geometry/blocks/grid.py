@@ -23,12 +23,19 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
 from meshonet.geometry.blocks.block import Block
-from meshonet.geometry.blocks.connection import Connected, Connection, connections_of, topology_of, wake_cells
+from meshonet.geometry.blocks.connection import (
+    Connected,
+    Connection,
+    check_connections,
+    connections_of,
+    topology_of,
+    wake_cells,
+)
 from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
-    from meshonet.geometry.quality.measure import Quality
+    from meshonet.geometry.quality.summary import Quality
 
 
 @dataclass(frozen=True)
@@ -63,7 +70,9 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
-        check_patches(self.patches, [block.counts for block in self.blocks])
+        counts = [block.counts for block in self.blocks]
+        check_patches(self.patches, counts)
+        check_connections(self.connections, counts)
         for connection in self.connections:
             connection.check(self.face)
 
@@ -137,16 +146,22 @@ class Grid(Connected):
         return self.blocks[block].face(side)
 
     def outer_patches(self) -> list[Patch]:
-        """Return the outer boundary of the only block, each of its edges in one patch (`outer_patches`)."""
-        connected = [stretch for connection in self.connections for stretch in connection.stretches(0)]
-        return outer_patches(self.patches, (self.ni, self.nj), connected)
+        """Return the outer boundary of planar blocks, each of its edges in one patch (`outer_patches`)."""
+        outer: list[Patch] = []
+        for number, block in enumerate(self.blocks):
+            connected = [stretch for each in self.connections for stretch in each.stretches(number)]
+            outer += outer_patches(self.patches, block.counts, connected, number)
+        return outer
 
     def walls(self) -> list[Patch]:
-        """Return patches named as walls; without these, a body's or south's and north's unnamed stretches."""
+        """Return patches named as walls; without these, a body's or south's and north's unnamed stretches.
+
+        A grid of several blocks has walls only where they are named.
+        """
         outer = self.outer_patches()
         body = ("south",) if self.around_body else ()
         walls = [p for p in outer if p.kind == "wall" or (p.kind == "other" and p.side in body)]
-        if walls or self.around_body:
+        if walls or self.around_body or self.topology == "blocks":
             return walls
         return [patch for patch in outer if patch.side in ("south", "north") and patch.kind == "other"]
 

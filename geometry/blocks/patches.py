@@ -109,18 +109,23 @@ def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -
 
 
 def outer_patches(
-    patches: Sequence[Patch], counts: tuple[int, int], inside: Iterable[tuple[Side, int, int]]
+    patches: Sequence[Patch],
+    counts: tuple[int, ...],
+    inside: Iterable[tuple[Side, int, int]],
+    block: int = 0,
 ) -> list[Patch]:
-    """Return the outer boundary of a planar block, each of its edges in one patch.
+    """Return the outer boundary of planar block number `block`, each of its edges in one patch.
 
     Where patches overlap the later one counts; edges without one are called by their side. `counts` are the
     nodes along xi and eta, `inside` the side, first and last node of stretches that are connected.
     """
     outer: list[Patch] = []
+    inside = list(inside)
     for side in SIDES:
-        owners: list[Patch | None] = [Patch(side, side, 0, 1)] * (face_counts(counts, side)[0] - 1)
+        unnamed = Patch(side, side, 0, 1, block=block)
+        owners: list[Patch | None] = [unnamed] * (face_counts(counts, side)[0] - 1)
         for patch in patches:
-            if patch.side == side:
+            if patch.side == side and patch.block == block:
                 owners[patch.start : patch.stop] = [patch] * (patch.stop - patch.start)
         for connected, start, stop in inside:
             if connected == side:

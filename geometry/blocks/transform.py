@@ -11,30 +11,71 @@
 """
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 
-from meshonet.geometry.arrays import SIDES, Side
+from meshonet.geometry.arrays import SIDES, Floats, Side
+from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 _SIDES: dict[Side, Side] = {"east": "south", "west": "north", "south": "west", "north": "east"}
+_COUNTED_BACK = ("south", "north")
+"""Sides whose nodes are counted from their other end once a grid is turned."""
 
 
 def coarser_grid(grid: Grid, k: int) -> Grid:
     """Return the grid of every `k`-th node along both directions, its patches along.
 
-    Raises InputError: `k` does not divide the cells along a direction, or a patch would lose an end.
+    Of many planar blocks every one is made coarser, and connections join what is left of their nodes.
+
+    Raises InputError: `k` does not divide the cells along a direction, or a patch or connection would lose
+    an end.
     """
+    if grid.topology == "blocks":
+        return _coarser_blocks(grid, k)
     _check(grid.ni, grid.nj, k)
     facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
     patches = _coarser_patches(grid.patches, k)
     nodes = grid.nodes[::k, ::k]
     return Grid.from_nodes(nodes, grid.topology, patches, grid.name, facts, grid.origin, finite=True)
+
+
+def _coarser_blocks(grid: Grid, k: int) -> Grid:
+    planar(grid)
+    for number, block in enumerate(grid.blocks):
+        with _in_block(number):
+            _check(block.counts[0], block.counts[1], k)
+    connections = []
+    for each in grid.connections:
+        ends = (*each.range[0], *each.donor_range[0])
+        if any(end % k for end in ends):
+            problem = f"{each} runs from node {ends[0]} to {ends[1]}, which every {k}-th leaves out"
+            raise InputError(problem, f"make the grid with ends at multiples of {k}, or coarsen less")
+        spans = [tuple((a // k, b // k) for a, b in span) for span in (each.range, each.donor_range)]
+        connections.append(replace(each, range=spans[0], donor_range=spans[1]))
+    facts = {**grid.provenance, "coarsened": k * int(grid.provenance.get("coarsened", 1))}
+    blocks = tuple(Block(block.nodes[::k, ::k], finite=True) for block in grid.blocks)
+    patches = _coarser_patches(grid.patches, k)
+    return replace(grid, blocks=blocks, patches=patches, connections=tuple(connections), provenance=facts)
+
+
+@contextmanager
+def _in_block(number: int) -> Iterator[None]:
+    """Say in input errors which block they are of."""
+    try:
+        yield
+    except InputError as error:
+        error.place = error.place or f"block {number}"
+        raise
 
 
 def coarser_boundary(boundary: Boundary, k: int) -> Boundary:
@@ -70,12 +111,14 @@ def _coarser_patches(patches: tuple[Patch, ...], k: int) -> tuple[Patch, ...]:
 def normalised(grid: Grid) -> Grid:
     """Return `grid` moved, scaled and, around a body, turned to unit size.
 
-    Of an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the body's farthest
-    node from it to (0, 0). Of a four-sided grid the lower left corner of its box comes to (0, 0) and the
-    longer side of the box becomes 1.
+    Of an O or C grid the trailing edge, where xi begins on the body, comes to (1, 0), and the farthest node
+    of the body from it to (0, 0). Of a four-sided grid, or of many blocks, the lower left corner of its box
+    comes to (0, 0) and the longer side of the box becomes 1.
 
     Raises InputError: the body has no length.
     """
+    if grid.topology == "blocks":
+        return _normalised_blocks(grid)
     if not grid.around_body:
         corner = grid.nodes.min(axis=(0, 1))
         return grid.with_nodes((grid.nodes - corner) / np.ptp(grid.nodes, axis=(0, 1)).max())
@@ -92,20 +135,59 @@ def normalised(grid: Grid) -> Grid:
     return grid.with_nodes(nodes)
 
 
+def _normalised_blocks(grid: Grid) -> Grid:
+    planar(grid)
+    low = np.min([block.nodes.min(axis=(0, 1)) for block in grid.blocks], axis=0)
+    high = np.max([block.nodes.max(axis=(0, 1)) for block in grid.blocks], axis=0)
+    size = float((high - low).max())
+    blocks = [Block((block.nodes - low) / size) for block in grid.blocks]
+    motions = [_scaled(each.transform, low, size) for each in grid.connections]
+    connections = [replace(each, transform=m) for each, m in zip(grid.connections, motions, strict=True)]
+    # periodic sides differ by rounding where both were moved and scaled
+    equal = with_equal_nodes(blocks, connections)
+    return replace(grid, blocks=equal, connections=tuple(connections))
+
+
+def _scaled(motion: Motion | None, origin: Floats, size: float) -> Motion | None:
+    """Return a motion of nodes as that of these nodes less `origin`, over `size`."""
+    if motion is None:
+        return None
+    shift = (motion(origin) - origin) / size
+    return replace(motion, shift=tuple(float(x) for x in shift))
+
+
 def turned(grid: Grid) -> Grid:
-    """Return `grid` with node (i, j) at (j, ni-1-i), its patches along.
+    """Return `grid` with node (i, j) at (j, ni-1-i), its patches along; of many blocks, each of them.
 
     Raises InputError: an O or C grid, whose xi runs around the body by definition.
     """
     if grid.around_body:
         raise InputError(f"topology {grid.topology} has xi around the body", "swap four-sided grids only")
-    patches = tuple(_turned(patch, grid.ni - 1) for patch in grid.patches)
-    block = Block(np.swapaxes(grid.nodes, 0, 1)[:, ::-1], finite=True)
-    return replace(grid, blocks=(block,), patches=patches)
+    planar(grid)
+    last = [block.counts[0] - 1 for block in grid.blocks]
+    patches = tuple(turned_patch(patch, last[patch.block]) for patch in grid.patches)
+    connections = tuple(_turned_connection(each, last) for each in grid.connections)
+    blocks = tuple(Block(np.swapaxes(block.nodes, 0, 1)[:, ::-1], finite=True) for block in grid.blocks)
+    return replace(grid, blocks=blocks, patches=patches, connections=connections)
 
 
-def _turned(patch: Patch, last: int) -> Patch:
-    side, start, stop = _SIDES[patch.side], patch.start, patch.stop
-    if patch.side in ("south", "north"):
-        start, stop = last - stop, last - start
+def turned_patch(patch: Patch, last: int) -> Patch:
+    """Return a patch of a block whose last node along xi has the number `last`, turned as `turned` does."""
+    side, (start, stop) = _turned_stretch(patch.side, (patch.start, patch.stop), last)
     return replace(patch, side=side, start=start, stop=stop)
+
+
+def _turned_connection(each: Connection, last: list[int]) -> Connection:
+    side, span = _turned_stretch(each.side, each.range[0], last[each.block])
+    donor_side, donor_span = _turned_stretch(each.donor_side, each.donor_range[0], last[each.donor])
+    flips = (each.side in _COUNTED_BACK) != (each.donor_side in _COUNTED_BACK)
+    way = (-each.orientation[0] if flips else each.orientation[0],)
+    ends = each.block, side, (span,), each.donor, donor_side, (donor_span,)
+    return Connection(*ends, way, each.transform)
+
+
+def _turned_stretch(side: Side, span: tuple[int, int], last: int) -> tuple[Side, tuple[int, int]]:
+    """Return where a stretch of a side is once its block is turned; `last` is the last node along xi."""
+    if side in _COUNTED_BACK:
+        span = last - span[1], last - span[0]
+    return _SIDES[side], span

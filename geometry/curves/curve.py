@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, distinct, read_only
 from meshonet.geometry.curves.spline import spline_slopes
@@ -44,6 +45,8 @@ class Curve:
     """Arc lengths at the corners."""
     corner_index: Indices
     """Which points the corners are."""
+    straight: NDArray[np.bool_] | None
+    """(intervals,) where the curve follows the chord; None is nowhere."""
 
     def __init__(
         self,
@@ -51,7 +54,7 @@ class Curve:
         *,
         closed: bool = False,
         corners: Sequence[int] | Indices | None = None,
-        straight: np.ndarray[tuple[int], np.dtype[np.bool_]] | None = None,
+        straight: NDArray[np.bool_] | None = None,
     ) -> None:
         self.points, self.closed = read_only(_checked(points, closed)), closed
         n = len(self.points)
@@ -62,6 +65,7 @@ class Curve:
             if self.corner_index.size and (self.corner_index[0] < 0 or self.corner_index[-1] >= n):
                 remedy = "count points from 0"
                 raise InputError(f"a curve of {n} points has no corner {self.corner_index[-1]}", remedy)
+        self.straight = straight
         ends = np.concatenate([self.points, self.points[:1]]) if closed else self.points
         chord = np.diff(ends, axis=0)
         h = np.hypot(chord[:, 0], chord[:, 1])[:, None]

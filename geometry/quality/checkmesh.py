@@ -16,28 +16,40 @@ box_ratio            sum of abs(Sx) over the faces of a cell against that of abs
                      smaller: its aspect ratio for cells along the axes
 ===================  =======================================================================================
 
-Faces on the seam of an O grid and on the wake of a C grid are inside, as they are in a mesh whose nodes were
-merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/primitiveMeshTools.C and
-primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
+Faces on the seam of an O grid, on the wake of a C grid and between blocks are inside, as they are in a mesh
+whose nodes were merged. Source: OpenFOAM, src/OpenFOAM/meshes/primitiveMesh/primitiveMeshCheck/
+primitiveMeshTools.C and primitiveMeshCheck.C (thresholds 70 degrees, 4, 1000).
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
+from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.across import across, planar, rows_beside
+from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.growth import Extreme, Tally, beyond_seam, strips
 
 SEVERE = 70.0
 """Non-orthogonality from which checkMesh counts faces."""
 
+Values: TypeAlias = tuple[int, int, Floats, int | None]
+"""Cell (i, j) of the first value, values (m, n), and the block, None for the only one."""
+Inside: TypeAlias = tuple[int, int, Floats, Floats, int | None]
+"""The same with two values: angle and skewness."""
+
 
 @dataclass(frozen=True)
 class Faces:
     """Measures of the faces, the greatest at cell (i, j), whose face it is; None where there is no such face.
+
+    In a grid of many blocks cells are (block, i, j).
 
     `severe` counts the faces with a non-orthogonality beyond 70 degrees.
     """
@@ -49,47 +61,112 @@ class Faces:
 
 
 def faces(grid: Grid) -> Faces:
-    """Return the measures of the faces of `grid`."""
+    """Return the measures of the faces of `grid`.
+
+    Raises InputError: one of many blocks that is not in the plane.
+    """
+    if grid.topology != "blocks":
+        only: Iterator[Values] = ((i, 0, _box_ratio(part), None) for i, part in strips(grid.nodes, 1))
+        return _summed(_inside(grid), _outside(grid), only)
+    planar(grid)
+    blocks = list(enumerate(grid.blocks))
+    within = (face for number, block in blocks for face in _within(block.nodes, number))
+    boxes = ((0, 0, _box_ratio(block.nodes), number) for number, block in blocks)
+    return _summed(chain(within, _across(grid)), _outer(grid), boxes)
+
+
+def cells_beyond(grid: Grid, angle: float, skew: float) -> list[tuple[int, int, int]]:
+    """Return the cells (block, i, j) with a face beyond a non-orthogonality, in degrees, or a skewness."""
+    found: list[tuple[int, int, int]] = []
+    for number, block in enumerate(grid.blocks):
+        for i, j, angles, skews, _ in _within(block.nodes, number):
+            found += _placed(number, i, j, (angles > angle) | (skews > skew))
+    for i, j, angles, skews, at in _across(grid):
+        found += _placed(at or 0, i, j, (angles > angle) | (skews > skew))
+    for i, j, skews, at in _outer(grid):
+        found += _placed(at or 0, i, j, skews > skew)
+    return found
+
+
+def _placed(block: int, i: int, j: int, where: NDArray[np.bool_]) -> list[tuple[int, int, int]]:
+    return [(block, i + a, j + b) for a, b in np.argwhere(where).tolist()]
+
+
+def _summed(inside: Iterable[Inside], outside: Iterable[Values], box_ratios: Iterable[Values]) -> Faces:
     angles, skews, boxes = Tally(), Tally(), Tally()
     severe, cosines = 0, Tally()
-    for i, j, angle, skew in _inside(grid):
+    for i, j, angle, skew, block in inside:
         severe += int((angle > SEVERE).sum())
-        angles.add(i, j, angle)
+        angles.add(i, j, angle, block)
         cosines.add(i, j, np.cos(np.radians(angle)))
-        skews.add(i, j, skew)
-    for i, j, skew in _outside(grid):
-        skews.add(i, j, skew)
-    for i, block in strips(grid.nodes, 1):
-        boxes.add(i, 0, _box_ratio(block))
+        skews.add(i, j, skew, block)
+    for i, j, skew, block in outside:
+        skews.add(i, j, skew, block)
+    for i, j, ratio, block in box_ratios:
+        boxes.add(i, j, ratio, block)
     turned, mean = angles.extreme, cosines.extreme
     if turned and mean:
         turned = replace(turned, mean=math.degrees(math.acos(min(1.0, max(-1.0, mean.mean)))))
     return Faces(turned, severe, skews.extreme, boxes.extreme)
 
 
-def _inside(grid: Grid) -> Iterator[tuple[int, int, Floats, Floats]]:
-    """Yield angles and skewness (m, n) of the faces inside, with the cell (i, j) of the first."""
-    for i, block in strips(beyond_seam(grid), 2):
-        centre = centroids(block)
-        yield i, 0, *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:])
-    for i, block in strips(grid.nodes, 1):
-        centre = centroids(block)
-        yield i, 0, *_between(centre[:, :-1], centre[:, 1:], block[1:, 1:-1], block[:-1, 1:-1])
+def _inside(grid: Grid) -> Iterator[Inside]:
+    """Yield cell (i, j) of the first face, angles and skewness (m, n) of the faces inside."""
+    yield from _within(beyond_seam(grid), None, grid.nodes)
     wake = grid.wake
     if wake:
         first, last = centroids(grid.nodes[: wake + 1, :2]), centroids(grid.nodes[-wake - 1 :, :2])[::-1]
-        yield 0, 0, *_between(last, first, grid.nodes[1 : wake + 1, :1], grid.nodes[:wake, :1])
+        yield 0, 0, *_between(last, first, grid.nodes[1 : wake + 1, :1], grid.nodes[:wake, :1]), None
 
 
-def _outside(grid: Grid) -> Iterator[tuple[int, int, Floats]]:
-    """Yield the skewness (m, n) of the faces of the outer boundary, with the cell (i, j) of the first."""
+def _within(nodes: Floats, number: int | None, once: Floats | None = None) -> Iterator[Inside]:
+    """Yield the faces inside a block: those across xi of `nodes`, those across eta of `once` if given."""
+    for i, block in strips(nodes, 2):
+        centre = centroids(block)
+        yield i, 0, *_between(centre[:-1], centre[1:], block[1:-1, :-1], block[1:-1, 1:]), number
+    for i, block in strips(nodes if once is None else once, 1):
+        centre = centroids(block)
+        yield i, 0, *_between(centre[:, :-1], centre[:, 1:], block[1:, 1:-1], block[:-1, 1:-1]), number
+
+
+def _across(grid: Grid) -> Iterator[Inside]:
+    """Yield the faces on the connections of blocks, which are those of cells of the first one."""
+    for each in grid.connections:
+        own, donor = across(grid, each, 2)
+        axis, end = PLACES[each.side]
+        if (axis == 0) == (end == 0):  # the donor is on the right of edges that run the other way
+            own, donor = own[:, ::-1], donor[:, ::-1]
+        inner, beyond = (centroids(rows.swapaxes(0, 1))[:, 0] for rows in (own, donor))
+        values = _between(inner, beyond, donor[0, :-1], donor[0, 1:])
+        if (axis == 0) == (end == 0):
+            values = values[0][::-1], values[1][::-1]
+        counts = [count - 1 for count in grid.blocks[each.block].counts]
+        at = [each.range[0][0]] * 2
+        at[axis] = 0 if end == 0 else counts[axis] - 1
+        angle, skew = (np.expand_dims(value, axis) for value in values)
+        yield at[0], at[1], angle, skew, each.block
+
+
+def _outside(grid: Grid) -> Iterator[Values]:
+    """Yield cell (i, j) of the first face and the skewness (m, n) of the faces of the outer boundary."""
     nodes, wake = grid.nodes, grid.wake
     body = nodes[wake : grid.ni - wake]
-    yield wake, 0, _at_boundary(centroids(body[:, :2]), body[:-1, :1], body[1:, :1])
-    yield 0, grid.nj - 2, _at_boundary(centroids(nodes[:, -2:]), nodes[:-1, -1:], nodes[1:, -1:])
+    yield wake, 0, _at_boundary(centroids(body[:, :2]), body[:-1, :1], body[1:, :1]), None
+    yield 0, grid.nj - 2, _at_boundary(centroids(nodes[:, -2:]), nodes[:-1, -1:], nodes[1:, -1:]), None
     if not grid.periodic:
-        yield 0, 0, _at_boundary(centroids(nodes[:2]), nodes[:1, :-1], nodes[:1, 1:])
-        yield grid.ni - 2, 0, _at_boundary(centroids(nodes[-2:]), nodes[-1:, :-1], nodes[-1:, 1:])
+        yield 0, 0, _at_boundary(centroids(nodes[:2]), nodes[:1, :-1], nodes[:1, 1:]), None
+        yield grid.ni - 2, 0, _at_boundary(centroids(nodes[-2:]), nodes[-1:, :-1], nodes[-1:, 1:]), None
+
+
+def _outer(grid: Grid) -> Iterator[Values]:
+    """Yield the faces of the outer boundary of many blocks."""
+    for patch in grid.outer_patches():
+        rows = rows_beside(grid, patch.block, patch.side, (patch.start, patch.stop), 2)
+        skew = _at_boundary(centroids(rows.swapaxes(0, 1))[:, 0], rows[0, :-1], rows[0, 1:])
+        axis, end = patch.place
+        at = [patch.start] * 2
+        at[axis] = 0 if end == 0 else grid.blocks[patch.block].counts[axis] - 2
+        yield at[0], at[1], np.expand_dims(skew, axis), patch.block
 
 
 def centroids(nodes: Floats) -> Floats:

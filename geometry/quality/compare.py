@@ -5,7 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.across import planar
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
 
 NEAR = 0.1
@@ -18,14 +20,14 @@ class Difference:
 
     max: float
     mean: float
-    at: tuple[int, int]
-    """Node (i, j) of the greatest."""
+    at: tuple[int, ...]
+    """Node (i, j) of the greatest; (block, i, j) of many blocks."""
     relative_l2: float
     """Root of the mean squared distance over that of the reference's nodes from their mean."""
     near_wall: float
-    """The same with the distances in the tenth of all rows from j = 0 on."""
+    """The same with the distances in the tenth of all rows from j = 0 on; of many blocks, from walls on."""
     boundary: float
-    """Greatest distance on the four sides; on the two walls of O grids."""
+    """Greatest distance on the four sides; on the two walls of O grids; on the outer sides of many blocks."""
 
 
 def compare(grid: Grid, reference: Grid) -> Difference:
@@ -33,13 +35,14 @@ def compare(grid: Grid, reference: Grid) -> Difference:
 
     Raises InputError: their node counts differ.
     """
+    if "blocks" in (grid.topology, reference.topology):
+        return _compare_blocks(grid, reference)
     if grid.nodes.shape != reference.nodes.shape:
         counts = f"{grid.ni}x{grid.nj} nodes are not comparable with {reference.ni}x{reference.nj}"
         raise InputError(counts, "compare grids of one size")
     away = np.hypot(grid.x - reference.x, grid.y - reference.y)
     i, j = np.unravel_index(int(away.argmax()), away.shape)
-    spread = _root_mean_square(np.hypot(reference.x - reference.x.mean(), reference.y - reference.y.mean()))
-    extent = max(spread, float(np.finfo(float).tiny))  # all nodes in one place
+    extent = _spread(reference.x, reference.y)
     rows = max(1, round(NEAR * grid.nj))
     sides = [away[:, 0], away[:, -1]]
     if not grid.periodic:  # the cut of an O grid is no boundary
@@ -52,6 +55,47 @@ def compare(grid: Grid, reference: Grid) -> Difference:
         near_wall=_root_mean_square(away[:, :rows]) / extent,
         boundary=max(float(side.max()) for side in sides),
     )
+
+
+def _compare_blocks(grid: Grid, reference: Grid) -> Difference:
+    sizes, others = ([block.nodes.shape for block in each.blocks] for each in (grid, reference))
+    if sizes != others:
+        k = next((k for k, pair in enumerate(zip(sizes, others, strict=False)) if pair[0] != pair[1]), None)
+        counts = f"{len(sizes)} blocks are not comparable with {len(others)}"
+        if len(sizes) == len(others) and k is not None:
+            own, other = ("x".join(map(str, size[k][:-1])) for size in (sizes, others))
+            counts = f"block {k} of {own} nodes is not comparable with one of {other}"
+        raise InputError(counts, "compare grids of the same blocks")
+    planar(grid)
+    pairs = zip(grid.blocks, reference.blocks, strict=True)
+    away = [np.hypot(*np.moveaxis(own.nodes - other.nodes, -1, 0)) for own, other in pairs]
+    worst = int(np.argmax([distances.max() for distances in away]))
+    i, j = np.unravel_index(int(away[worst].argmax()), away[worst].shape)
+    every = np.concatenate([block.nodes.reshape(-1, 2) for block in reference.blocks])
+    extent = _spread(*every.T)
+    near = [_beside(away[wall.block], wall, NEAR) for wall in grid.walls()] or [a.ravel() for a in away]
+    outer = [_beside(away[patch.block], patch, 0.0).max() for patch in grid.outer_patches()]
+    all_away = np.concatenate([distances.ravel() for distances in away])
+    return Difference(
+        max=float(all_away.max()),
+        mean=float(all_away.mean()),
+        at=(worst, int(i), int(j)),
+        relative_l2=_root_mean_square(all_away) / extent,
+        near_wall=_root_mean_square(np.concatenate(near)) / extent,
+        boundary=float(max(outer, default=0.0)),
+    )
+
+
+def _beside(values: Floats, patch: Patch, part: float) -> Floats:
+    """Return the values (n,) of nodes at a patch and in that part of all rows beside it, one at least."""
+    axis, end = patch.place
+    rows = np.moveaxis(values, axis, 0)[:: -1 if end else 1]
+    return rows[: max(1, round(part * len(rows))), patch.start : patch.stop + 1].ravel()
+
+
+def _spread(x: Floats, y: Floats) -> float:
+    spread = _root_mean_square(np.hypot(x - x.mean(), y - y.mean()))
+    return max(spread, float(np.finfo(float).tiny))  # all nodes in one place
 
 
 def _root_mean_square(values: Floats) -> float:

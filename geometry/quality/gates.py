@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.quality.measure import Quality
 from meshonet.geometry.quality.metrics import NAMES
+from meshonet.geometry.quality.summary import Quality
 
 COMPARE = {">=": operator.ge, "<=": operator.le, ">": operator.gt, "<": operator.lt}
 NO_MORE: Mapping[str, float] = MappingProxyType({})

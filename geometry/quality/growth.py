@@ -21,11 +21,15 @@ LARGE = 1e30
 
 @dataclass(frozen=True)
 class Extreme:
-    """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest."""
+    """Greatest and mean value of something over a grid, and the node or cell (i, j) of the greatest.
+
+    In a grid of many blocks the place is (block, i, j), and there is the 99th percentile too.
+    """
 
     max: float
     mean: float
-    at: tuple[int, int]
+    at: tuple[int, ...]
+    p99: float | None = None
 
 
 @dataclass(frozen=True)
@@ -37,35 +41,43 @@ class Growth:
 
 
 class Tally:
-    """Extreme of values that come block by block."""
+    """Extreme of values that come part by part; with their percentile when they are `kept`."""
 
-    def __init__(self) -> None:
-        self._max, self._at, self._total, self._count = -np.inf, (0, 0), 0.0, 0
+    def __init__(self, *, kept: bool = False) -> None:
+        self._max, self._total, self._count = -np.inf, 0.0, 0
+        self._at: tuple[int, ...] = (0, 0)
+        self._values: list[Floats] | None = [] if kept else None
 
-    def add(self, i: int, j: int, values: Floats) -> None:
+    def add(self, i: int, j: int, values: Floats, block: int | None = None) -> None:
         """Add values (m, n) of the nodes or cells from (i, j) on."""
         if values.size == 0:
             return
         here = divmod(int(values.argmax()), values.shape[1])
         if values[here] > self._max:
-            self._max, self._at = float(values[here]), (i + here[0], j + here[1])
+            place = (i + here[0], j + here[1])
+            self._max, self._at = float(values[here]), place if block is None else (block, *place)
         self._total += float(values.sum())
         self._count += values.size
+        if self._values is not None:
+            self._values.append(values.ravel())
 
     @property
     def extreme(self) -> Extreme | None:
         """The extreme of all values so far, None when there were none."""
-        return Extreme(self._max, self._total / self._count, self._at) if self._count else None
+        if not self._count:
+            return None
+        p99 = None if self._values is None else float(np.percentile(np.concatenate(self._values), 99.0))
+        return Extreme(self._max, self._total / self._count, self._at, p99)
 
 
 def growth(grid: Grid) -> Growth:
     """Return the growth of the steps of `grid` along xi and eta."""
     xi, eta = Tally(), Tally()
     for i, block in strips(beyond_seam(grid), 2):
-        xi.add(i + 1, 0, _ratios(block))
+        xi.add(i + 1, 0, ratios(block))
     for i, block in strips(grid.nodes, 0):
-        eta.add(i, 1, _ratios(block.swapaxes(0, 1)).T)
-    eta.add(0, 0, _ratios(across_wake(grid).swapaxes(0, 1)).T)
+        eta.add(i, 1, ratios(block.swapaxes(0, 1)).T)
+    eta.add(0, 0, ratios(across_wake(grid).swapaxes(0, 1)).T)
     return Growth(xi.extreme, eta.extreme)
 
 
@@ -87,7 +99,7 @@ def strips(nodes: Floats, more: int) -> Iterator[tuple[int, Floats]]:
         yield i, nodes[i : i + ROWS + more]
 
 
-def _ratios(nodes: Floats) -> Floats:
+def ratios(nodes: Floats) -> Floats:
     """Return the growth (m-2, n) along the first axis of `nodes` (m, n, 2)."""
     step = np.diff(nodes, axis=0)
     length = np.hypot(step[..., 0], step[..., 1])

@@ -3,8 +3,8 @@
 A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,43 +13,12 @@ from meshonet.geometry.arrays import Floats, as_planar
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell, InputError
 from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
-from meshonet.geometry.quality.percentiles import no_run, prepared
+from meshonet.geometry.quality.percentiles import PERCENTS, no_run, prepared
+from meshonet.geometry.quality.summary import Quality, Summary
 from meshonet.kernels import _native
 
-PERCENTS = (1.0, 99.0)
 FEW = 1 << 18
 """Cells up to which percentiles come from the values of all cells."""
-
-
-@dataclass(frozen=True)
-class Summary:
-    """One metric over all cells; its percentiles, when they were asked for."""
-
-    min: float
-    mean: float
-    max: float
-    worst: tuple[int, int]
-    """The cell (i, j) with the worst value, the first of them."""
-    p01: float | None = None
-    p99: float | None = None
-
-
-@dataclass(frozen=True)
-class Quality:
-    """Quality of a grid: how many cells it has, how many are folded, and every metric by name."""
-
-    cells: int
-    folded: int
-    metrics: Mapping[str, Summary]
-
-    def __getitem__(self, name: str) -> Summary:
-        """Return the summary of one metric."""
-        return self.metrics[name]
-
-    def __str__(self) -> str:
-        head = f"{self.cells} cells, {self.folded} folded\n{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"
-        rows = [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
-        return "\n".join([head, *rows])
 
 
 def count_folded(nodes: Floats) -> int:
@@ -82,12 +51,28 @@ def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
     return [BadCell(int(i[k]), int(j[k]), float(centre[k, 0]), float(centre[k, 1])) for k in order]
 
 
+def worst_cells_of(grid: Grid, limit: int = 10) -> list[BadCell]:
+    """Return the folded cells of the blocks of `grid`, `limit` at the most, block after block."""
+    if grid.topology != "blocks":
+        return worst_cells(grid.nodes, limit)
+    blocks = enumerate(grid.blocks)
+    cells = [replace(cell, block=k) for k, block in blocks for cell in worst_cells(block.nodes, limit)]
+    return cells[:limit]
+
+
 def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
     """Return the quality of `grid`; neighbours across the seam of ``o`` and the wake of ``c`` count.
 
     The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take about a third
-    of the time of the rest (`meshonet.geometry.quality.percentiles`).
+    of the time of the rest (`meshonet.geometry.quality.percentiles`). All cells of several
+    blocks count together (`meshonet.geometry.quality.measure_blocks`).
+
+    Raises InputError: a block that is not in the plane.
     """
+    if grid.topology == "blocks":
+        from meshonet.geometry.quality.measure_blocks import measure_blocks
+
+        return measure_blocks(grid, percentiles=percentiles)
     x, y = grid.x, grid.y
     cells = (grid.ni - 1) * (grid.nj - 1)
     run = prepared(x, y, PERCENTS) if percentiles and cells > FEW else no_run()
@@ -139,14 +124,28 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 
 def per_cell(grid: Grid, name: str) -> Floats:
     """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError when there is none."""
-    if name not in NAMES:
-        raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
-    metric = METRICS[NAMES.index(name)]
+    metric = METRICS[_number(name)]
     if metric.cells:
         return metric.cells(grid)
     cells = np.empty((1, grid.ni - 1, grid.nj - 1))
     no_run().over(grid.x, grid.y, cells, grid.periodic, grid.wake, NAMES.index(name))
     return np.asarray(cells[0])
+
+
+def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
+    """Return the metric `name` of every cell, (ni-1, nj-1) for each block; raise InputError as `per_cell`."""
+    if grid.topology != "blocks":
+        return [per_cell(grid, name)]
+    from meshonet.geometry.quality.measure_blocks import metrics_of_blocks
+
+    number = _number(name)
+    return [cells[number] for cells in metrics_of_blocks(grid)]
+
+
+def _number(name: str) -> int:
+    if name not in NAMES:
+        raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
+    return NAMES.index(name)
 
 
 def _planes(nodes: Floats) -> Sequence[Floats]:

@@ -16,6 +16,9 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.quality.metrics import COMPILED
 from meshonet.kernels._native import measure_cells
 
+PERCENTS = (1.0, 99.0)
+"""Those that are asked for."""
+
 TILES, TILE = 4096, 8
 """Tiles of the sample, and their cells along each direction."""
 

@@ -22,15 +22,17 @@ from typing import Literal
 
 import numpy as np
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.blocks import BlockFigures, block_figures
 from meshonet.geometry.quality.checkmesh import Faces, faces
 from meshonet.geometry.quality.gates import COMPARE
 from meshonet.geometry.quality.growth import Extreme, Growth, growth
-from meshonet.geometry.quality.measure import Quality
 from meshonet.geometry.quality.metrics import NAMES
-from meshonet.geometry.quality.walls import WallRow, wall_row
+from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.quality.walls import WallRow, wall_rows
 
 Level = Literal["warn", "fail"]
 Verdict = Literal["pass", "warn", "fail", "none"]
@@ -63,7 +65,7 @@ class CheckResult:
 
     check: Check
     value: float | None
-    at: tuple[int, int] | None
+    at: tuple[int, ...] | None
     verdict: Verdict
 
 
@@ -136,18 +138,23 @@ class Figures:
     @cached_property
     def growth(self) -> Growth:
         """How fast its cells grow."""
-        return growth(self.grid)
+        return self.blocks.lines.growth if self.grid.topology == "blocks" else growth(self.grid)
+
+    @cached_property
+    def blocks(self) -> BlockFigures:
+        """Its blocks, their vertices and how lines run through them."""
+        return block_figures(self.grid)
 
     @cached_property
     def wall_rows(self) -> tuple[WallRow, ...]:
         """The cells at its walls."""
-        return tuple(wall_row(self.grid, patch) for patch in self.walls)
+        return wall_rows(self.grid, self.walls)
 
-    def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, int] | None] | None:
+    def value(self, name: str, *, low: bool) -> tuple[float, tuple[int, ...] | None] | None:
         """Return figure `name` and its place: the least of a metric when `low`, otherwise the greatest.
 
         ``wall_growth`` is the growth along the lines that leave the walls, ``far_field`` the least distance
-        of the far field from the middle of the body in chords, which quads do not have.
+        of the far field from the middle of the walls in chords, where there is one.
         """
         if name == "folded":
             return float(self.quality.folded), None
@@ -162,19 +169,28 @@ class Figures:
         return None if figure is None else (figure.max, figure.at)
 
     def _wall_growth(self) -> Extreme | None:
+        if self.grid.topology == "blocks":
+            return self.blocks.lines.leaving
         sides = {patch.side for patch in self.walls}
         families = (self.growth.eta, {"south", "north"}), (self.growth.xi, {"west", "east"})
         leaving = [extreme for extreme, ends in families if extreme and sides & ends]
         return max(leaving, key=lambda extreme: extreme.max, default=None)
 
     def _far_field(self) -> tuple[float, None] | None:
-        if not self.grid.around_body or not self.walls:
+        grid = self.grid
+        far = [_nodes(grid, patch) for patch in grid.patches if patch.kind == "farfield"]
+        if not self.walls or not (grid.around_body or (grid.topology == "blocks" and far)):
             return None
-        wall = np.concatenate([self.grid.nodes[patch.start : patch.stop + 1, 0] for patch in self.walls])
+        wall = np.concatenate([_nodes(grid, patch) for patch in self.walls])
+        beyond = grid.nodes[:, -1] if grid.around_body else np.concatenate(far)
         middle = 0.5 * (wall.min(axis=0) + wall.max(axis=0))
         start = wall[np.argmax(np.hypot(*(wall - middle).T))]
         chord = float(np.hypot(*(wall - start).T).max())
-        return float(np.hypot(*(self.grid.nodes[:, -1] - middle).T).min()) / chord, None
+        return float(np.hypot(*(beyond - middle).T).min()) / chord, None
+
+
+def _nodes(grid: Grid, patch: Patch) -> Floats:
+    return grid.face(patch.block, patch.side)[patch.start : patch.stop + 1]
 
 
 def profile_report(figures: Figures, profile: str) -> ProfileReport:

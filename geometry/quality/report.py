@@ -6,12 +6,13 @@ from typing import Any
 
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.blocks import BLOCK_FIGURES, extreme_dict
 from meshonet.geometry.quality.compare import Difference, compare
 from meshonet.geometry.quality.gates import Gate
-from meshonet.geometry.quality.growth import Extreme
-from meshonet.geometry.quality.measure import Quality, measure, worst_cells
+from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.profiles import CheckResult, Figures, ProfileReport, profile_report
-from meshonet.geometry.quality.walls import WallRow
+from meshonet.geometry.quality.summary import Quality
+from meshonet.geometry.quality.walls import Spread, WallRow
 
 COMPARED = (
     "relative_l2", "near_wall", "max", "boundary", "folded_other", "max_angle_ratio", "mean_angle_ratio",
@@ -52,24 +53,27 @@ class QualityReport:
 
     def broken(self, gates: Sequence[Gate]) -> list[str]:
         """Return a line for each gate, and each check of the profile, that is not met."""
-        compared = self.comparison.figures() if self.comparison else {}
-        lines = [line for gate in gates if (line := gate.broken(self.quality, compared))]
+        more = self.comparison.figures() if self.comparison else {}
+        if any(gate.metric in BLOCK_FIGURES for gate in gates):
+            more |= self.figures.blocks.figures()
+        lines = [line for gate in gates if (line := gate.broken(self.quality, more))]
         return lines + (self.profile.failures() if self.profile else [])
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as what JSON can hold."""
         grid, growth = self.grid, self.figures.growth if self.profile else None
+        many = grid.topology == "blocks"
         facts: dict[str, Any] = {
-            "ni": grid.ni,
-            "nj": grid.nj,
+            **({"cells": self.quality.cells} if many else {"ni": grid.ni, "nj": grid.nj}),
             "topology": grid.topology,
+            **(self.figures.blocks.as_dict() if many else {}),
             "folded": self.quality.folded,
-            "worst_cells": [vars(cell) for cell in self.worst],
+            "worst_cells": [_cell(cell) for cell in self.worst],
             "quality": quality_dict(self.quality),
             "walls": [_wall(row) for row in self.figures.wall_rows],
         }
         if self.profile and growth:
-            facts["growth"] = {"xi": _extreme(growth.xi), "eta": _extreme(growth.eta)}
+            facts["growth"] = {"xi": extreme_dict(growth.xi), "eta": extreme_dict(growth.eta)}
             checks = [_check(result) for result in self.profile.results]
             facts["profile"] = {"name": self.profile.name, "passed": self.profile.passed, "checks": checks}
         if self.comparison:
@@ -88,7 +92,7 @@ def quality_report(grid: Grid, profile: str | None = None, reference: Grid | Non
     return QualityReport(
         grid,
         quality,
-        tuple(worst_cells(grid.nodes)) if quality.folded else (),
+        tuple(worst_cells_of(grid)) if quality.folded else (),
         figures,
         profile_report(figures, profile) if profile else None,
         None if reference is None else _comparison(grid, quality, reference),
@@ -113,8 +117,16 @@ def _comparison(grid: Grid, quality: Quality, reference: Grid) -> Comparison:
     return Comparison(difference, other.folded, own.max / angle.max, own.mean / angle.mean)
 
 
+def _cell(cell: BadCell) -> dict[str, Any]:
+    return {name: value for name, value in vars(cell).items() if value is not None}
+
+
+def _spread(spread: Spread) -> dict[str, float]:
+    return {name: value for name, value in vars(spread).items() if value is not None}
+
+
 def _wall(row: WallRow) -> dict[str, Any]:
-    sizes = {"first_cell": vars(row.height), "off_square": vars(row.off_square)}
+    sizes = {"first_cell": _spread(row.height), "off_square": _spread(row.off_square)}
     return {"name": row.name, "side": row.side, **sizes, "equal_cells": row.equal_cells}
 
 
@@ -126,7 +138,3 @@ def _check(result: CheckResult) -> dict[str, Any]:
         "limits": [{"level": x.level, "when": x.compare, "value": x.value} for x in result.check.limits],
         "verdict": result.verdict,
     }
-
-
-def _extreme(extreme: Extreme | None) -> dict[str, Any] | None:
-    return None if extreme is None else {"max": extreme.max, "mean": extreme.mean, "at": list(extreme.at)}

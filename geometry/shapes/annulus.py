@@ -20,7 +20,7 @@ class Annulus:
     topology: Topology = "o"
 
     def __init__(self, body: Shape, outer: Curve, name: str = "") -> None:
-        self._body, self._outer, self.name = body, outer, name
+        self.body, self.outer, self.name = body, outer, name
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the O boundary: the body sampled as by itself, the outer curve in place of its circle.
@@ -29,7 +29,7 @@ class Annulus:
         """
         if sampling.topology not in ("auto", "o"):
             raise InputError("a body in a far field makes an O grid", "use {topology} o", source=self.name)
-        boundary = self._body.boundary(replace(sampling, topology="o"))
+        boundary = self.body.boundary(replace(sampling, topology="o"))
         north = self._around(boundary.north)
         cut = straight(boundary.south[0], north[0], boundary.nj)
         return replace(boundary, north=north, west=cut, east=cut)
@@ -38,10 +38,10 @@ class Annulus:
         """Return nodes (n, 2) of the outer curve in about equal steps, from where the circle begins."""
         middle = 0.5 * (circle.max(axis=0) + circle.min(axis=0))
         wanted = (circle[0] - middle) / np.hypot(*(circle[0] - middle))
-        arcs = np.linspace(0.0, self._outer.length, 2049)[:-1]
-        off = self._outer.at(arcs) - middle
+        arcs = np.linspace(0.0, self.outer.length, 2049)[:-1]
+        off = self.outer.at(arcs) - middle
         first = float(arcs[int(np.argmax(off @ wanted / np.hypot(*off.T)))])
-        steps = stretch_arcs(self._outer, first, first, len(circle) - 1, "uniform")
-        nodes = self._outer.at(steps % self._outer.length)
+        steps = stretch_arcs(self.outer, first, first, len(circle) - 1, "uniform")
+        nodes = self.outer.at(steps % self.outer.length)
         nodes[-1] = nodes[0]
         return nodes

@@ -22,16 +22,16 @@ class Labelled:
     """
 
     def __init__(self, shape: Shape, edges: Floats, names: Sequence[str]) -> None:
-        self._shape, self._edges, self._names = shape, edges, tuple(names)
+        self.shape, self._edges, self._names = shape, edges, tuple(names)
 
     @property
     def name(self) -> str:
         """What the input called it."""
-        return self._shape.name
+        return self.shape.name
 
     def boundary(self, sampling: Sampling) -> Boundary:
         """Return the boundary of the shape, each cell of it called as the edge nearest to its middle."""
-        boundary = self._shape.boundary(sampling)
+        boundary = self.shape.boundary(sampling)
         sides: tuple[Side, ...] = ("south", "north") if boundary.around_body else SIDES
         patches = []
         for side in sides:

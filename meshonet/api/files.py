@@ -6,11 +6,19 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from meshonet.formats.output import whole_file
-from meshonet.formats.registry import format_for_output, format_of, is_designation, read_grids, read_shapes
+from meshonet.formats.registry import (
+    Kind,
+    format_for_output,
+    format_of,
+    is_designation,
+    read_grids,
+    read_shapes,
+)
 from meshonet.formats.source import open_source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
 
 T = TypeVar("T")
@@ -59,8 +67,8 @@ def read_all(path: str | Path, *, from_format: str | None = None) -> Iterator[Gr
         return read_shapes(text, from_format)
 
 
-def write(what: Grid | Boundary, path: str | Path, *, to_format: str | None = None) -> None:
-    """Write a grid or a boundary, whole or not at all.
+def write(what: Grid | Boundary | Layout, path: str | Path, *, to_format: str | None = None) -> None:
+    """Write a grid, a boundary or a layout, whole or not at all.
 
     Parameters
     ----------
@@ -69,8 +77,11 @@ def write(what: Grid | Boundary, path: str | Path, *, to_format: str | None = No
 
     Raises InputError: a format that is not known or cannot hold this; a place that cannot be written.
     """
-    fmt = format_for_output(str(path), to_format, "grids" if isinstance(what, Grid) else "boundaries")
-    put: Any = fmt.write_grids if isinstance(what, Grid) else fmt.write_boundaries
+    kind: Kind = (
+        "grids" if isinstance(what, Grid) else "layouts" if isinstance(what, Layout) else "boundaries"
+    )
+    fmt = format_for_output(str(path), to_format, kind)
+    put: Any = getattr(fmt, f"write_{kind}")
     folder = fmt.fills_folder
     with whole_file(str(path), make_folder=folder, beside=folder or fmt.beside) as part:
         put(part, [what])

@@ -1,38 +1,55 @@
 """`meshonet.grid`, and the functions of the commands that make grids and boundaries."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
 import numpy as np
 
 from meshonet.api.files import read
+from meshonet.formats.layout.read import layout_of
 from meshonet.formats.mesh.recover_topology import boundary_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.families.draw import draws
+from meshonet.geometry.shapes.assembly import assembled
+from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.polygon_shape import domain_or_body
 from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import grid_request, sampling_of
 
-AnyShape: TypeAlias = str | Path | Floats | Shape | Grid
+AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
 """A path, a designation ``naca:2412``, points (n, 2) of an outline, or what the library makes of these."""
 Counts: TypeAlias = int | tuple[int, int]
 
 
-def grid(shape: AnyShape, *, res: Counts | None = None, method: str = "best", **parameters: Any) -> Grid:
-    """Return a valid grid inside a boundary or around a body.
+def grid(
+    shape: AnyShape | Sequence[AnyShape],
+    *,
+    res: Counts | None = None,
+    method: str = "best",
+    assemble: bool = False,
+    **parameters: Any,
+) -> Grid:
+    """Return a valid grid inside a boundary, around a body, or of the blocks of a domain.
 
     Parameters
     ----------
-    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges.
+    shape : a file or designation, points (n, 2) of a closed outline, a boundary, a grid for its outer edges,
+        a `meshonet.Domain`; with `assemble` a list of these.
+    assemble : whether all of them are one domain.
     res : nodes along xi (around a body) and eta (away from it); one number for both.
     method : ``best`` for what measures best, ``auto`` for the same among equations, a name in
         `meshonet.METHODS`, or ``operator:NAME``.
     parameters : those of `meshonet.Sampling` and `meshonet.GridRequest`, such as ``topology``, ``far_field``,
-        ``y_plus``, ``reynolds``, ``growth``, ``repair``, and settings of the method, such as ``tol``.
+        ``y_plus``, ``reynolds``, ``growth``, ``repair``, ``cells``, ``cell_size``, ``walls``, ``layout``
+        (one, or its file), and settings of the method, such as ``tol``.
 
     The grid has `write`, `quality` and `to_pyvista`; `meshonet.make_grid` returns notes and times too. Raises
     InputError: a shape or parameter that cannot be used; NoValidGridError: cells are folded, and
@@ -42,7 +59,19 @@ def grid(shape: AnyShape, *, res: Counts | None = None, method: str = "best", **
     >>> made.ni, made.nj, made.topology, made.quality().folded
     (81, 31, 'o', 0)
     """
-    return make_grid(shape_of(shape), grid_request(method, res=res, **parameters)).grid
+    far_field = parameters.get("far_field")
+    request = grid_request(method, res=res, **domain_parameters(parameters))
+    return make_grid(shape_of(shape, assemble=assemble, far_field=far_field), request).grid
+
+
+def domain_parameters(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Return parameters with the layout of a file read, and names of walls as a tuple of them."""
+    layout, walls = parameters.get("layout"), parameters.get("walls", ())
+    if isinstance(layout, str | Path):
+        parameters = parameters | {"layout": layout_of(str(layout))}
+    if not isinstance(walls, tuple):
+        parameters = parameters | {"walls": tuple(walls.split(",") if isinstance(walls, str) else walls)}
+    return parameters
 
 
 def tfi(shape: AnyShape, *, res: Counts | None = None, **parameters: Any) -> Grid:
@@ -116,18 +145,28 @@ def sample_family(
     return [member.boundary(sampling) for member in draws(family, count, spread, seed, split)]
 
 
-def shape_of(shape: AnyShape) -> Shape:
-    """Return what can be sampled into a boundary.
+def shape_of(
+    shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, far_field: float | None = None
+) -> Shape:
+    """Return what can be sampled into a boundary; with `assemble`, the domain that several shapes make.
 
     Raises InputError: a file that cannot be read, an array of another shape than (n, 2).
     """
+    if assemble:
+        members = [shape] if isinstance(shape, str | Path) else list(cast(Sequence[AnyShape], shape))
+        names = [Path(each).stem if isinstance(each, str | Path) else "" for each in members]
+        shapes = [shape_of(each) for each in members]
+        names = [name or each.name or "body" for name, each in zip(names, shapes, strict=True)]
+        return assembled(shapes, names, Sampling(far_field=far_field), "+".join(names))
+    if isinstance(shape, Domain):
+        return DomainShape(shape)
     if isinstance(shape, str | Path):
         shape = cast(AnyShape, read(shape))
     if isinstance(shape, Grid):
         return boundary_of(shape)
     if hasattr(shape, "boundary"):
         return cast(Shape, shape)
-    points = np.asarray(shape, dtype=np.float64)
+    points = np.asarray(cast(Floats, shape), dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 2:
         raise InputError(f"points of shape {points.shape}", "give (n, 2)", parameter="shape")
-    return Outline(points)
+    return domain_or_body(Outline(points))

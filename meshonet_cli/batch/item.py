@@ -35,10 +35,11 @@ class Item(Generic[T]):
     what: T  # the shape or grid
     seconds: float  # spent on reading it
     only: bool = True  # whether its source holds nothing else
+    called: str = ""  # its stem, where it comes from several files
 
     def without_content(self) -> Item[Name]:
         """Return the same member with nothing but the name of what it holds."""
-        return Item(self.index, self.source, Name(self.what.name), self.seconds, self.only)
+        return Item(self.index, self.source, Name(self.what.name), self.seconds, self.only, self.called)
 
     @property
     def label(self) -> str:
@@ -49,4 +50,6 @@ class Item(Generic[T]):
     @property
     def stem(self) -> str:
         """The input's file name without folder and ending."""
-        return "stdin" if self.source == "-" else Path(self.source).stem.replace(":", "")
+        if self.called or self.source == "-":
+            return self.called or "stdin"
+        return Path(self.source).stem.replace(":", "")

@@ -9,9 +9,11 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item, Name, Named
 from meshonet_cli.batch.timed import Timed
@@ -21,7 +23,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
 T = TypeVar("T", bound=Named)
-S = TypeVar("S", bound=Grid | Boundary)
+S = TypeVar("S", bound=Grid | Boundary | Layout)
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
@@ -180,7 +182,7 @@ def _streamed(
     done: Iterator[Done[S, R]], destination: Destination, session: Session, written: Callable[[R, str], None]
 ) -> Iterator[S]:
     """Yield what goes into one file; each is reported when the writer comes back for the next one."""
-    size: tuple[int, int, str] | None = None
+    size = ""
     for item, _, outcome in done:
         what: S | None = None
         with session.member(item.label, item.source):
@@ -195,11 +197,11 @@ def _streamed(
         written(report, destination.text)
 
 
-def _same_size(what: Grid | Boundary, size: tuple[int, int, str] | None) -> tuple[int, int, str]:
-    own = (what.ni, what.nj, what.topology)
-    if size is not None and own != size:
-        raise InputError(
-            "{}x{} {} does not fit a dataset of {}x{} {}".format(*own, *size),
-            "set {res} and {topology}, or write one file each",
-        )
+def _same_size(what: Grid | Boundary | Layout, size: str) -> str:
+    if isinstance(what, Layout):
+        return ""
+    own = size_of(what)
+    if size and own != size:
+        problem = f"{own} does not fit a dataset of {size}"
+        raise InputError(problem, "set {res} and {topology}, or write one file each")
     return own

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -13,10 +14,11 @@ from meshonet_cli.errors import with_options
 from meshonet_cli.text import span
 
 if TYPE_CHECKING:
+    from meshonet.geometry.blocks.block import Block
     from meshonet.geometry.blocks.boundary import Boundary
     from meshonet.geometry.blocks.grid import Grid
 
-STAGES = ("read", "boundary", "load", "grid", "guard", "quality", "compare", "write")
+STAGES = ("read", "boundary", "load", "layout", "grid", "guard", "quality", "compare", "write")
 
 
 @dataclass
@@ -82,17 +84,31 @@ class Delivered(Timed):
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
-        counts = {"ni": self.what.ni, "nj": self.what.nj, "topology": self.what.topology}
+        counts = self._counts() | {"topology": self.what.topology}
         notes = {"notes": [with_options(note) for note in self.notes]} if self.notes else {}
         return {**self.member_json(), **counts, **self.facts, **notes, "seconds": self.times_json()}
 
     def lines(self) -> str:
         """Return it for people."""
-        size = f"{self.what.ni} x {self.what.nj} nodes, {self.text or self.what.topology}"
-        head = f"{self.item.label} -> {self.output}: {size}, {self.times()}"
+        counts = self._counts()
+        size = (
+            "{ni} x {nj} nodes"
+            if "ni" in counts
+            else "{blocks} blocks, {cells} cells, {interfaces} interfaces"
+        )
+        text = f"{size.format(**counts)}, {self.text or self.what.topology}"
+        head = f"{self.item.label} -> {self.output}: {text}, {self.times()}"
         return "\n  ".join([head, *map(with_options, self.notes)])
+
+    def _counts(self) -> dict[str, int]:
+        if self.what.topology != "blocks":
+            return {"ni": self.what.ni, "nj": self.what.nj}
+        blocks: tuple[Block, ...] = getattr(self.what, "blocks", ())
+        cells = sum(math.prod(count - 1 for count in block.counts) for block in blocks)
+        return {"blocks": len(blocks), "cells": cells, "interfaces": len(self.what.connections)}
 
 
 def part_names(what: Grid | Boundary) -> dict[str, Any]:
     """Return the names of the parts of a boundary, a fact for JSON."""
-    return {"parts": [patch.name for patch in what.patches]}
+    names = [patch.name for patch in what.patches]
+    return {"parts": list(dict.fromkeys(names)) if what.topology == "blocks" else names}

@@ -43,6 +43,7 @@ COMMANDS: tuple[Command, ...] = (
     Command("solve-pde", "Make grids by elliptic equations, a variational method, or marching."),
     Command("train", "Fit a neural operator to datasets (needs the extra `train`)."),
     Command("infer", "Make the grid that measures best: conformal, marched or variational."),
+    Command("layout", "Split domains into blocks and write these."),
     Command("quality", "Measure grids: folded cells, angles, skewness."),
     Command("convert", "Turn files from one format into another."),
     Command("plot", "Draw grids, coloured by a quality metric."),

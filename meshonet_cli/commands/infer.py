@@ -9,6 +9,8 @@ EXAMPLES = (
     "meshonet infer naca:2412 --fail-on 'max_angle>178' --json -o naca2412.h5",
     "meshonet infer airfoil.dat --first-cell 1e-5 --growth 1.15 -o viscous.vts",
     "meshonet infer airfoils/*.dat --res 200 -o 'grids/{stem}.vts'",
+    "meshonet infer plate.geojson --cells 2500 -o plate.cgns",
+    "meshonet infer main.dat flap.dat --assemble --far-field 20 -o wing.cgns",
 )
 _option = o.option_of(o.METHOD)
 
@@ -40,17 +42,21 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 @o.expanded
 def infer(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
-    checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions, model: ModelName = None,
-    polish: Polish = "auto", answer: Answer = "valid", device: DeviceName = None, jobs: o.Jobs = 1,
+    domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
+    blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
+    answer: Answer = "valid", device: DeviceName = None, jobs: o.Jobs = 1,
 ) -> int:  # fmt: skip
     """Make the grid that measures best: conformal, marched or variational.
 
     Around a body, this is an O grid by a conformal map, or a grid marched from the wall for C grids and where
-    a first cell is given. In a four-sided domain the variational method makes it. A neural operator is used
-    where --model, --polish or --device asks for one.
+    a first cell is given. In a four-sided domain the variational method makes it. Any other domain is split
+    into blocks. A neural operator is used where --model, --polish or --device asks for one.
     """
     from meshonet_cli.grid_batch import request_of, write_grids
 
     settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
-    request = request_of("best", sampling, checks, first, settings=settings)
-    return write_grids(boundary, output, request, checks, files, printing.session(), jobs=jobs)
+    request = request_of(
+        "best", sampling, checks, first, settings=settings, blocks=blocks, **domain.parameters(walls)
+    )
+    session = printing.session()
+    return write_grids(boundary, output, request, checks, files, session, assemble=domain.assemble, jobs=jobs)

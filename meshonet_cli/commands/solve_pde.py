@@ -72,7 +72,8 @@ History = Annotated[str | None, o.option_of(o.IO)(
 @o.expanded
 def solve_pde(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
-    sides: o.SideOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
+    sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
+    printing: o.PrintOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None,
     method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
     refine: Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
     wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None, jobs: o.Jobs = 1,
@@ -86,7 +87,10 @@ def solve_pde(
         coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
         history=history is not None,
         slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
+        blocks=blocks, **domain.parameters(walls),
     )  # fmt: skip
+    session = printing.session()
     return write_grids(
-        boundary, output, request, checks, files, printing.session(), history=history, jobs=jobs
-    )
+        boundary, output, request, checks, files, session,
+        history=history, assemble=domain.assemble, jobs=jobs,
+    )  # fmt: skip

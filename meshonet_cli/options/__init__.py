@@ -7,8 +7,10 @@ fields become options (``layers: o.LayerOptions``, see `meshonet_cli.options.blo
 from meshonet_cli.options.blocks import expanded as expanded
 from meshonet_cli.options.boundary_layer import *  # noqa: F403
 from meshonet_cli.options.checks import *  # noqa: F403
+from meshonet_cli.options.domain import *  # noqa: F403
 from meshonet_cli.options.groups import BOUNDARY_LAYER as BOUNDARY_LAYER
 from meshonet_cli.options.groups import CHECKS as CHECKS
+from meshonet_cli.options.groups import DOMAIN as DOMAIN
 from meshonet_cli.options.groups import IO as IO
 from meshonet_cli.options.groups import METHOD as METHOD
 from meshonet_cli.options.groups import SAMPLING as SAMPLING

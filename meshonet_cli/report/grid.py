@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 from meshonet_cli.batch.timed import Timed
 from meshonet_cli.errors import with_options
-from meshonet_cli.text import span
+from meshonet_cli.text import named, span
 
 if TYPE_CHECKING:
-    from meshonet.geometry.quality.measure import Quality
+    from meshonet.geometry.quality.blocks import BlockFigures
+    from meshonet.geometry.quality.summary import Quality
     from meshonet.solvers.progress import Row
 
 
@@ -23,8 +24,8 @@ class Report(Timed):
     """
 
     method: str
-    ni: int
-    nj: int
+    ni: int | None
+    nj: int | None
     topology: str
     quality: Quality
     model: str | None = None
@@ -33,14 +34,16 @@ class Report(Timed):
     cycles: int | None = None
     notes: tuple[str, ...] = ()
     history: tuple[Row, ...] = ()
+    blocks: BlockFigures | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return what ``--json`` prints."""
         from meshonet.geometry.quality.report import quality_dict
 
+        blocks = {} if self.blocks is None else {"cells": self.quality.cells, **self.blocks.as_dict()}
         return {
             **self.member_json(), "method": self.method, "model": self.model, "ni": self.ni, "nj": self.nj,
-            "topology": self.topology, "folded": self.quality.folded, "path": list(self.path),
+            "topology": self.topology, **blocks, "folded": self.quality.folded, "path": list(self.path),
             "residual": self.residual, "cycles": self.cycles, "quality": quality_dict(self.quality),
             "seconds": self.times_json(), "notes": [with_options(note) for note in self.notes],
         }  # fmt: skip
@@ -48,17 +51,16 @@ class Report(Timed):
     def lines(self) -> str:
         """Return the report of a single grid for people."""
         angle = self.quality["max_angle"]
-        i, j = angle.worst
         rows = {
             "method": self.method + (f", model {self.model}" if self.model else "") + _after(self.path),
             "residual": f"{self.residual:.1e} after {self.cycles} cycle{'' if self.cycles == 1 else 's'}"
             if self.residual is not None
             else "",
             "folded": f"{self.quality.folded} of {self.quality.cells} cells",
-            "max angle": f"{angle.max:.1f} degrees at i={i}, j={j}; mean {angle.mean:.1f}",
+            "max angle": f"{angle.max:.1f} degrees at {named(angle.worst)}; mean {angle.mean:.1f}",
             "time": self.times(),
         }
-        head = f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} nodes, {self.topology} grid"
+        head = f"{self.item.label} -> {self.output}: {self._size()}, {self.topology} grid"
         notes = [f"  {with_options(note)}" for note in self.notes]
         return "\n".join([head, *(f"  {name:<10} {text}" for name, text in rows.items() if text), *notes])
 
@@ -66,10 +68,18 @@ class Report(Timed):
         """Return the report of a member of a batch for people."""
         angle = self.quality["max_angle"].max
         return (
-            f"{self.item.label} -> {self.output}: {self.ni} x {self.nj} {self.topology}, "
+            f"{self.item.label} -> {self.output}: {self._size(short=True)}, "
             f"{self.quality.folded} folded, max angle {angle:.1f}, "
             f"{self.method}{_after(self.path)}, {span(self.seconds['total'])}"
         )
+
+    def _size(self, *, short: bool = False) -> str:
+        """Return how large the grid is."""
+        if self.blocks is None:
+            return f"{self.ni} x {self.nj} {self.topology if short else 'nodes'}"
+        count, irregular = len(self.blocks.sizes), len(self.blocks.irregular)
+        size = f"{count} block{'' if count == 1 else 's'}, {self.quality.cells} cells"
+        return f"{size}, {irregular or 'no'} irregular {'vertex' if irregular == 1 else 'vertices'}"
 
 
 def _after(path: tuple[str, ...]) -> str:

@@ -30,7 +30,7 @@ from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
 
 ATTEMPTS = 5
-FIRST_ITERATIONS, BEFORE_PADDING = 60, 25
+HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
 CELLS = 900
 """Cells of the quad mesh that blocks are found in and judged on."""
 COUNT = 1500
@@ -105,7 +105,13 @@ def _blocks(mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | 
 
 
 def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> QuadMesh:
-    optimum = optimise(mesh, iterations=iterations, targets=sizes.edges(mesh) if sizes else None)
+    """Return the mesh with its nodes optimised, wall nodes where they are to begin with.
+
+    A folded mesh would else be unfolded by sliding most of it along smooth walls into a small part of them.
+    """
+    wall, targets = mesh.places.loop >= 0, sizes.edges(mesh) if sizes else None
+    held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall, targets=targets)
+    optimum = optimise(held.mesh if held.valid else mesh, iterations=iterations, targets=targets)
     if not optimum.valid or not np.isfinite(optimum.value):
         raise BlockingError("the quad mesh stays folded")
     return optimum.mesh

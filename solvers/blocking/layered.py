@@ -43,6 +43,8 @@ MOST_OPTIMISED = 4000
 ITERATIONS = 120
 EVEN = float(np.log(1.15))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+PRICE = 0.02
+"""Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 _BISECTIONS = 12
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
@@ -117,7 +119,7 @@ def layered(
         rings = Rings.around(domain, loops, settings)
     if layout is None:
         plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
-        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain))
+        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
     fine = _outside(rings, layout, cells, timings)
     with timings.stage("layers"):

@@ -1,15 +1,20 @@
 """Shapes in, valid grids out: sample, solve, check, measure; many at a time where that is faster."""
 
+from __future__ import annotations
+
 import contextlib
 import time
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import islice
+from typing import TYPE_CHECKING
 
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.measure import Quality, measure
+from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.quality.measure import measure, worst_cells_of
+from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.method import Method
@@ -17,6 +22,9 @@ from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import History, Row, listening
 from meshonet.solvers.solution import Outcome, Solution
+
+if TYPE_CHECKING:
+    from meshonet.geometry.shapes.domain_shape import DomainShape
 
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
@@ -86,7 +94,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 class _Member:
     """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
 
-    boundary: Boundary | Exception
+    boundary: Boundary | DomainShape | Exception
     seconds: dict[str, float] = field(default_factory=dict)
     solution: Solution | None = None
 
@@ -97,7 +105,7 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
     for shape in islice(shapes, most):
         begun = time.perf_counter()
         try:
-            boundary: Boundary | Exception = _sampled(shape, request)
+            boundary: Boundary | DomainShape | Exception = _sampled(shape, request)
         except Exception as error:
             boundary = error
         group.append(_Member(boundary, {"boundary": time.perf_counter() - begun}))
@@ -107,7 +115,14 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
     return group
 
 
-def _sampled(shape: Shape, request: GridRequest) -> Boundary:
+def _sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape:
+    """Return the boundary of a shape, or the domain that it is where many blocks are made of it."""
+    if request.asks_for_blocks or getattr(shape, "many", False):
+        from meshonet.solvers.pipeline.blocks import as_blocks
+
+        domain = as_blocks(shape, request)
+        if domain is not None:
+            return domain
     sampling = request.shape_sampling()
     boundary = edges_of(shape, sampling)
     if request.refine:
@@ -153,6 +168,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     boundary, solution, seconds = member.boundary, member.solution, member.seconds
     if isinstance(boundary, Exception):
         raise boundary
+    if not isinstance(boundary, Boundary):
+        return _of_blocks(boundary, request, seconds)
     history = History()
     if solution is None:
         begun = time.perf_counter()
@@ -170,6 +187,32 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     seconds["quality"] = time.perf_counter() - begun
     checked = replace(checked, grid=replace(checked.grid, origin=boundary.origin))
     return Result(checked, quality, seconds, notes, rows)
+
+
+def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the grid of blocks of a domain, measured."""
+    from meshonet.solvers.pipeline.blocks import block_request, smoothed, smooths
+
+    begun = time.perf_counter()
+    if shape.given is not None and smooths(shape, request):
+        solution = smoothed(shape.given, request)
+        seconds |= {"load": time.perf_counter() - begun - solution.seconds["grid"], **solution.seconds}
+        begun = time.perf_counter()
+        quality = measure(solution.grid, percentiles=request.percentiles)
+        seconds["quality"] = time.perf_counter() - begun
+        return Result(solution, quality, seconds, (*shape.notes, *solution.notes))
+    from meshonet.solvers.blocking.make import make_blocks
+
+    loaded = time.perf_counter()
+    solution = make_blocks(shape, block_request(request))
+    seconds |= {"load": loaded - begun, **solution.seconds}
+    begun = time.perf_counter()
+    quality = measure(solution.grid, percentiles=request.percentiles)
+    seconds["quality"] = time.perf_counter() - begun
+    if quality.folded and not request.allow_invalid:
+        problem = f"{quality.folded} of {quality.cells} cells of the blocks are folded; use more {{cells}}"
+        raise NoValidGridError(problem, worst_cells_of(solution.grid))
+    return Result(solution, quality, seconds, solution.notes)
 
 
 def _add_times(seconds: dict[str, float], solution: Solution, spent: float) -> None:

@@ -18,9 +18,13 @@ from meshonet.solvers.pipeline.select import best, elliptic, fewer_on_quads
 from meshonet.solvers.pipeline.sequence import Sequenced
 
 if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.layered import FirstCells
 
 OPERATOR_SETTINGS = ("model", "polish", "device")  # settings any of which asks for a network
+
+OF_BLOCKS = ("cells", "cell_size", "walls", "pitch", "inlet", "outlet", "layout")
+"""Parameters any of which asks for many blocks."""
 
 DEFAULTS = {"coarse": "auto", "refine": 0, "polish": "auto", "answer": "valid", "blending": "arclength"}
 """Values that say nothing; of other parameters None is one."""
@@ -59,6 +63,9 @@ class GridRequest:
     allow_invalid : whether a folded grid is a result.
     percentiles : whether the quality includes percentiles.
     history : whether the cycles of the solve are kept.
+    blocks : ``single`` for one block also where many would be made.
+    cells, cell_size, walls, pitch, inlet, outlet, layout : of a grid of many blocks, which these ask for
+        (`meshonet.solvers.blocking.request.BlockRequest`).
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
     """
@@ -86,6 +93,14 @@ class GridRequest:
     allow_invalid: bool = False
     percentiles: bool = False
     history: bool = False
+    blocks: Literal["auto", "single"] = "auto"
+    cells: int | None = None
+    cell_size: float | None = None
+    walls: tuple[str, ...] = ()
+    pitch: tuple[float, float] | None = None
+    inlet: float | None = None
+    outlet: float | None = None
+    layout: Layout | None = None
 
     def __post_init__(self) -> None:
         if self.method not in ("best", "auto") and self.method.partition(":")[0] not in METHODS:
@@ -110,6 +125,17 @@ class GridRequest:
         tol = self.settings.get("tol")
         if tol is not None and not 0 < tol < 1:
             raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
+        if self.blocks not in ("auto", "single"):
+            raise InputError(f"blocks {self.blocks!r} is not known", "use auto or single")
+        if self.asks_for_blocks:
+            from meshonet.solvers.pipeline.blocks import check_asked
+
+            check_asked(self)
+
+    @property
+    def asks_for_blocks(self) -> tuple[str, ...]:
+        """Names of the parameters that are given and that only many blocks have a use for."""
+        return tuple(name for name in OF_BLOCKS if getattr(self, name) not in (None, ()))
 
     def _check_first_cells(self) -> None:
         if self.first_cell is not None and self.y_plus is not None:
@@ -196,7 +222,7 @@ class GridRequest:
         return Layered(
             method, self.first_cells(), {**(self.settings if own else {}), **self._angle()}, full,
             marched=TOPOLOGIES if self.method == "hyperbolic" else ("o", "c") if automatic else (),
-            channels=automatic, slide=self.slide, chosen=self._chosen(),
+            channels=automatic, slide=self.slide, chosen=self.chosen,
         )  # fmt: skip
 
     def _base(self) -> Method:
@@ -216,7 +242,7 @@ class GridRequest:
         if isinstance(self.coarse, int):
             return Coarse(base, self.coarse)
         if self._operator or self.method == "best":
-            network = ":" in self.method or any(name in self._chosen() for name in OPERATOR_SETTINGS)
+            network = ":" in self.method or any(name in self.chosen for name in OPERATOR_SETTINGS)
             return base if network else best(base)
         if self.coarse is None or self.settings or self.initial is not None:
             return base
@@ -233,8 +259,9 @@ class GridRequest:
     def _angle(self) -> dict[str, float]:
         return {} if self.wall_angle is None else {"angle": self.wall_angle}
 
-    def _chosen(self) -> tuple[str, ...]:
-        """Return what was given and is not so by default, in the order in which it is refused."""
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """What was given and is not so by default, in the order in which it is refused."""
         values = {**self.settings, "initial": self.initial, "coarse": self.coarse, "refine": self.refine}
         return tuple(name for name, value in values.items() if value != DEFAULTS.get(name))
 

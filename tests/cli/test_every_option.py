@@ -31,6 +31,7 @@ TORCH = importlib.util.find_spec("torch") is not None
 Effect = tuple[str, str, str]
 """Words of the run before, words added (OPTION stands for the spelling), what differs."""
 
+THERE = ("there.h5", "there.png", "there.json")
 BODY, GRID, LAYERS = "naca:2412 --res 41x15", "grid.h5", "naca:2412 --res 61x41 --first-cell 1e-3"
 MADE = "-o made.h5 -q"
 PLATE = f"naca:2412 --res 61x41 --y-plus 100 --reynolds 1e5 {MADE}"
@@ -74,6 +75,19 @@ SIDES = {
     f"--spacing-{side}": (f"{GRID} {MADE}", "OPTION .01", "nodes")
     for side in ("south", "north", "west", "east")
 }
+DOMAINS = {
+    "--assemble": ("naca:0012 tail.csv --res 31 -o {name}.h5 -q", "OPTION", "files"),
+    "--cells": (f"step.wkt {MADE}", "OPTION 400", "nodes"),
+    "--cell-size": (f"step.wkt {MADE}", "OPTION .2", "nodes"),
+    "--layout": (f"step.wkt --cells 400 {MADE}", "OPTION tall.json", "nodes"),
+    "--pitch": (f"naca:0012 --cells 900 {MADE}", "OPTION 0,0", "code"),
+    "--inlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
+    "--outlet": (f"naca:0012 --cells 900 {MADE}", "OPTION .7", "code"),
+}
+BLOCKS = DOMAINS | {
+    "--blocks": (f"step.wkt --res 21 {MADE}", "OPTION single", "nodes"),
+    "--walls": (f"hole.wkt --cells 900 --first-cell .02 {MADE}", "OPTION bolt", "error"),
+}
 TRAINING = "arches.h5 --epochs 4 --points 60 --batch 4 -o new.safetensors"
 
 EFFECTS: dict[str, dict[str, Effect]] = {
@@ -91,7 +105,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--repair": (f"wave.h5 {MADE}", "OPTION", "code"),
         "--no-repair": (f"wave.h5 --repair {MADE}", "OPTION", "code"),
     },
-    "solve-pde": GRIDS | SIDES | {
+    "solve-pde": GRIDS | SIDES | BLOCKS | {
         "--method": (f"{GRID} {MADE}", "OPTION variational", "nodes"),
         "--tol": (f"wrench.h5 {MADE}", "OPTION .1", "nodes"),
         "--max-cycles": (f"wrench.h5 {MADE}", "OPTION 1", "nodes"),
@@ -106,7 +120,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--no-repair": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION", "code"),
         "--repair-margin": (f"wrench.h5 --tol 1e-6 {MADE}", "OPTION 12", "nodes"),
     },
-    "infer": GRIDS | {
+    "infer": GRIDS | BLOCKS | {
         "--model": (f"{BODY} {MADE}", "OPTION airfoil-o", "nodes"),
         "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
         "--device": (f"{BODY} {MADE}", "OPTION cpu", "nodes" if TORCH else "code"),
@@ -147,6 +161,22 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--metric": ("grid.h5 -o made.png -q", "OPTION skewness", "bytes"),
         "--zoom": ("grid.h5 -o made.png -q", "OPTION .5,1.5,0,.5", "bytes"),
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
+    },
+    "layout": PRINTING | DOMAINS | {
+        "--json": ("step.wkt -o made.json", "OPTION", "prints"),
+        "--quiet": ("step.wkt -o made.json", "OPTION", "says"),
+        "--debug": ("missing.wkt -o made.json", "OPTION", "error"),
+        "--output": ("step.wkt -o made.json -q", "OPTION other.json", "files"),
+        "--from": ("odd.name -o made.json -q", "OPTION vts", "code"),
+        "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
+        "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
+        "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
+        "--assemble": ("naca:0012 tail.csv -o {name}.json -q", "OPTION", "files"),
+        **{
+            name: (base.replace(MADE, "-o made.json -q"), more, differs.replace("nodes", "bytes"))
+            for name, (base, more, differs) in DOMAINS.items()
+            if name != "--assemble"
+        },
     },
     "models": {
         "--json": ("", "OPTION", "out"),
@@ -208,11 +238,15 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     edges = duct()
     edges["south"][1] = [-0.05, -0.05]
     dataset(folder / "open.h5", "quad", edges)
+    (folder / "tail.csv").write_text("2,0\n2.2,.1\n2.4,0\n2.2,-.1\n2.05,-.08\n")
+    (folder / "step.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 2, 0 2, 0 1))")
+    (folder / "tall.wkt").write_text("POLYGON ((0 1, 2 1, 2 0, 6 0, 6 3, 0 3, 0 1))")
+    (folder / "hole.wkt").write_text("POLYGON ((0 0, 3 0, 3 3, 0 3, 0 0), (1 1, 1 2, 2 2, 2 1, 1 1))")
     (folder / "box.csv").write_text("0,0\n2,0\n3,1\n0,1\n")
     (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
     (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
-    for name in ("there.h5", "there.png"):
+    for name in THERE:
         (folder / name).write_text("mine")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
@@ -225,6 +259,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "sample-boundary --family wrench --count 1 --seed 1 -o wrench.h5",
             "sample-boundary --family arch --count 8 --res 17 --split interpolation -o edges.h5",
             "solve-pde edges.h5 -o arches.h5",
+            "layout tall.wkt -o tall.json",
         ):
             assert run([*words.split(), "-q"]) == 0
         if TORCH:
@@ -245,7 +280,7 @@ def observed(
     done = meshonet(command, *words)
     after = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
     appeared = sorted({path.name for path in folder.iterdir()} - {path.name for path in inputs.iterdir()})
-    written = [folder / name for name in appeared] or [folder / name for name in ("there.h5", "there.png")]
+    written = [folder / name for name in appeared] or [folder / name for name in THERE]
     content = b"".join(path.read_bytes() for path in written if path.suffix != ".h5")
     return {
         "code": done.code,
@@ -278,7 +313,8 @@ def nodes(path: Path) -> list[bytes]:
     if layout(path) == b"mine":
         return []
     try:
-        return [grid.nodes.tobytes() for grid in read_grids(str(path))]
+        grids = list(read_grids(str(path)))
+        return [b"".join(block.nodes.tobytes() for block in grid.blocks) for grid in grids]
     except ValueError:
         raise
     except Exception:  # a file of boundaries

@@ -13,7 +13,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 from format_shapes import VARIANTS, channel
+from many_blocks import passage
 
+from meshonet.formats.format import Format
 from meshonet.formats.registry import TABLE, format_named
 
 READABLE = [
@@ -22,6 +24,9 @@ READABLE = [
     if (format_named(name).read_grids or format_named(name).read_shapes) and not format_named(name).beside
 ]
 """What reads a stream of bytes; each has a process of its own in ``make fuzz``."""
+BLOCKS = " of blocks"
+"""Behind the name of a format: files of it that hold a grid of several blocks."""
+READABLE += [name + BLOCKS for name in ("hdf5", "cgns", "plot3d", "plot3d:binary")]
 SECTION = "A SECTION\n" + "".join(
     f"{0.5 + 0.5 * np.cos(a):.6f} {0.06 * np.sin(a):.6f}\n" for a in np.linspace(0, 2 * np.pi, 41)
 )
@@ -53,11 +58,16 @@ def good(name: str) -> bytes:
     """Return a good file of a format."""
     if name in TEXTS:
         return TEXTS[name].encode()
-    writer = format_named(name).write_grids
+    writer = record_of(name).write_grids
     assert writer is not None, f"{name} needs a good file in TEXTS"
     with TemporaryDirectory() as folder:
-        writer(Path(folder) / "g", [channel()])
+        writer(Path(folder) / "g", [passage() if name.endswith(BLOCKS) else channel()])
         return (Path(folder) / "g").read_bytes()
+
+
+def record_of(name: str) -> Format:
+    """Return the format of one of `READABLE`."""
+    return format_named(name.removesuffix(BLOCKS))
 
 
 def corpus(name: str) -> Iterator[tuple[str, bytes]]:

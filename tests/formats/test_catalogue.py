@@ -12,3 +12,4 @@ def test_every_format_has_its_row() -> None:
     assert (told["su2"]["reads"], told["su2"]["writes"]) == ("boundaries", "grids")
     assert told["hdf5"]["writes"] == "grids, boundaries"
     assert (told["png"]["3D"], told["vtu"]["names"]) == ("", "")
+    assert [told[name]["blocks"] for name in ("cgns", "su2", "vts")] == ["kept", "merged", ""]

@@ -8,12 +8,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hostile import BITS, READABLE, corpus, foreign, good
+from hostile import BITS, READABLE, corpus, foreign, good, record_of
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from many_blocks import passage
 
 from meshonet.formats.format import Format
-from meshonet.formats.registry import format_named
+from meshonet.formats.plot3d.read import read_grids as read_plot3d
+from meshonet.formats.plot3d.write import write_grids as write_plot3d
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
@@ -31,7 +33,8 @@ def refuse(record: Format, data: bytes) -> None:
         try:
             for item in read(source):
                 assert item.name.isprintable()
-                assert not isinstance(item, Grid) or np.isfinite(item.nodes).all()
+                blocks = item.blocks if isinstance(item, Grid) else ()
+                assert all(np.isfinite(block.nodes).all() for block in blocks)
         except InputError as error:
             refusal = error
         else:
@@ -44,7 +47,11 @@ def refuse(record: Format, data: bytes) -> None:
 
 def mutations(name: str) -> st.SearchStrategy[bytes]:
     """Return a good file of format `name` cut, with bytes changed, put in, taken out or repeated."""
-    data = good(name)
+    return mutated(good(name))
+
+
+def mutated(data: bytes) -> st.SearchStrategy[bytes]:
+    """Return `data` cut, with bytes changed, put in, taken out or repeated."""
     place = st.integers(0, len(data) - 1)
     bits = st.sampled_from(BITS)
 
@@ -62,7 +69,7 @@ def mutations(name: str) -> st.SearchStrategy[bytes]:
 
 @pytest.mark.parametrize("name", READABLE)
 def test_a_good_file_is_good(name: str) -> None:
-    record = format_named(name)
+    record = record_of(name)
     read = record.read_grids or record.read_shapes
     assert read is not None
     assert len(list(read(Source("good", data=good(name))))) == 1
@@ -72,19 +79,37 @@ def test_a_good_file_is_good(name: str) -> None:
 @settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(data=st.data())
 def test_a_damaged_file_is_refused_or_read(name: str, data: st.DataObject) -> None:
-    refuse(format_named(name), data.draw(mutations(name)))
+    refuse(record_of(name), data.draw(mutations(name)))
+
+
+@settings(max_examples=150, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@given(data=st.data())
+def test_a_damaged_map_is_refused_or_read(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("map")
+    write_plot3d(folder / "g.p3d", [passage()])
+    good_map = (folder / "g.nmf").read_bytes()
+    (folder / "g.nmf").write_bytes(data.draw(mutated(good_map)))
+    refused = None
+    try:
+        for grid in read_plot3d(Source("g", path=folder / "g.p3d")):
+            assert all(patch.name.isprintable() for patch in grid.patches)
+    except InputError as error:
+        refused = error
+    assert refused is None or (refused.remedy and str(refused).isprintable())
 
 
 @pytest.mark.parametrize("name", READABLE)
 @settings(max_examples=30, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(data=st.binary(max_size=300))
 def test_arbitrary_bytes_are_refused(name: str, data: bytes) -> None:
-    refuse(format_named(name), data)
+    refuse(record_of(name), data)
 
 
 @pytest.mark.parametrize("name", READABLE)
 def test_the_corpus_is_refused_or_read(name: str) -> None:
-    record, files = format_named(name), [*corpus(name), *foreign()]
+    record, files = record_of(name), [*corpus(name), *foreign()]
     assert len(files) > 80
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -115,4 +140,4 @@ def test_large_and_foreign_files_are_refused_soon(what: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for name in READABLE:
-            refuse(format_named(name), data)
+            refuse(record_of(name), data)

@@ -2,24 +2,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from format_shapes import VARIANTS, c_grid, channel, ring
+from many_blocks import MANY, by_block, sector
 
 from meshonet.formats.registry import format_named, formats, read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.find_connections import order
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
 EVERY = (*formats(), *map(format_named, VARIANTS))
 BOTH_WAYS = [row.name for row in EVERY if row.write_grids and row.read_grids]
+KEPT = [row.name for row in EVERY if row.blocks == "kept" and row.read_grids]
+MERGED = [row.name for row in EVERY if row.blocks == "merged"]
 AS_BOUNDARIES = [row.name for row in EVERY if row.write_grids and row.read_shapes and row.read_grids is None]
 
 
 def through(name: str, grid: Grid, folder: Path) -> Path:
     record = format_named(name)
+    folder.mkdir(exist_ok=True)
     path = folder / f"grid{record.suffixes[0]}"
     assert record.write_grids is not None
     record.write_grids(path, [grid])
@@ -40,6 +48,57 @@ def test_a_grid_goes_through_two_formats_bit_for_bit(first: str, make: type[Grid
         assert back.topology == grid.topology
         if format_named(first).names_patches and format_named(second).names_patches:
             assert (back.patches, back.name) == (grid.patches, grid.name)
+
+
+def joints(grid: Grid) -> tuple[Connection, ...]:
+    """Connections in their order, which files may change."""
+    return tuple(sorted(grid.connections, key=order))
+
+
+@pytest.mark.parametrize("make", MANY)
+@pytest.mark.parametrize("first", KEPT)
+def test_a_grid_of_many_blocks_goes_through_two_formats(
+    first: str, make: Callable[[], Grid], tmp_path: Path
+) -> None:
+    grid = make()
+    (tmp_path / "one").mkdir()
+    (between,) = read_grids(str(through(first, grid, tmp_path / "one")), first)
+    for second in KEPT:
+        folder = tmp_path / second
+        folder.mkdir()
+        (back,) = read_grids(str(through(second, between, folder)), second)
+        for block, old in zip(back.blocks, grid.blocks, strict=True):
+            if make is sector:  # the angle of which plot3d does not say
+                np.testing.assert_allclose(block.nodes, old.nodes, rtol=0, atol=1e-14)
+            else:
+                assert np.array_equal(block.nodes.view(np.uint64), old.nodes.view(np.uint64)), second
+        assert [replace(c, transform=None) for c in joints(back)] == [
+            replace(c, transform=None) for c in joints(grid)
+        ]
+        assert make is sector or joints(back) == joints(grid)
+        assert {(p.block, p.side, p.start, p.stop, p.name, p.kind) for p in grid.patches} <= {
+            (p.block, p.side, p.start, p.stop, p.name, p.kind) for p in back.patches
+        }
+        if format_named(first).names_patches and format_named(second).names_patches:
+            assert (by_block(back.patches), back.name) == (by_block(grid.patches), grid.name)
+
+
+@pytest.mark.parametrize("second", MERGED)
+@pytest.mark.parametrize("make", MANY)
+def test_many_blocks_of_any_format_become_the_same_mesh(
+    second: str, make: Callable[[], Grid], tmp_path: Path
+) -> None:
+    grid = make()
+    written = {}
+    for first in KEPT:
+        folder = tmp_path / first
+        folder.mkdir()
+        (between,) = read_grids(str(through(first, grid, folder)), first)
+        path = through(second, between, folder / "out")
+        whole = path.parent / "constant" / "polyMesh" / "points" if second == "openfoam" else path
+        written[first] = whole.read_bytes()
+    plain = {name: len(data) for name, data in written.items()}
+    assert len(set(plain.values())) == 1 or make is sector, plain
 
 
 @pytest.mark.parametrize("second", AS_BOUNDARIES)

@@ -28,7 +28,7 @@ def lines(points: np.ndarray, separator: str = ",") -> str:
 @pytest.mark.parametrize("head", ["", "x,y\n", "# a duct\n", "x;y;z\n\n"])
 @pytest.mark.parametrize("separator", [",", ";", " ", "\t", " , "])
 def test_one_closed_curve_is_an_outline(head, separator):
-    shape = parse(head + lines(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), separator), "d/duct.csv")
+    (shape,) = parse(head + lines(np.array([[0.0, 0], [2, 0], [2, 1], [0, 1]]), separator), "d/duct.csv")
     assert isinstance(shape, Outline)
     assert (shape.name, shape.topology) == ("duct", "quad")
     b = shape.boundary(Sampling(ni=9, nj=5))
@@ -36,7 +36,7 @@ def test_one_closed_curve_is_an_outline(head, separator):
 
 
 def test_a_repeated_first_point_and_a_third_column_do_not_matter():
-    shape = parse("0 0 0\n2 0 0\n2 1 0\n0 1 0\n0 0 0\n", "a.xy")
+    (shape,) = parse("0 0 0\n2 0 0\n2 1 0\n0 1 0\n0 0 0\n", "a.xy")
     assert isinstance(shape, Outline)
     assert len(shape.curve.points) == 4
 
@@ -46,7 +46,7 @@ def test_a_repeated_first_point_and_a_third_column_do_not_matter():
 def test_four_edges_chain_in_any_order_and_direction(order, ways):
     edges = [SOUTH, EAST, NORTH, WEST]
     text = "\n".join(lines(edges[k][:: ways[k]]) for k in (0, *order))
-    shape = parse(text, "four.csv")
+    (shape,) = parse(text, "four.csv")
     assert isinstance(shape, Boundary)
     np.testing.assert_array_equal(shape.south, SOUTH)
     np.testing.assert_array_equal(shape.north, NORTH)
@@ -55,12 +55,12 @@ def test_four_edges_chain_in_any_order_and_direction(order, ways):
 
 
 def test_the_first_edge_is_south():
-    shape = parse("\n".join(lines(edge) for edge in (NORTH, SOUTH, EAST, WEST)), "four.csv")
+    (shape,) = parse("\n".join(lines(edge) for edge in (NORTH, SOUTH, EAST, WEST)), "four.csv")
     np.testing.assert_array_equal(shape.south, NORTH[::-1])
 
 
 def test_four_edges_of_unequal_counts_are_curves_to_sample():
-    shape = parse("\n".join(lines(edge) for edge in (SOUTH, EAST, NORTH[::4], WEST)), "four.csv")
+    (shape,) = parse("\n".join(lines(edge) for edge in (SOUTH, EAST, NORTH[::4], WEST)), "four.csv")
     assert isinstance(shape, Outline)
     b = shape.boundary(Sampling(ni=21, nj=11))
     np.testing.assert_array_equal(
@@ -71,7 +71,7 @@ def test_four_edges_of_unequal_counts_are_curves_to_sample():
 
 
 def test_four_edges_can_be_sampled_anew():
-    shape = parse("\n".join(lines(edge) for edge in (SOUTH, EAST, NORTH, WEST)), "four.csv")
+    (shape,) = parse("\n".join(lines(edge) for edge in (SOUTH, EAST, NORTH, WEST)), "four.csv")
     assert shape.boundary(Sampling(ni=33, nj=17)).ni == 33
 
 
@@ -80,7 +80,7 @@ def test_a_section_in_a_list_of_points_is_an_airfoil(base):
     x = 0.5 - 0.5 * np.cos(np.linspace(0, np.pi, 41))
     half = 0.3 * np.sqrt(x) * (1 - x) + 0.5 * base * x
     points = np.concatenate([np.stack([x, half], 1)[::-1], np.stack([x, -half], 1)[1:]])
-    shape = parse("x,y\n" + lines(points), "section.csv")
+    (shape,) = parse("x,y\n" + lines(points), "section.csv")
     assert isinstance(shape, Airfoil)
     assert shape.blunt == (base > 0)
     assert shape.name == "section"
@@ -88,7 +88,7 @@ def test_a_section_in_a_list_of_points_is_an_airfoil(base):
 
 def test_a_round_body_is_no_airfoil():
     t = np.linspace(0, 2 * np.pi, 60)
-    shape = parse(lines(np.stack([3 * np.cos(t), np.sin(t)], axis=1)), "a.xy")
+    (shape,) = parse(lines(np.stack([3 * np.cos(t), np.sin(t)], axis=1)), "a.xy")
     assert isinstance(shape, Outline)
     assert shape.topology == "o"
 
@@ -96,7 +96,7 @@ def test_a_round_body_is_no_airfoil():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "a.csv: 0 blocks of points; give one closed curve, or four edges"),
+        ("", "a.csv: 0 blocks of points; give closed curves, or four edges"),
         ("0,0\n1,1\n", "2 points; a closed curve needs at least 3"),
         ("0,0\n1,0\n1,1\n\n5,5\n6,6\n", "a.csv: line 5: 2 blocks of points"),
         ("0,0\n1,x\n1,1\n", "a.csv: line 2: '1,x' is no pair of numbers"),
@@ -129,7 +129,7 @@ def test_what_is_no_shape_is_refused_with_the_line(text, message):
     "text", ["0 0\n2 0\n2 ...\n2 1\n0 1\n", "\n".join(lines(e) for e in (SOUTH, EAST, NORTH, WEST)) + "0.3\n"]
 )
 def test_a_line_that_is_left_out_is_a_note_of_the_boundary(text):
-    shape = parse(text, "a.csv")
+    (shape,) = parse(text, "a.csv")
     for sampling in (Sampling(), Sampling(ni=21, nj=11)):
         (note,) = edges_of(shape, sampling).notes
         assert "is no pair of numbers and is left out" in note

@@ -1,15 +1,20 @@
 from __future__ import annotations
 
+import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 import vtk
 from format_shapes import channel, file_names, memory, ring
+from many_blocks import MANY, butterfly, by_block, duct
 
 from meshonet.formats.output import whole_file
 from meshonet.formats.source import open_source
 from meshonet.formats.vtk.vtm import read_grids, write_grids
+from meshonet.formats.vtk.vts_read import read_grids as read_vts
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 INDEX = '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet>{}</vtkMultiBlockDataSet></VTKFile>'
@@ -24,6 +29,66 @@ def test_blocks_of_any_size_and_topology_come_back(tmp_path: Path) -> None:
     for back, grid in zip(read_grids(open_source(str(tmp_path / "all.vtm"))), grids, strict=True):
         assert np.array_equal(back.nodes, grid.nodes)
         assert (back.name, back.topology, back.patches) == (grid.name, grid.topology, grid.patches)
+
+
+@pytest.mark.parametrize("heights", [(0.0,), (0.0, 0.5)])
+@pytest.mark.parametrize("make", MANY)
+def test_a_grid_of_blocks_is_one_among_others(
+    make: Callable[[], Grid], heights: tuple[float, ...], tmp_path: Path
+) -> None:
+    grid = make()
+    write_grids(tmp_path / "g.vtm", [ring(), grid, grid, channel()], heights)
+    found = list(read_grids(open_source(str(tmp_path / "g.vtm"))))
+    assert [each.topology for each in found] == ["o", "blocks", "blocks", "quad"]
+    for back in found[1:3]:
+        for block, old in zip(back.blocks, grid.blocks, strict=True):
+            assert np.array_equal(block.nodes, old.nodes)
+        assert (back.name, back.connections, back.provenance) == (
+            grid.name, grid.connections, grid.provenance
+        )  # fmt: skip
+        assert back.patches == by_block(grid.patches)
+    reader = vtk.vtkXMLMultiBlockDataReader()
+    reader.SetFileName(str(tmp_path / "g.vtm"))
+    reader.Update()
+    nested = reader.GetOutput().GetBlock(1)
+    assert nested.GetNumberOfBlocks() == len(grid.blocks)
+    assert nested.GetBlock(0).GetNumberOfPoints() == len(heights) * grid.blocks[0].nodes.size // 2
+
+
+def test_a_block_of_a_grid_is_a_grid_by_itself(tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.vtm", [duct()])
+    (back,) = read_vts(open_source(str(tmp_path / "g_blocks" / "block-1.vts")))
+    assert back.topology == "quad"
+    assert {patch.name for patch in back.patches} == {"wall", "outlet"}
+
+
+def test_a_missing_block_is_named(tmp_path: Path) -> None:
+    write_grids(tmp_path / "g.vtm", [duct()])
+    text = (tmp_path / "g.vtm").read_text()
+    (tmp_path / "g.vtm").write_text(re.sub(r".*block-1.vts.*\n", "", text))
+    with pytest.raises(InputError, match=r"connection of east of block 0 to .* of block 1 leaves its side"):
+        list(read_grids(open_source(str(tmp_path / "g.vtm"))))
+
+
+def test_blocks_that_vtk_wrote_are_joined_where_they_touch(tmp_path: Path) -> None:
+    blocks = vtk.vtkMultiBlockDataSet()
+    for k, block in enumerate((*butterfly().blocks, *duct().blocks)):
+        points = vtk.vtkPoints()
+        points.SetDataTypeToDouble()
+        for x, y in block.nodes.swapaxes(0, 1).reshape(-1, 2) + np.array([9.0 * (k > 4), 0]):
+            points.InsertNextPoint(x, y, 0)
+        made = vtk.vtkStructuredGrid()
+        made.SetDimensions(*block.counts, 1)
+        made.SetPoints(points)
+        blocks.SetBlock(k, made)
+    writer = vtk.vtkXMLMultiBlockDataWriter()
+    writer.SetFileName(str(tmp_path / "g.vtm"))
+    writer.SetInputData(blocks)
+    writer.SetCompressorTypeToZLib()
+    writer.Write()
+    first, second = read_grids(open_source(str(tmp_path / "g.vtm")))
+    assert (len(first.blocks), len(first.connections)) == (5, 8)
+    assert (len(second.blocks), len(second.connections)) == (2, 1)
 
 
 def test_vtk_opens_all_blocks(tmp_path: Path) -> None:

@@ -1,0 +1,118 @@
+"""Values of a JSON object, looked at before they are used."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from meshonet.formats.source import LARGEST
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import InputError
+
+
+@dataclass(frozen=True)
+class Values:
+    """A JSON object and where it stands, ``faces[3]``; InputError is raised for values that do not fit."""
+
+    data: dict[str, Any]
+    place: str = ""
+
+    def error(self, problem: str) -> InputError:
+        """Return the error for this place."""
+        return InputError(problem, "write the layout again", place=self.place)
+
+    @contextmanager
+    def located(self) -> Iterator[None]:
+        """Name this place in the input errors of a block that name none."""
+        try:
+            yield
+        except InputError as error:
+            error.place = error.place or self.place
+            raise
+
+    def rows(self, key: str) -> list[Values]:
+        """Return the objects of a list that is not empty."""
+        rows = self.data.get(key)
+        if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
+            raise self.error(f"{key} are no list of objects")
+        return [Values(row, f"{key}[{k}]") for k, row in enumerate(rows)]
+
+    def row(self, key: str) -> Values:
+        """Return an object."""
+        row = self.data.get(key)
+        if not isinstance(row, dict):
+            raise self.error(f"{key} is no object")
+        return Values(row, key)
+
+    def text(self, key: str) -> str:
+        """Return a text."""
+        value = self.data.get(key)
+        if not isinstance(value, str):
+            raise self.error(f"{key} is no text")
+        return value
+
+    def texts(self, key: str) -> list[str]:
+        """Return texts that are not empty."""
+        values = self.data.get(key)
+        if not isinstance(values, list) or not all(isinstance(each, str) and each for each in values):
+            raise self.error(f"{key} are no texts")
+        return values
+
+    def count(self, key: str, *, default: int | None = None) -> int:
+        """Return a whole number from 0 on."""
+        value = self.data.get(key, default)
+        if type(value) is not int or not 0 <= value < 1 << 31:
+            raise self.error(f"{key} is no count")
+        return value
+
+    def number(self, key: str, below: int) -> int:
+        """Return a whole number from 0 to below a limit."""
+        return self._below(key, self.data.get(key), below)
+
+    def numbers(self, key: str, below: int) -> list[int]:
+        """Return whole numbers from 0 to below a limit."""
+        values = self.data.get(key)
+        if not isinstance(values, list):
+            raise self.error(f"{key} are no list")
+        return [self._below(key, value, below) for value in values]
+
+    def entry(self, key: str, k: int, of: int, below: int) -> int:
+        """Return number `k` of a list of so many whole numbers from 0 to below a limit."""
+        values = self.data.get(key)
+        if not isinstance(values, list) or len(values) != of:
+            raise self.error(f"{key} are not {of} numbers")
+        return self._below(key, values[k], below)
+
+    def _below(self, key: str, value: Any, below: int) -> int:
+        if type(value) is not int or not 0 <= value < below:
+            raise self.error(f"{key} has {str(value)[:20]!r}, which is none of 0 to {below - 1}")
+        return value
+
+    def array(self, values: Any, what: str) -> Floats:
+        """Return finite numbers (n,), or pairs of them (n, 2)."""
+        try:
+            array = np.array(values if values is not None else [None], dtype=np.float64)
+        except (ValueError, TypeError, OverflowError):
+            raise self.error(f"{what} are no numbers") from None
+        if not (np.abs(array) < LARGEST).all():
+            raise self.error(f"{what} are not finite or far too large")
+        return array
+
+    def pair(self, key: str) -> tuple[float, float]:
+        """Return two finite numbers."""
+        array = self.array(self.data.get(key), key)
+        if array.shape != (2,):
+            raise self.error(f"{key} is not two numbers")
+        return float(array[0]), float(array[1])
+
+    def points(self, key: str, *, least: int = 1, one: bool = False) -> Floats:
+        """Return points (n, 2), `least` or more; with `one`, a point as (1, 2)."""
+        array = self.array(self.data.get(key), key)
+        array = array[None] if one else array.reshape(0, 2) if not array.size else array
+        if array.ndim != 2 or array.shape[1] != 2 or len(array) < least:
+            raise self.error(f"{key} are not {'a point' if one else 'points x, y'}")
+        return array

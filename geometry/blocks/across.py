@@ -1,0 +1,44 @@
+"""Grid lines that run on over a connection: the nodes next to it on both sides, in one order.
+
+::
+
+    own[2]  own[1]  own[0] = donor[0]  donor[1]  donor[2]
+    --o-------o------------o--------------o---------o--     a line for each node of the connection
+"""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+
+
+def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
+    """Return rows (depth, n, 2) of nodes on both sides of a connection, the shared row first.
+
+    Blocks are planar. The first nodes are carried to the second by the motion of a periodic connection; there
+    are fewer rows where a block has no more.
+    """
+    own = rows_beside(grid, connection.block, connection.side, connection.range[0], depth)
+    donor = rows_beside(grid, connection.donor, connection.donor_side, connection.donor_range[0], depth)
+    if connection.transform:
+        own = connection.transform(own)
+    return own, donor[:, :: connection.orientation[0]]
+
+
+def planar(grid: Grid) -> None:
+    """Raise InputError unless all blocks are of two directions in the plane."""
+    for number, block in enumerate(grid.blocks):
+        if block.nodes.shape[2:] != (2,):
+            sizes = " x ".join(map(str, block.counts))
+            problem = f"block {number} of {sizes} nodes is not in the plane"
+            raise InputError(problem, "give blocks of two directions with x and y")
+
+
+def rows_beside(grid: Grid, block: int, side: Side, span: tuple[int, int], depth: int) -> Floats:
+    """Return rows (depth, n, 2) of nodes from a side inwards, of its nodes `span`, both included."""
+    axis, end = PLACES[side]
+    nodes = np.moveaxis(grid.blocks[block].nodes, axis, 0)
+    return (nodes[::-1] if end else nodes)[:depth, span[0] : span[1] + 1]

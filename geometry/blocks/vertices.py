@@ -1,0 +1,78 @@
+r"""How many cells meet at the nodes of a grid of blocks, and where that is not as inside a block.
+
+::
+
+    +--+--+     four cells around an inner node and two on the boundary are regular;
+    |  |  |     an irregular inner node, of three or five cells say, is a vertex of blocks
+    +--o--+
+    |   \  \
+    +----+--+
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.polygon.corners import Indices
+
+
+@dataclass(frozen=True, eq=False)
+class Vertices:
+    """The nodes of a grid of planar blocks, each once; periodic sides count as one.
+
+    Parameters
+    ----------
+    numbers : (ni, nj) of each block.
+    valence : (n,) cells that meet at each node.
+    outer : (n,) whether it is on the boundary.
+    """
+
+    numbers: tuple[Indices, ...]
+    valence: Indices
+    outer: NDArray[np.bool_]
+
+    @cached_property
+    def regular(self) -> NDArray[np.bool_]:
+        """(n,) where as many cells meet as inside a block, or on the side of one."""
+        return np.asarray(self.valence == np.where(self.outer, 2, 4))
+
+    @cached_property
+    def irregular(self) -> Indices:
+        """Inner nodes where other than four cells meet."""
+        return np.flatnonzero((self.valence != 4) & ~self.outer)
+
+    def place(self, node: int) -> tuple[int, int, int]:
+        """Return block, i and j where a node first appears."""
+        for block, numbers in enumerate(self.numbers):
+            found = np.argwhere(numbers == node)
+            if len(found):
+                return block, int(found[0, 0]), int(found[0, 1])
+        raise ValueError(f"no node {node}")
+
+
+def vertices(grid: Grid) -> Vertices:
+    """Return the nodes of a grid of planar blocks."""
+    numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections, periodic=True)
+    count = 1 + max(int(number.max()) for number in numbers)
+    valence, outer = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=bool)
+    for number in numbers:
+        corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+        for corner in corners:
+            valence += np.bincount(corner.ravel(), minlength=count)
+    for patch in grid.outer_patches():
+        outer[face_of(numbers[patch.block], patch.side)[patch.start : patch.stop + 1]] = True
+    return Vertices(numbers, valence, outer)
+
+
+def irregular_points(grid: Grid) -> tuple[Floats, Indices]:
+    """Return the irregular inner nodes (n, 2) of a grid and how many cells meet at each (n,)."""
+    nodes = vertices(grid)
+    places = [nodes.place(int(node)) for node in nodes.irregular]
+    points = [grid.blocks[block].nodes[i, j] for block, i, j in places]
+    return np.array(points).reshape(-1, 2), nodes.valence[nodes.irregular]

@@ -1,0 +1,57 @@
+"""Which of several closed curves lies in which: outer loops, and the holes in each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.polygon.area import polygon_area
+
+
+def contains(polygon: Floats, point: Floats) -> bool:
+    """Say whether a point (2,) lies inside a polygon (n, 2), by the crossings of a ray to the right."""
+    x, y = polygon[:, 0] - point[0], polygon[:, 1] - point[1]
+    u, v = np.roll(x, -1), np.roll(y, -1)
+    spans = (y > 0) != (v > 0)
+    at = x[spans] - y[spans] * (u[spans] - x[spans]) / (v[spans] - y[spans])
+    return bool(np.count_nonzero(at > 0) % 2)
+
+
+def nested(polygons: Sequence[Floats]) -> list[tuple[int, list[int]]]:
+    """Return the number of each outer polygon with those of the holes in it, in the order given.
+
+    A polygon in a hole is an outer one again. What crosses or touches counts as it lies at its first points.
+
+    >>> square = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    >>> nested([square + 1.0, 4.0 * square, square + 2.5])
+    [(1, [0, 2])]
+    """
+    areas = [abs(polygon_area(polygon)) for polygon in polygons]
+    boxes = [(polygon.min(axis=0), polygon.max(axis=0)) for polygon in polygons]
+    parent: list[int | None] = []
+    for k, polygon in enumerate(polygons):
+        around = [
+            j
+            for j in range(len(polygons))
+            if areas[j] > areas[k] and _box_within(boxes[k], boxes[j]) and _inside(polygon, polygons[j])
+        ]
+        parent.append(min(around, key=lambda j: areas[j], default=None))
+
+    def depth(k: int) -> int:
+        up = parent[k]
+        return 0 if up is None else 1 + depth(up)
+
+    outer = [k for k in range(len(polygons)) if depth(k) % 2 == 0]
+    return [(k, [j for j in range(len(polygons)) if parent[j] == k]) for k in outer]
+
+
+def _box_within(inner: tuple[Floats, Floats], outer: tuple[Floats, Floats]) -> bool:
+    return bool((inner[0] >= outer[0]).all() and (inner[1] <= outer[1]).all())
+
+
+def _inside(polygon: Floats, around: Floats) -> bool:
+    """Say whether most of three points of a polygon lie inside another."""
+    places = np.linspace(0, len(polygon), 3, endpoint=False).astype(int)
+    return sum(contains(around, polygon[place]) for place in places) >= 2

@@ -1,0 +1,198 @@
+"""A layout out of a grid of blocks: shared nodes, and the domain that its outer sides bound.
+
+The loops of the domain run through the grid's own boundary nodes, along splines between corners: where the
+boundary turns, where it changes its name, and where other than two cells meet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.across import planar
+from meshonet.geometry.blocks.block import Block, face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.shared_nodes import shared_nodes
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain, Periodic
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import Indices, find_corners
+
+AROUND = {"south": 1, "east": 1, "north": -1, "west": -1}
+"""The way along each side that has a right-handed block on its left."""
+
+
+def layout_of(grid: Grid) -> Layout:
+    """Return the layout with the blocks of a planar grid, its nodes and patches.
+
+    Raises InputError: a block that is not in the plane or left-handed; outer sides that are no closed loops;
+    blocks that overlap; sides that are periodic by a rotation.
+    """
+    planar(grid)
+    numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections)
+    nodes = np.empty((1 + max(int(number.max()) for number in numbers), 2))
+    for number, block in zip(numbers, grid.blocks, strict=True):
+        nodes[number] = block.nodes
+    quads = np.concatenate([_quads(number) for number in numbers])
+    valence = np.bincount(quads.ravel(), minlength=len(nodes))
+    rings = _rings(_boundary(grid, numbers), nodes)
+    loops = tuple(_loop(ring, nodes, valence) for ring in rings)
+    domain = Domain(loops, grid.name, periodic=_period(grid, numbers, rings, loops))
+    places = _places(rings, loops, valence, len(nodes))
+    _set_partners(places, grid, numbers)
+    return Layout(QuadMesh(domain, nodes, quads, places), numbers)
+
+
+def with_nodes(grid: Grid, layout: Layout) -> Grid:
+    """Return `grid` with the nodes of a layout of it, moved."""
+    nodes = layout.mesh.nodes
+    return replace(grid, blocks=tuple(Block(nodes[block]) for block in layout.blocks))
+
+
+def _quads(number: Indices) -> Indices:
+    corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    return np.stack([corner.ravel() for corner in corners], axis=1)
+
+
+@dataclass(frozen=True)
+class _Ring:
+    """A closed boundary: its nodes, the domain on their left, and the name of the edge that leaves each."""
+
+    nodes: Indices
+    names: tuple[str, ...]
+
+
+def _boundary(grid: Grid, numbers: tuple[Indices, ...]) -> dict[int, tuple[int, str]]:
+    """Return for each boundary node the next one, the domain on the left, and the name of that edge."""
+    after: dict[int, tuple[int, str]] = {}
+    named = {(p.name, p.block, p.side) for p in grid.patches}
+    for patch in [*grid.outer_patches(), *_periodic_sides(grid)]:
+        line = face_of(numbers[patch.block], patch.side)[patch.start : patch.stop + 1]
+        for a, b in pairwise(line[:: AROUND[patch.side]].tolist()):
+            if a in after:
+                x, y = grid.face(patch.block, patch.side)[int(np.argmax(line == a))]
+                problem = f"blocks overlap at ({x:.6g}, {y:.6g}) of block {patch.block}"
+                raise InputError(problem, "check that a side is connected to one other")
+            after[a] = (b, patch.name if (patch.name, patch.block, patch.side) in named else "outer")
+    return after
+
+
+def _periodic_sides(grid: Grid) -> list[Patch]:
+    """Return both sides of periodic connections, by their names or as ``periodic1`` and ``periodic2``."""
+    sides = []
+    for each in grid.connections:
+        for k, number in enumerate((each.block, each.donor) if each.transform else ()):
+            side, start, stop = each.stretches(number)[k if each.block == each.donor else 0]
+            names = [p.name for p in grid.patches if (p.block, p.side) == (number, side)]
+            name = names[-1] if names else f"periodic{k + 1}"
+            sides.append(Patch(name, side, start, stop, block=number))
+    return sides
+
+
+def _rings(after: dict[int, tuple[int, str]], nodes: Floats) -> list[_Ring]:
+    """Return the closed boundaries, the one around the largest area first."""
+    rings, left = [], dict(after)
+    while left:
+        start = min(left)
+        line, names, node = [], [], start
+        while node in left:
+            line.append(node)
+            node, name = left.pop(node)
+            names.append(name)
+        if node != start:
+            x, y = nodes[node]
+            raise InputError(f"outer sides end at ({x:.6g}, {y:.6g})", "check the connections of the blocks")
+        rings.append(_Ring(np.array(line, dtype=np.intp), tuple(names)))
+    areas = [polygon_area(nodes[ring.nodes]) for ring in rings]
+    if not max(areas, default=0.0) > 0:
+        raise InputError("the blocks have no outer boundary, or are left-handed", "give right-handed blocks")
+    return [rings[k] for k in sorted(range(len(rings)), key=lambda k: -areas[k])]
+
+
+def _loop(ring: _Ring, nodes: Floats, valence: Indices) -> Loop:
+    points = nodes[ring.nodes]
+    corner = valence[ring.nodes] != 2
+    corner |= np.array(
+        [name != before for name, before in zip(ring.names, (ring.names[-1], *ring.names[:-1]), strict=True)]
+    )
+    corner[find_corners(points, closed=True)] = True
+    corners = tuple(np.flatnonzero(corner).tolist())
+    names = tuple(ring.names[k] for k in corners) or ring.names[:1]
+    return Loop(Curve(points, closed=True, corners=corners), corners, names)
+
+
+def _places(rings: list[_Ring], loops: tuple[Loop, ...], valence: Indices, count: int) -> Places:
+    places = Places.inside(count)
+    for number, (ring, loop) in enumerate(zip(rings, loops, strict=True)):
+        places.loop[ring.nodes] = number
+        places.arc[ring.nodes] = loop.curve.knots
+        corners = ring.nodes[list(loop.corners)]
+        places.cells[corners] = valence[corners]
+    return places
+
+
+def _pairs(grid: Grid, numbers: tuple[Indices, ...]) -> tuple[Floats, Indices, Indices]:
+    """Return the shift of periodic sides, the nodes (n,) it moves and those (n,) it moves them to.
+
+    Raises InputError: sides that turn, or are shifted in more than one way.
+    """
+
+    def face(block: int, side: Side) -> Indices:
+        return np.asarray(face_of(numbers[block], side)[..., None])
+
+    shift = np.zeros(2)
+    first: list[Indices] = []
+    second: list[Indices] = []
+    for each in grid.connections:
+        if each.transform is None:
+            continue
+        if each.transform.turn and not np.array_equal(each.transform.turn, np.eye(2)):
+            problem = f"{each} is periodic by a rotation"
+            raise InputError(problem, "give sides that are periodic by a shift")
+        own, donor = replace(each, transform=None).nodes(face)
+        way = np.array(each.transform.shift)
+        if not first:
+            shift = way
+        size = np.hypot(*shift)
+        if np.hypot(*(way - shift)) > 1e-9 * size:
+            own, donor, way = donor, own, -way
+        if np.hypot(*(way - shift)) > 1e-9 * size:
+            problem = f"{each} is shifted otherwise than the others"
+            raise InputError(problem, "give blocks that are periodic in one direction")
+        first.append(own.ravel())
+        second.append(donor.ravel())
+    none = [np.empty(0, dtype=np.intp)]
+    return shift, np.concatenate(first or none), np.concatenate(second or none)
+
+
+def _period(
+    grid: Grid, numbers: tuple[Indices, ...], rings: list[_Ring], loops: tuple[Loop, ...]
+) -> Periodic | None:
+    shift, first, second = _pairs(grid, numbers)
+    if not len(first):
+        return None
+    stretches = [_stretch(rings[0], loops[0], nodes) for nodes in (first, second)]
+    return Periodic(stretches[0], stretches[1], (float(shift[0]), float(shift[1])))
+
+
+def _stretch(ring: _Ring, loop: Loop, nodes: Indices) -> tuple[float, float]:
+    """Return the arc lengths at which the run of `nodes` along the loop begins and ends."""
+    among = np.isin(ring.nodes, nodes)
+    begins = np.flatnonzero(among & ~np.roll(among, 1))
+    ends = np.flatnonzero(among & ~np.roll(among, -1))
+    if len(begins) != 1:
+        raise InputError("periodic sides are not one stretch of the outer boundary", "connect all of them")
+    return float(loop.curve.knots[begins[0]]), float(loop.curve.knots[ends[0]])
+
+
+def _set_partners(places: Places, grid: Grid, numbers: tuple[Indices, ...]) -> None:
+    _, first, second = _pairs(grid, numbers)
+    places.partner[second] = first

@@ -1,0 +1,74 @@
+"""What there is to say of a grid of many blocks beside the metrics of its cells."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from meshonet.geometry.blocks.across import planar
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.vertices import vertices
+from meshonet.geometry.quality.deviation import Deviation, deviation
+from meshonet.geometry.quality.growth import Extreme
+from meshonet.geometry.quality.lines import Lines, lines
+
+BLOCK_FIGURES = ("irregular", "deviation_mean", "deviation_p99", "growth", "growth_across", "bend_across")
+"""Figures that gates may name."""
+
+
+@dataclass(frozen=True)
+class BlockFigures:
+    """Counts, angles and lines of a grid of blocks.
+
+    `sizes` are the nodes of each block, `nodes` those of all without doubles, `irregular` the inner vertices
+    (block, i, j) where other than four cells meet, each with the cells that meet there.
+    """
+
+    sizes: tuple[tuple[int, ...], ...]
+    nodes: int
+    interfaces: int
+    irregular: tuple[tuple[tuple[int, int, int], int], ...]
+    deviation: Deviation
+    lines: Lines
+
+    def figures(self) -> dict[str, float]:
+        """Return the figures by the names of `BLOCK_FIGURES`; growth 1 and bend 0 where no line runs."""
+        run = self.lines
+        inside, across, bend = run.growth_inside, run.growth_across, run.bend_across
+        most = max((each.max for each in (inside, across) if each), default=1.0)
+        angles = self.deviation.mean, self.deviation.p99
+        ends = across.max if across else 1.0, bend.max if bend else 0.0
+        return dict(zip(BLOCK_FIGURES, (len(self.irregular), *angles, most, *ends), strict=True))
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as what JSON can hold."""
+        return {
+            "blocks": len(self.sizes),
+            "interfaces": self.interfaces,
+            "irregular": len(self.irregular),
+            "nodes": self.nodes,
+            "sizes": [list(size) for size in self.sizes],
+            "irregular_vertices": [{"at": list(at), "cells": cells} for at, cells in self.irregular],
+            "deviation": vars(self.deviation) | {"at": list(self.deviation.at)},
+            "lines": {name: extreme_dict(getattr(self.lines, name)) for name in LINES},
+        }
+
+
+LINES = ("growth_inside", "growth_across", "bend_inside", "bend_across")
+"""Fields of `Lines` that are reported."""
+
+
+def block_figures(grid: Grid) -> BlockFigures:
+    """Return the figures of planar blocks; raise InputError for a block that is not in the plane."""
+    planar(grid)
+    nodes = vertices(grid)
+    irregular = [(nodes.place(int(node)), int(nodes.valence[node])) for node in nodes.irregular]
+    sizes = tuple(block.counts for block in grid.blocks)
+    count, angles = len(nodes.valence), deviation(grid)
+    return BlockFigures(sizes, count, len(grid.connections), tuple(irregular), angles, lines(grid, nodes))
+
+
+def extreme_dict(extreme: Extreme | None) -> dict[str, Any] | None:
+    """Return an extreme as what JSON can hold."""
+    if extreme is None:
+        return None
+    facts = {"max": extreme.max, "mean": extreme.mean, "at": list(extreme.at)}
+    return facts if extreme.p99 is None else facts | {"p99": extreme.p99}

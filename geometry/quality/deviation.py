@@ -1,0 +1,45 @@
+"""How far the angles at the corners of cells are from 90 degrees."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.polygon.corners import angle_between
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Degrees: the mean over all corners, and the 99th percentile over the worst corner of each cell.
+
+    `max` is that of cell `at`, (block, i, j).
+    """
+
+    mean: float
+    p99: float
+    max: float
+    at: tuple[int, int, int]
+
+
+def deviation(grid: Grid) -> Deviation:
+    """Return the deviation of the corners of all planar blocks; those of folded cells count up to 270."""
+    every = [corner_deviations(block.nodes) for block in grid.blocks]
+    worst = [corners.max(axis=0) for corners in every]
+    block = int(np.argmax([cells.max() for cells in worst]))
+    i, j = divmod(int(worst[block].argmax()), worst[block].shape[1])
+    corners = sum(values.size for values in every)
+    return Deviation(
+        mean=float(sum(values.sum() for values in every)) / corners,
+        p99=float(np.percentile(np.concatenate([cells.ravel() for cells in worst]), 99.0)),
+        max=float(worst[block].max()),
+        at=(block, i, j),
+    )
+
+
+def corner_deviations(nodes: Floats) -> Floats:
+    """Return the deviations (4, ni-1, nj-1) of the corners of the cells of `nodes` (ni, nj, 2)."""
+    ring = np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])
+    ahead = np.roll(ring, -1, axis=0) - ring
+    angle = angle_between(ahead.reshape(-1, 2), -np.roll(ahead, 1, axis=0).reshape(-1, 2))
+    return np.asarray(np.abs(np.degrees(angle) % 360.0 - 90.0).reshape(ring.shape[:-1]))

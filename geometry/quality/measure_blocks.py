@@ -1,0 +1,83 @@
+"""The metrics of a grid of many blocks: all cells as one grid's, neighbours across connections included."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.across import across, planar
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
+from meshonet.geometry.quality.percentiles import PERCENTS, no_run
+from meshonet.geometry.quality.summary import Quality, Summary
+from meshonet.kernels import _native
+
+_TINY, _LARGE = 1e-300, 1e30
+"""A cell without area has a neighbour of ratio `_LARGE`, as in the compiled metrics."""
+
+
+def measure_blocks(grid: Grid, *, percentiles: bool = False) -> Quality:
+    """Return the quality of all cells of planar blocks; worst cells are (block, i, j).
+
+    Raises InputError: a block that is not in the plane.
+    """
+    values = metrics_of_blocks(grid)
+    folded = sum(_native.count_folded(block.nodes[..., 0], block.nodes[..., 1]) for block in grid.blocks)
+    metrics = {
+        metric.name: _summary(metric, [cells[k] for cells in values], percentiles)
+        for k, metric in enumerate(METRICS)
+    }
+    return Quality(sum(cells[0].size for cells in values), folded, metrics)
+
+
+def metrics_of_blocks(grid: Grid) -> list[Floats]:
+    """Return every metric of `METRICS` of every cell, (metrics, ni-1, nj-1) for each block."""
+    planar(grid)
+    values = []
+    for block in grid.blocks:
+        ni, nj = block.counts
+        cells = np.empty((len(METRICS), ni - 1, nj - 1))
+        no_run().over(block.nodes[..., 0], block.nodes[..., 1], cells[: len(COMPILED)])
+        for k, metric in enumerate(METRICS):
+            if metric.cells:
+                cells[k] = metric.cells(Grid((block,)))
+        values.append(cells)
+    _area_ratios_across(grid, [cells[NAMES.index("area_ratio")] for cells in values])
+    return values
+
+
+def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
+    """Raise the area ratios (ni-1, nj-1) of cells beside connections to those with the cells beyond."""
+    for each in grid.connections:
+        own, donor = (_areas(rows) for rows in across(grid, each, 2))
+        large, small = np.maximum(own, donor), np.maximum(np.minimum(own, donor), _TINY)
+        ratio = np.minimum(large / small, _LARGE)
+        for block, side, span, values in (
+            (each.block, each.side, each.range, ratio),
+            (each.donor, each.donor_side, each.donor_range, ratio[:: each.orientation[0]]),
+        ):
+            axis, end = PLACES[side]
+            beside = np.moveaxis(ratios[block], axis, 0)[end, span[0][0] : span[0][1]]
+            np.maximum(beside, values, out=beside)
+
+
+def _areas(rows: Floats) -> Floats:
+    """Return the areas (n-1,) of the cells between two rows of nodes (2, n, 2)."""
+    first, second = rows[1, 1:] - rows[0, :-1], rows[1, :-1] - rows[0, 1:]
+    return np.asarray(0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
+
+
+def _summary(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:
+    ends = [cells.min() if metric.worst == "min" else -cells.max() for cells in blocks]
+    block = int(np.argmin(ends))
+    cells = blocks[block]
+    at = int(np.argmin(cells) if metric.worst == "min" else np.argmax(cells))
+    every = np.concatenate([cells.ravel() for cells in blocks])
+    low, mean, high = float(every.min()), float(every.mean()), float(every.max())
+    part = (
+        [float(v) for v in np.percentile(every, PERCENTS, overwrite_input=True)]
+        if percentiles
+        else [None, None]
+    )
+    return Summary(low, mean, high, (block, *divmod(at, cells.shape[1])), *part)

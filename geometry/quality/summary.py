@@ -1,0 +1,35 @@
+"""What was measured of the cells of a grid: a summary of every metric."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Summary:
+    """One metric over all cells; its percentiles, when they were asked for."""
+
+    min: float
+    mean: float
+    max: float
+    worst: tuple[int, ...]
+    """The cell (i, j) with the worst value, the first of them; (block, i, j) in a grid of blocks."""
+    p01: float | None = None
+    p99: float | None = None
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Quality of a grid: how many cells it has, how many are folded, and every metric by name."""
+
+    cells: int
+    folded: int
+    metrics: Mapping[str, Summary]
+
+    def __getitem__(self, name: str) -> Summary:
+        """Return the summary of one metric."""
+        return self.metrics[name]
+
+    def __str__(self) -> str:
+        head = f"{self.cells} cells, {self.folded} folded\n{'metric':16}{'min':>12}{'mean':>12}{'max':>12}"
+        rows = [f"{name:16}{s.min:12.4g}{s.mean:12.4g}{s.max:12.4g}" for name, s in self.metrics.items()]
+        return "\n".join([head, *rows])

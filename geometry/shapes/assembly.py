@@ -1,0 +1,156 @@
+"""Several shapes as one domain: bodies in a far field, or in the one that encloses the others."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from itertools import chain
+
+import numpy as np
+
+from meshonet.geometry.arrays import SIDES, Floats
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import CORNER_DEG, Loop
+from meshonet.geometry.domain.nesting import nested
+from meshonet.geometry.domain.ring import ring_loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.area import polygon_area
+from meshonet.geometry.polygon.corners import turning
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.domain_shape import DomainShape, extent_of, itself
+from meshonet.geometry.shapes.named_edges import Labelled
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.sampling import Sampling
+
+CIRCLE = 256
+"""Points of a far field, through which a spline runs."""
+FARFIELD = "farfield"
+
+
+def assembled(
+    shapes: Sequence[Shape], names: Sequence[str], sampling: Sampling, name: str = ""
+) -> DomainShape:
+    """Return the domain that shapes make together, each called by its name.
+
+    Airfoils keep their smooth curve, other shapes are followed as polygons. Without a shape that encloses all
+    others they lie in a circle whose radius is that of `sampling`, in extents of all of them.
+
+    Raises InputError: shapes that are no closed curves; a far field that has no use.
+    """
+    bodies = list(
+        chain(*(_bodies(shape, label, sampling) for shape, label in zip(shapes, names, strict=True)))
+    )
+    groups = nested([body.curve.points for body in bodies])
+    notes = tuple(dict.fromkeys(note for shape in shapes for note in getattr(shape, "notes", ())))
+    if len(groups) == 1 and len(bodies) > 1:
+        outer, holes = groups[0]
+        if len(holes) < len(bodies) - 1:
+            raise InputError("bodies lie within bodies", "give one loop that encloses the others, or none")
+        if sampling.far_field is not None:
+            raise InputError(f"{bodies[outer].names[0]} encloses the others", "leave {far_field} out")
+        loops = tuple(_facing(body, hole=k != outer) for k, body in _outer_first(bodies, outer))
+        return DomainShape(Domain(loops, name, notes), unit=extent_of(loops[1:]))
+    if any(holes for _, holes in groups):
+        raise InputError("some bodies lie within others", "give one loop that encloses the others, or none")
+    loops = tuple(_facing(body, hole=True) for body in bodies)
+    unit = shapes[0].unit if len(shapes) == 1 and isinstance(shapes[0], Airfoil) else extent_of(loops)
+    points = np.concatenate([loop.curve.points for loop in loops])
+    middle = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    circle = far_loop(middle, sampling.radius * extent_of(loops))
+    return DomainShape(Domain((circle, *loops), name, notes), unit=unit, far_field=True)
+
+
+def domain_of(shape: Shape, sampling: Sampling) -> DomainShape:
+    """Return the domain that a shape bounds, or in the far field of which it is a body.
+
+    Raises InputError: a shape that is no closed curve, such as a boundary with a wake.
+    """
+    if isinstance(shape, DomainShape):
+        return shape
+    if isinstance(shape, Boundary) and shape.topology == "quad":
+        loop = _edges_loop(shape)
+    elif isinstance(shape, Outline) and _inside(shape, sampling):
+        loop = ring_loop(shape.curve.points, hole=False, corners=shape.corners)
+    else:
+        return assembled([shape], ["body"], sampling, shape.name)
+    notes = tuple(getattr(shape, "notes", ()))
+    return DomainShape(Domain((loop,), shape.name, notes), one=partial(itself, shape))
+
+
+def far_loop(middle: Floats, radius: float) -> Loop:
+    """Return the circle around a point (2,), the domain inside."""
+    angle = np.linspace(0.0, 2.0 * np.pi, CIRCLE, endpoint=False)
+    points = middle + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return Loop(Curve(points, closed=True, corners=()), names=(FARFIELD,))
+
+
+def _inside(shape: Outline, sampling: Sampling) -> bool:
+    topology = shape.topology if sampling.topology == "auto" else sampling.topology
+    return topology == "quad"
+
+
+def _outer_first(bodies: list[Loop], outer: int) -> list[tuple[int, Loop]]:
+    order = [outer, *(k for k in range(len(bodies)) if k != outer)]
+    return [(k, bodies[k]) for k in order]
+
+
+def _bodies(shape: Shape, name: str, sampling: Sampling) -> list[Loop]:
+    """Return the loops of a shape, the domain on either side, called by `name` where it has no names."""
+    if isinstance(shape, Airfoil):
+        return [_section_loop(shape, name, sampling)]
+    if isinstance(shape, Outline):
+        return [ring_loop(shape.curve.points, hole=True, corners=shape.corners, names=(name,))]
+    if isinstance(shape, DomainShape):
+        loops = list(shape.domain.loops)
+        unnamed = len(loops) == 1 and loops[0].names == ("outer",)
+        return [replace(loops[0], names=(name,))] if unnamed else loops
+    if isinstance(shape, Annulus):
+        return [ring_loop(shape.outer.points, hole=False), *_bodies(shape.body, name, sampling)]
+    if isinstance(shape, Labelled):
+        return _bodies(shape.shape, name, sampling)
+    if isinstance(shape, Boundary) and shape.topology == "quad":
+        return [_edges_loop(shape)]
+    if isinstance(shape, Boundary) and shape.topology == "o":
+        return [
+            ring_loop(shape.north, hole=False, names=(FARFIELD,)),
+            ring_loop(shape.south, hole=True, names=("wall",)),
+        ]
+    raise InputError(f"{shape.name or 'a shape'} is no closed curve", "give outlines, airfoils or polygons")
+
+
+def _section_loop(airfoil: Airfoil, name: str, sampling: Sampling) -> Loop:
+    """Return the loop along the smooth curve of an airfoil, its edge as `sampling` has it."""
+    body = airfoil.normalised() if sampling.normalise else airfoil
+    body = body.rounded() if sampling.te == "round" else body.wedged() if sampling.te == "wedge" else body
+    curve = body.curve
+    turn = np.abs(np.degrees(turning(curve.points, closed=True)))[curve.corner_index]
+    corners = curve.corner_index[turn > CORNER_DEG]
+    return Loop(curve, tuple(int(k) for k in corners), (name,))
+
+
+def _edges_loop(boundary: Boundary) -> Loop:
+    """Return the loop of the nodes of a four-sided boundary, its corners those of the block and of names."""
+    ni, nj = boundary.ni - 1, boundary.nj - 1
+    names: list[str] = []
+    for side in SIDES:
+        cells = ni if side in ("south", "north") else nj
+        own: list[str] = [side] * cells
+        for patch in boundary.patches:
+            if patch.side == side:
+                own[patch.start : patch.stop] = [patch.name] * (patch.stop - patch.start)
+        names += own if side in ("south", "east") else own[::-1]
+    begin = (0, ni, ni + nj, 2 * ni + nj)
+    corners = sorted({*begin, *(k for k in range(len(names)) if names[k] != names[k - 1])})
+    return ring_loop(boundary.outline(), hole=False, corners=corners, names=[names[k] for k in corners])
+
+
+def _facing(loop: Loop, *, hole: bool) -> Loop:
+    """Return a loop with the domain on its left: outside of a hole, inside otherwise."""
+    if (polygon_area(loop.curve.points) > 0) != hole:
+        return loop
+    return ring_loop(loop.curve.points, hole=hole, corners=loop.corners, names=loop.names)

@@ -1,0 +1,105 @@
+"""Polygons with holes as shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.ring import ring_loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.airfoil.airfoil import Airfoil
+from meshonet.geometry.shapes.annulus import Annulus
+from meshonet.geometry.shapes.closed_curve import closed_curve
+from meshonet.geometry.shapes.domain_shape import DomainShape, four_sided, in_far_field, itself
+from meshonet.geometry.shapes.named_edges import Labelled
+from meshonet.geometry.shapes.outline import Outline
+from meshonet.geometry.shapes.shape import Shape
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A closed line of a file: points (n, 2), corners (None: found), names (none: default) and places."""
+
+    points: Floats
+    corners: Sequence[int] | None = None
+    names: Sequence[str] = ()
+    places: Sequence[str] = ()
+
+
+def polygon_shape(rings: Sequence[Ring], name: str = "", notes: tuple[str, ...] = ()) -> DomainShape:
+    """Return the domain inside the first of the `rings` and outside of the others.
+
+    Raises InputError: as `ring_loop`; its place says which ring, where there are several.
+    """
+    loops = []
+    for number, ring in enumerate(rings):
+        names = ring.names or (default_name(number),)
+        try:
+            loops.append(
+                ring_loop(ring.points, hole=number > 0, corners=ring.corners, names=names, places=ring.places)
+            )
+        except InputError as error:
+            if len(rings) > 1:
+                error.place = error.place or f"ring {number + 1}"
+            raise
+    domain = Domain(tuple(loops), name, notes)
+    named = any(ring.names for ring in rings)
+    if len(loops) == 1:
+        given = rings[0].corners is not None
+        return DomainShape(
+            domain, not four_sided(domain), partial(_outline, domain, named=named, given=given)
+        )
+    if len(loops) == 2:
+        return DomainShape(domain, not in_far_field(domain), partial(_annulus, domain, named=named))
+    return DomainShape(domain)
+
+
+def domain_or_body(shape: Outline | Airfoil) -> Shape:
+    """Return a closed line as it is, or where it has corners, but not four, as the domain in it."""
+    if isinstance(shape, Airfoil) or shape.topology != "quad":
+        return shape
+    points = shape.curve.points
+    domain = Domain((ring_loop(points, hole=False),), shape.name, shape.notes)
+    return shape if four_sided(domain) else DomainShape(domain, one=partial(itself, shape))
+
+
+def default_name(number: int) -> str:
+    """Return what a loop is called that nobody named.
+
+    >>> [default_name(number) for number in range(3)]
+    ['outer', 'body', 'body2']
+    """
+    return "outer" if number == 0 else "body" if number == 1 else f"body{number}"
+
+
+def _outline(domain: Domain, *, named: bool, given: bool) -> Shape:
+    loop, corners = domain.loops[0], None
+    if given and four_sided(domain):
+        a, b, c, d = np.array(loop.corners)[loop.corner_cells == 1].tolist()
+        corners = (a, b, c, d)
+    outline = Outline(loop.curve.points, domain.name, corners, loop.places)
+    return _labelled(outline, domain.loops) if named else outline
+
+
+def _annulus(domain: Domain, *, named: bool) -> Shape:
+    outer, hole = (loop.curve.points for loop in domain.loops)
+    body = closed_curve(hole, domain.name, domain.loops[1].places)
+    shape = Annulus(body, Outline(outer[::-1], domain.name).curve, domain.name)
+    return _labelled(shape, domain.loops) if named else shape
+
+
+def _labelled(shape: Shape, loops: Sequence[Loop]) -> Shape:
+    """Return a shape whose patches are called as the loops that it follows."""
+    ends, names = [], []
+    for loop in loops:
+        points = loop.curve.points
+        ends.append(np.stack([points, np.roll(points, -1, axis=0)], axis=1))
+        knots = np.append(loop.curve.knots, loop.length)
+        names += [loop.name_at(float(middle)) for middle in 0.5 * (knots[1:] + knots[:-1])]
+    return Labelled(shape, np.concatenate(ends), names)

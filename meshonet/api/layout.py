@@ -1,0 +1,29 @@
+"""`meshonet.layout`."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from meshonet.api.grid import AnyShape, domain_parameters, shape_of
+from meshonet.geometry.layout.layout import Layout
+from meshonet.solvers.pipeline.blocks import make_layout
+from meshonet.solvers.pipeline.request import grid_request
+
+
+def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **parameters: Any) -> Layout:
+    """Split a domain into blocks.
+
+    Parameters
+    ----------
+    shape, assemble : as of `grid`.
+    parameters : ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``.
+
+    Raises InputError: a shape or parameter that cannot be used; SolverError: no blocks are found.
+
+    >>> import numpy as np
+    >>> step = np.array([[0, 1], [2, 1], [2, 0], [6, 0], [6, 2], [0, 2]])
+    >>> len(layout(step).blocks)
+    3
+    """
+    far_field = parameters.get("far_field")
+    request = grid_request("best", **domain_parameters(parameters))
+    return make_layout(shape_of(shape, assemble=assemble, far_field=far_field), request)[0]

@@ -1,0 +1,47 @@
+"""``meshonet layout``."""
+
+from typing import Annotated
+
+import typer
+
+from meshonet_cli import options as o
+
+EXAMPLES = (
+    "meshonet layout plate.geojson -o plate.json",
+    "meshonet layout main.dat flap.dat --assemble --far-field 20 -o wing.json",
+    "meshonet infer plate.geojson --layout plate.json --cells 10000 -o plate.cgns",
+    "meshonet plot plate.json -o blocks.png",
+)
+_sampling = o.option_of(o.SAMPLING)
+
+
+# fmt: off
+@o.expanded
+def layout(
+    domain: Annotated[list[str], typer.Argument(
+        metavar="DOMAIN", show_default=False,
+        help="File with a domain: WKT, GeoJSON, points of closed curves, DXF, the boundary of a mesh; an "
+        "airfoil, naca:2412, or - for standard input.",
+    )],
+    output: Annotated[str, o.option_of(o.IO)(
+        "-o", "--output", metavar="LAYOUT.json",
+        help="File to write, or - for standard output. For several inputs: 'dir/{stem}.json' (also {name}, "
+        "{index}).",
+    )],
+    blocks: o.DomainOptions,
+    printing: o.PrintOptions,
+    far_field: Annotated[float | None, _sampling(
+        "--far-field", metavar="R", help="Distance of the far field, in chords of all bodies. [default: 15]",
+    )] = None,
+    from_format: o.From = None,
+    skip_existing: o.SkipExisting = False,
+    jobs: o.Jobs = 1,
+) -> int:
+    """Split domains into blocks and write these."""
+    from meshonet_cli.layout_batch import write_layouts
+
+    return write_layouts(
+        domain, output, blocks.parameters(), far_field, printing.session(), assemble=blocks.assemble,
+        from_format=from_format, skip_existing=skip_existing, jobs=jobs,
+    )
+# fmt: on

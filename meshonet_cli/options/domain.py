@@ -1,0 +1,82 @@
+"""Options of domains that are made as many blocks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+from meshonet_cli.options.groups import DOMAIN, bad_value, option_of
+
+_option = option_of(DOMAIN)
+
+# fmt: off
+BlocksName = Annotated[Literal["auto", "single"], _option(
+    "--blocks", metavar="auto|single", show_default=True,
+    help="auto splits domains into blocks that are not four-sided, nor a body in its far field; single asks "
+    "for one block.",
+)]
+Walls = Annotated[str | None, _option(
+    "--walls", metavar="NAME,NAME",
+    help="Parts of the boundary at which --first-cell or --y-plus make layers. [default: around every hole]",
+)]
+
+
+@dataclass(frozen=True)
+class DomainOptions:
+    """How a domain is split into blocks. Each of these but --assemble asks for blocks."""
+
+    assemble: Annotated[bool, _option(
+        "--assemble",
+        help="All inputs are one domain: bodies in one far field, or in the one that encloses the others; "
+        "parts are called by their files.",
+    )] = False
+    cells: Annotated[int | None, _option(
+        "--cells", metavar="N", help="About so many cells in all blocks. [default: 2500]",
+    )] = None
+    cell_size: Annotated[float | None, _option(
+        "--cell-size", metavar="H", help="Length of edges away from walls, in the domain's unit.",
+    )] = None
+    layout: Annotated[str | None, _option(
+        "--layout", metavar="LAYOUT.json",
+        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it.",
+    )] = None
+    pitch: Annotated[str | None, _option(
+        "--pitch", metavar="DX,DY",
+        help="The input is a blade; make the passage of a cascade of blades so far apart, its periodic sides "
+        "matched node by node.",
+    )] = None
+    inlet: Annotated[float | None, _option(
+        "--inlet", metavar="L", help="With --pitch: length before the blade, in axial chords. [default: 1]",
+    )] = None
+    outlet: Annotated[float | None, _option(
+        "--outlet", metavar="L", help="With --pitch: length behind the blade, in axial chords. [default: 1]",
+    )] = None
+
+    def parameters(self, walls: str | None = None) -> dict[str, Any]:
+        """Return them for the library; raise InputError for what cannot be read."""
+        values = {name: value for name, value in vars(self).items() if name != "assemble"}
+        return values | {
+            "layout": None if self.layout is None else _layout(self.layout),
+            "pitch": None if self.pitch is None else shift(self.pitch),
+            "walls": () if walls is None else tuple(name.strip() for name in walls.split(",")),
+        }
+# fmt: on
+
+
+def shift(text: str) -> tuple[float, float]:
+    """Return the vector ``DX,DY``, or raise InputError.
+
+    >>> shift("0,57.5")
+    (0.0, 57.5)
+    """
+    try:
+        x, y = (float(word) for word in text.split(","))
+    except ValueError:
+        raise bad_value(text, "a vector", "use DX,DY, e.g. 0,0.8", "pitch") from None
+    return x, y
+
+
+def _layout(text: str) -> Any:
+    from meshonet.formats.layout.read import layout_of
+
+    return layout_of(text)

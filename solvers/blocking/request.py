@@ -1,0 +1,99 @@
+"""What a user can ask of a grid of many blocks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.y_plus import FORMULA, SOURCE, first_cell
+
+if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
+
+CELLS = 2500
+"""Cells where nobody asked for a count or a size."""
+MOST_CELLS = 20_000_000
+
+
+@dataclass(frozen=True)
+class BlockRequest:
+    """How to make a grid of blocks from a domain; the values are checked when it is made.
+
+    Parameters
+    ----------
+    cells : about how many cells in all; without it, `cell_size` and `res` there are `CELLS`.
+    cell_size : target length of edges away from walls, in the domain's unit.
+    res : cells along the longest extent of the domain.
+    first_cell : height of the first cell at walls, in the domain's unit.
+    y_plus, reynolds, chord_fraction : the same height by its y+, converted for a flat plate; the Reynolds
+        number is based on the extent of the bodies.
+    growth : largest ratio of neighbouring cells away from the wall.
+    constant_layers : number of first layers of equal height.
+    walls : names of the stretches with layers; none stands for all holes.
+    pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
+    inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
+    layout : blocks to take, of this domain or of one like it.
+
+    Raises InputError: a value out of its range; parameters that need or exclude each other.
+    """
+
+    cells: int | None = None
+    cell_size: float | None = None
+    res: int | None = None
+    first_cell: float | None = None
+    y_plus: float | None = None
+    reynolds: float | None = None
+    chord_fraction: float = 0.5
+    growth: float | None = None
+    constant_layers: int | None = None
+    walls: tuple[str, ...] = ()
+    pitch: tuple[float, float] | None = None
+    inlet: float | None = None
+    outlet: float | None = None
+    layout: Layout | None = None
+
+    def __post_init__(self) -> None:
+        sizes = [name for name in ("cells", "cell_size", "res") if getattr(self, name) is not None]
+        if len(sizes) > 1:
+            both = f"{{{sizes[0]}}} and {{{sizes[1]}}} both say how many cells there are"
+            raise InputError(both, "give one of them")
+        if self.cells is not None and not 1 <= self.cells <= MOST_CELLS:
+            raise InputError(f"{self.cells} cells", f"use 1 to {MOST_CELLS}", parameter="cells")
+        for name in ("cell_size", "inlet", "outlet"):
+            value = getattr(self, name)
+            if value is not None and not 0 < value < math.inf:
+                raise InputError(f"{value:g} is not a positive length", "give e.g. 0.1", parameter=name)
+        if any(not name for name in self.walls):
+            raise InputError("an empty name", "give the names of walls, e.g. slat,flap", parameter="walls")
+        if self.walls and not self.layers:
+            problem = "{walls} without a first cell"
+            raise InputError(problem, "give {first_cell} or {y_plus} as well")
+        if self.pitch is not None and not 0 < math.hypot(*self.pitch) < math.inf:
+            remedy = "give DX,DY from one blade to the next"
+            raise InputError("a pitch of no length", remedy, parameter="pitch")
+        for name in ("inlet", "outlet"):
+            if getattr(self, name) is not None and self.pitch is None:
+                remedy = f"give {{pitch}} as well, or drop {{{name}}}"
+                raise InputError(f"{{{name}}} without {{pitch}}", remedy)
+
+    @property
+    def layers(self) -> bool:
+        """Whether cells at walls have a height."""
+        return self.first_cell is not None or self.y_plus is not None
+
+    def height(self, unit: float) -> float | None:
+        """Return the height of the first cell in the unit of a domain whose reference length is `unit`."""
+        if self.y_plus is None or self.reynolds is None:
+            return self.first_cell
+        return first_cell(self.y_plus, self.reynolds, self.chord_fraction) * unit
+
+    def note(self, unit: float) -> str:
+        """Return where the height comes from, when it was computed."""
+        if self.y_plus is None:
+            return ""
+        return (
+            f"y+ {self.y_plus:g} at Re {self.reynolds:g} on a length of {unit:.6g} is "
+            f"{self.height(unit):.6g}: {FORMULA} ({SOURCE})"
+        )

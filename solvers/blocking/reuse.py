@@ -1,0 +1,178 @@
+"""A layout carried over to another domain of the same kind: a family of shapes with one topology.
+
+Loops belong together by their names, else by their order; corners in order around each loop, and where a loop
+has none, its places as they lie around its box. Nodes on a loop keep their part of the way between corners.
+The others move along: by the affine map that suits all nodes on loops best, and by a harmonic displacement
+that carries the rest inwards (Helenbrook, Int. J. Numer. Meth. Engng 56 (2003) 1007-1021, the first of two).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+
+OFFSETS = 128
+"""Places around a loop without corners at which it is compared with another."""
+TOLERANCE, MOST_STEPS = 1e-8, 2000
+
+
+def carried_over(layout: Layout, domain: Domain) -> Layout:
+    """Return the layout with its nodes on and inside the loops of another domain; they may be folded.
+
+    Raises InputError: another number of loops, or of corners on one of them; says what differs.
+    """
+    mesh = layout.mesh
+    pairs = _pairs(mesh.domain.loops, domain.loops)
+    places = mesh.places
+    loop, arc, nodes = places.loop.copy(), places.arc.copy(), mesh.nodes.copy()
+    for old, new in pairs.items():
+        on = np.flatnonzero(places.loop == old)
+        arc[on] = _Way.between(mesh.domain.loops[old], domain.loops[new]).carried(places.arc[on])
+        loop[on] = new
+        nodes[on] = domain.loops[new].at(arc[on])
+    on_loops = places.loop >= 0
+    nodes[~on_loops] = _moved_along(mesh, nodes, on_loops)
+    carried = QuadMesh(domain, nodes, mesh.quads, replace(places, loop=loop, arc=arc))
+    return replace(layout, mesh=carried)
+
+
+def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:
+    """Return which of the new loops belongs to each of the old ones; the outer ones stay first."""
+    if len(old) != len(new):
+        counts = [f"{len(loops) - 1} hole{'' if len(loops) == 2 else 's'}" for loops in (old, new)]
+        problem = f"the layout is of a domain with {counts[0]}, this one has {counts[1]}"
+        raise InputError(problem, "give a layout of the same kind", parameter="layout")
+    named = [_by_name(loops[1:]) for loops in (old, new)]
+    if named[0] and named[0].keys() == named[1].keys():
+        pairs = {0: 0} | {k: named[1][name] for name, k in named[0].items()}
+    else:
+        pairs = {k: k for k in range(len(old))}
+    for k, other in pairs.items():
+        own, others = len(old[k].corners), len(new[other].corners)
+        if own != others:
+            what = f"loop {other} ({', '.join(dict.fromkeys(new[other].names))})"
+            problem = f"{what} has {others} corner{'' if others == 1 else 's'}, in the layout it has {own}"
+            raise InputError(problem, "give a layout of the same kind", parameter="layout")
+    return pairs
+
+
+def _by_name(holes: tuple[Loop, ...]) -> dict[tuple[str, ...], int]:
+    """Return the number of each hole by its names, nothing where some share them."""
+    numbers = {tuple(sorted(set(loop.names))): k for k, loop in enumerate(holes, start=1)}
+    return numbers if len(numbers) == len(holes) else {}
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Arc lengths that belong together on two loops, ascending, one time around from the first."""
+
+    old: Floats
+    new: Floats
+    lengths: tuple[float, float]
+
+    @classmethod
+    def between(cls, old: Loop, new: Loop) -> _Way:
+        """Return the arc lengths of corners that belong together, or of where loops without them begin."""
+        lengths = old.length, new.length
+        if old.corners:
+            begins = old.corner_arcs, _around(new.corner_arcs, _corner_shift(old, new), lengths[1])
+        else:
+            begins = np.zeros(1), np.array([_begin(old, new)])
+        first, second = (
+            np.append(arcs, arcs[0] + length) for arcs, length in zip(begins, lengths, strict=True)
+        )
+        return cls(first, second, lengths)
+
+    def carried(self, arc: Floats) -> Floats:
+        """Return the arc lengths on the new loop of those on the old one."""
+        ahead = self.old[0] + np.mod(arc - self.old[0], self.lengths[0])
+        new = np.mod(np.interp(ahead, self.old, self.new), self.lengths[1])
+        return np.where(new >= self.lengths[1], 0.0, new)
+
+
+def _around(arcs: Floats, shift: int, length: float) -> Floats:
+    """Return ascending arc lengths from number `shift` on, one time around."""
+    turned = np.roll(arcs, -shift)
+    return turned + np.where(turned < turned[0], length, 0.0)
+
+
+def _corner_shift(old: Loop, new: Loop) -> int:
+    """Return the number of the new corner that belongs to the first of the old ones.
+
+    Named stretches belong together first of all, then corners of equal angles at equal places in their boxes.
+    """
+    ours, theirs = (_in_box(loop.curve.points[list(loop.corners)], loop) for loop in (old, new))
+    own, other = (np.array(loop.names) for loop in (old, new))
+    named = len(own) > 1 and sorted(own) == sorted(other)
+    costs = []
+    for k in range(len(theirs)):
+        cost = float(((np.roll(theirs, -k, axis=0) - ours) ** 2).sum())
+        cost += float(np.abs(np.roll(new.corner_angles, -k) - old.corner_angles).sum()) / 180.0
+        differ = int((np.roll(other, -k) != own).sum()) if named else 0
+        costs.append(cost + 1e3 * differ)
+    return int(np.argmin(costs))
+
+
+def _begin(old: Loop, new: Loop) -> float:
+    """Return the arc length on the new loop of the place that belongs to the first point of the old one."""
+    steps = np.linspace(0.0, 1.0, OFFSETS, endpoint=False)
+    ours, theirs = (_in_box(loop.at(steps * loop.length), loop) for loop in (old, new))
+    costs = [float(((np.roll(theirs, -k, axis=0) - ours) ** 2).sum()) for k in range(OFFSETS)]
+    return float(steps[int(np.argmin(costs))] * new.length)
+
+
+def _in_box(points: Floats, loop: Loop) -> Floats:
+    """Return points (n, 2) relative to the middle of the box of a loop, in its larger half side."""
+    every = loop.curve.points
+    low, high = every.min(axis=0), every.max(axis=0)
+    return np.asarray((points - 0.5 * (low + high)) / (0.5 * float((high - low).max())))
+
+
+def _moved_along(mesh: QuadMesh, nodes: Floats, fixed: NDArray[np.bool_]) -> Floats:
+    """Return where the nodes go that are not `fixed` (n,), when those are moved to `nodes` (n, 2)."""
+    old = np.column_stack([mesh.nodes, np.ones(len(mesh.nodes))])
+    affine = np.linalg.lstsq(old[fixed], nodes[fixed], rcond=None)[0]
+    base = old @ affine
+    moved = _harmonic(mesh, np.where(fixed[:, None], nodes - base, 0.0), fixed)
+    return np.asarray((base + moved)[~fixed])
+
+
+def _harmonic(mesh: QuadMesh, values: Floats, fixed: NDArray[np.bool_]) -> Floats:
+    """Return `values` (n, 2), where not `fixed` the mean of those at the other ends of its edges.
+
+    By conjugate gradients, each direction divided by the count of edges.
+    """
+    first, second = mesh.edges.T
+    count = np.bincount(mesh.edges.ravel(), minlength=len(values)).astype(np.float64)
+    free = (~fixed)[:, None]
+
+    def laplacian(x: Floats) -> Floats:
+        ends = ((first, second), (second, first))
+        sums = [sum(np.bincount(a, x[b, k], len(x)) for a, b in ends) for k in (0, 1)]
+        return np.asarray(np.where(free, count[:, None] * x - np.stack(sums, axis=1), 0.0))
+
+    x = values.copy()
+    residual = -laplacian(x)
+    scaled = residual / count[:, None]
+    way, product = scaled.copy(), (residual * scaled).sum(axis=0)
+    least = TOLERANCE**2 * product
+    for _ in range(MOST_STEPS):
+        if (product <= least).all():
+            break
+        ahead = laplacian(way)
+        step = product / np.maximum((way * ahead).sum(axis=0), 1e-300)
+        x += step * way
+        residual -= step * ahead
+        scaled = residual / count[:, None]
+        product, before = (residual * scaled).sum(axis=0), product
+        way = scaled + product / np.maximum(before, 1e-300) * way
+    return x

@@ -1,0 +1,166 @@
+"""Which shapes are made as many blocks, and what of a request is of use to these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields, replace
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.quality.measure import count_folded, worst_cells_of
+from meshonet.geometry.shapes.assembly import assembled, domain_of
+from meshonet.geometry.shapes.domain_shape import DomainShape
+from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.blocking.request import BlockRequest
+from meshonet.solvers.solution import Solution
+
+if TYPE_CHECKING:
+    from meshonet.geometry.blocks.grid import Grid
+    from meshonet.geometry.layout.layout import Layout
+    from meshonet.solvers.pipeline.request import GridRequest
+
+SMOOTHERS = ("auto", "variational")
+"""Methods that smooth the blocks of a given grid."""
+METHODS = ("best", *SMOOTHERS)
+"""Methods under whose names blocks are made: their nodes come from one optimum of the variational energy."""
+_OF_ONE = ("spacing", "le_spacing", "te_spacing", "wake", "wake_nodes")
+_OF_SMOOTHING = ("slide", "refine", "max_cycles")
+_OF_GRIDS = (
+    "spacing_south", "spacing_north", "spacing_west", "spacing_east", "slide", "wall_angle", "initial",
+    "refine", "repair_margin",
+)  # fmt: skip
+
+
+def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
+    """Return the domain whose blocks `request` makes of a shape, None where it makes a single block.
+
+    Raises InputError: a shape that is no domain; parameters that many blocks have no use for.
+    """
+    if any(_for_one(request).values()):
+        return None
+    if not (request.asks_for_blocks or getattr(shape, "many", False)):
+        return None
+    domain = _domain(shape, request)
+    _check_use(request, smooths=smooths(domain, request))
+    return domain
+
+
+def smooths(shape: DomainShape, request: GridRequest) -> bool:
+    """Say whether a request is to smooth the blocks of a grid that was given: it asks for no others."""
+    asked = request.asks_for_blocks or request.sampling.ni or request.at_walls
+    return shape.given is not None and request.method in SMOOTHERS and not asked
+
+
+def smoothed(grid: Grid, request: GridRequest) -> Solution:
+    """Return a given grid of many blocks smoothed, and as often refined and smoothed again as is asked for.
+
+    Raises InputError: as `smooth`; with refinement, a connection of a part of a side; NoValidGridError: cells
+    are still folded, and that was not allowed.
+    """
+    from meshonet.solvers.smoothing.refine import refined
+    from meshonet.solvers.smoothing.smooth import ITERATIONS, smooth
+
+    begun = perf_counter()
+    iterations = request.settings.get("max_cycles", ITERATIONS)
+    solution = smooth(grid, slide=bool(request.slide), iterations=iterations)
+    for _ in range(request.refine):
+        solution = smooth(refined(solution.grid, 2), slide=bool(request.slide), iterations=iterations)
+    seconds = {"grid": perf_counter() - begun}
+    if not request.allow_invalid:
+        _refuse_folded(solution.grid)
+    return replace(solution, seconds=seconds)
+
+
+def _refuse_folded(grid: Grid) -> None:
+    worst = worst_cells_of(grid)
+    if worst:
+        folded = sum(count_folded(block.nodes) for block in grid.blocks)
+        cells = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in grid.blocks)
+        problem = (
+            f"{folded} of {cells} cells stay folded; find other blocks with {{cells}}, or {{allow_invalid}}"
+        )
+        raise NoValidGridError(problem, worst)
+
+
+def check_asked(request: GridRequest) -> None:
+    """Raise InputError when a request asks for many blocks in a way that cannot be, or for one as well."""
+    block_request(request)
+    for name, given in _for_one(request).items():
+        if given:
+            problem = f"{{{request.asks_for_blocks[0]}}} asks for many blocks and {{{name}}} for one"
+            raise InputError(problem, "give one of them")
+
+
+def make_layout(shape: Shape, request: GridRequest) -> tuple[Layout, Mapping[str, float]]:
+    """Return the blocks that `request` makes of a shape, and seconds by stage.
+
+    They have as many cells as are asked for, or those that they were found with. Raises InputError: as
+    `as_blocks`; SolverError: no blocks are found.
+    """
+    begun = perf_counter()
+    from meshonet.solvers.blocking.make import find_layout
+
+    loaded = perf_counter()
+    _check_use(request)
+    layout = find_layout(_domain(shape, request), block_request(request))
+    return layout, {"load": loaded - begun, "layout": perf_counter() - loaded}
+
+
+def block_request(request: GridRequest) -> BlockRequest:
+    """Return what is asked of many blocks.
+
+    Raises InputError: as `BlockRequest`.
+    """
+    own = [each.name for each in fields(BlockRequest) if each.name != "res"]
+    values = {name: getattr(request, name) for name in own}
+    sampling = request.sampling
+    if sampling.ni != sampling.nj:
+        problem = f"{sampling.ni} x {sampling.nj} nodes for many blocks"
+        raise InputError(problem, "give one number: cells along the longest extent", parameter="res")
+    return BlockRequest(res=sampling.ni, **values)
+
+
+def _domain(shape: Shape, request: GridRequest) -> DomainShape:
+    if request.pitch is not None:
+        return _blade(shape, request.sampling)
+    domain = domain_of(shape, request.sampling)
+    if request.sampling.far_field is not None and not domain.far_field:
+        raise InputError("a domain with a boundary of its own has no far field", "leave {far_field} out")
+    return domain
+
+
+def _blade(shape: Shape, sampling: Sampling) -> DomainShape:
+    """Return the domain of which the only hole is the blade of a cascade."""
+    if sampling.far_field is not None:
+        raise InputError("the passage of a cascade has no far field", "leave {far_field} out")
+    around = assembled([shape], ["blade"], sampling, shape.name)
+    if len(around.domain.loops) != 2 or not around.far_field:
+        raise InputError("a cascade is made of one blade", "give one closed curve", parameter="pitch")
+    return around
+
+
+def _for_one(request: GridRequest) -> dict[str, bool]:
+    """Return by name whether parameters are given that ask for one block."""
+    sampling = request.sampling
+    return {
+        "blocks": request.blocks == "single",
+        "topology": sampling.topology != "auto",
+        "corners": sampling.corners is not None,
+    }
+
+
+def _check_use(request: GridRequest, *, smooths: bool = False) -> None:
+    """Raise InputError for the first parameter of no use to many blocks, or to smoothing given ones."""
+    if request.method not in METHODS:
+        problem = f"method {request.method} makes single blocks"
+        raise InputError(problem, "drop {method}, or ask for {blocks} single")
+    plain, given = Sampling(), request.sampling
+    useless = [name for name in _OF_ONE if getattr(given, name) != getattr(plain, name)]
+    useless += [name for name in _OF_GRIDS if getattr(request, name)]
+    useless += list(request.chosen)
+    for name in useless:
+        if smooths and name in _OF_SMOOTHING:
+            continue
+        raise InputError(f"{{{name}}} is of no use to a domain of many blocks", f"drop {{{name}}}")

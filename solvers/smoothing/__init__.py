@@ -1,0 +1,1 @@
+"""Grids of many blocks that were given, smoothed across their interfaces."""

@@ -1,0 +1,71 @@
+"""A smoothed grid whose nodes go only part of the way from the given one where a face would become worse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.layout.from_grid import with_nodes
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.quality.checkmesh import cells_beyond
+from meshonet.solvers.smoothing.judge import Measures, measures
+
+_ROUNDS, _GENTLE = 30, 8
+"""Tries at the most, and those after which nodes of bad cells stay where they were at once."""
+_SHARES = (0.5, 0.7, 0.85)
+"""Of its way that a node of a bad cell keeps in a round, and nodes one and two cells from it."""
+_SMALL = 0.02
+"""Part of the way below which a node stays where it was."""
+
+
+def held_back(grid: Grid, given: Layout, layout: Layout, before: Measures) -> Grid | None:
+    """Return `grid`, of which `given` is the layout, moved towards `layout` without becoming worse.
+
+    `before` are its measures. None where hardly anything would move.
+    """
+    part = np.ones(len(given.mesh.nodes))
+    for number in range(_ROUNDS):
+        made = with_nodes(grid, part_of_the_way(given, layout, part))
+        now = measures(made)
+        if now.no_worse(before):
+            return made
+        bad = np.zeros(len(part), dtype=bool)
+        for block, i, j in cells_beyond(made, before.angle, before.skew):
+            bad[given.blocks[block][i : i + 2, j : j + 2]] = True
+        if not bad.any():  # the mean deviation, or folded cells
+            bad[:] = True
+        quads = given.mesh.quads
+        for share in _SHARES:
+            part[bad] *= share if number < _GENTLE else 0.0
+            bad = _dilated(bad, quads)
+        part[part < _SMALL] = 0.0
+        if not part.any():
+            break
+    return None
+
+
+def _dilated(nodes: np.ndarray[tuple[int], np.dtype[np.bool_]], quads: np.ndarray) -> np.ndarray:
+    wider = nodes.copy()
+    wider[quads[nodes[quads].any(axis=1)].ravel()] = True
+    return wider
+
+
+def part_of_the_way(given: Layout, layout: Layout, part: Floats) -> Layout:
+    """Return the layout with nodes at `part` (n,), 0 to 1, of the way between two; boundary nodes slide."""
+    old, mesh = given.mesh, layout.mesh
+    nodes = old.nodes + part[:, None] * (mesh.nodes - old.nodes)
+    arc = old.places.arc.copy()
+    moved = (mesh.nodes != old.nodes).any(axis=1) & (old.places.partner < 0)
+    moved[old.places.partner[old.places.partner >= 0]] = False
+    for number, loop in enumerate(old.domain.loops):
+        on = (old.places.loop == number) & moved
+        way = np.mod(mesh.places.arc[on] - arc[on] + 0.5 * loop.length, loop.length) - 0.5 * loop.length
+        arc[on] = np.mod(arc[on] + part[on] * way, loop.length)
+        nodes[on] = loop.at(arc[on])
+    periodic, tied = old.domain.periodic, np.flatnonzero(old.places.partner >= 0)
+    if periodic is not None:
+        nodes[tied] = nodes[old.places.partner[tied]] + np.array(periodic.shift)
+    return replace(layout, mesh=mesh.with_nodes(nodes, arc))

@@ -1,0 +1,47 @@
+"""Whether a smoothed grid of blocks is no worse than the one that was given, and which of several is best."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.quality.blocks import block_figures
+from meshonet.geometry.quality.checkmesh import faces
+from meshonet.geometry.quality.measure import count_folded
+
+_SLACK = 1e-7
+"""Degrees, and parts of a skewness, that rounding may add."""
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Folded cells and what must not become worse; the score, of which less is better, is of all together."""
+
+    folded: int
+    angle: float
+    """Largest non-orthogonality of a face, degrees."""
+    skew: float
+    """Largest skewness of a face."""
+    mean: float
+    """Mean deviation of corners from 90 degrees."""
+    score: float
+
+    def no_worse(self, than: Measures) -> bool:
+        """Say whether no figure is larger."""
+        if than.folded or self.folded:
+            return self.folded < than.folded
+        pairs = (self.angle, than.angle), (self.skew, than.skew), (self.mean, than.mean)
+        return all(own <= other + _SLACK for own, other in pairs)
+
+
+def measures(grid: Grid) -> Measures:
+    """Return the measures of a grid of planar blocks."""
+    found, figures = faces(grid), block_figures(grid)
+    angle = found.non_orthogonality.max if found.non_orthogonality else 0.0
+    skew = found.face_skewness.max if found.face_skewness else 0.0
+    angles, across = figures.deviation, figures.lines.growth_across
+    jump = math.log(across.max) if across else 0.0
+    folded = sum(count_folded(block.nodes) for block in grid.blocks)
+    score = angle / 30.0 + skew + angles.mean / 5.0 + angles.p99 / 30.0 + jump
+    return Measures(folded, angle, skew, angles.mean, math.inf if folded else score)
