@@ -6,9 +6,9 @@ Logarithms of cells along a line that change by at most g from one to the next l
 
     lower_i = min_j (y_j + g |i - j|)  <=  y_i  <=  upper_i = max_j (y_j - g |i - j|)
 
-Both change by at most g, and so does every mean of them; that which keeps the length of the line is taken.
-Where the cells do not differ by more, both envelopes are what is there, and nothing moves; lines beside each
-other are moved alike.
+Both change by at most g, and so does every mean of them. Where the cells do not differ by more, both are what
+is there: nothing moves. In every stretch between such places that mean is taken which keeps its length, so
+nodes move only near where cells differ by too much, and those of lines beside each other are moved alike.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ from meshonet.geometry.arrays import Floats
 _STEPS = 40
 _TRIES = 6
 _BEYOND = 8.0  # how far, in logarithms, cells may leave the envelopes where an end is held
+_SAME = 1e-9
+
+Bools = NDArray[np.bool_]
 
 
 def evened(cells: Floats, limit: float, closed: bool = False, start: int = 0, stop: int = 0) -> Floats:
@@ -29,47 +32,68 @@ def evened(cells: Floats, limit: float, closed: bool = False, start: int = 0, st
     `limit` is the logarithm of the ratio. The first `start` and last `stop` cells are kept. Lines in which
     that cannot be differ by more, as little as may be.
     """
-    new, possible = _evened(cells, limit, closed, start, stop)
-    for _ in range(_TRIES):
-        if possible.all():
+    new = cells.copy()
+    left = np.arange(len(cells))
+    for whole in (False, *(True,) * _TRIES):
+        new[left], possible = _evened(cells[left], limit, closed, (start, stop), whole)
+        left = left[~possible]
+        if not len(left):
             break
-        limit *= 1.25
-        again = np.flatnonzero(~possible)
-        new[again], possible[again] = _evened(cells[again], limit, closed, start, stop)
+        if whole:
+            limit *= 1.25
     return new
 
 
 def _evened(
-    cells: Floats, limit: float, closed: bool, start: int, stop: int
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """Return cells (k, n) of lines, and which lines (k,) could be evened."""
+    cells: Floats, limit: float, closed: bool, held: tuple[int, int], whole: bool
+) -> tuple[Floats, Bools]:
+    """Return cells (k, n), and which lines (k,) could be evened, in one stretch if `whole`."""
     y = np.log(cells)
-    low, high = _envelopes(y, limit, closed)
-    least, most = np.full_like(y, -np.inf), np.full_like(y, np.inf)
-    n = y.shape[1]
-    away = limit * np.arange(n)
-    for held, from_end in ((start, False), (stop, True)):
-        if held:
-            last = y[:, -held if from_end else held - 1][:, None]
-            reach = np.maximum(away[::-1] - away[held - 1] if from_end else away - away[held - 1], 0.0)
-            least, most = np.maximum(least, last - reach), np.minimum(most, last + reach)
-            kept = slice(n - held, n) if from_end else slice(0, held)
-            least[:, kept] = most[:, kept] = y[:, kept]
-    total = cells.sum(axis=1)
-    lower, upper = np.full(len(y), -_BEYOND), np.full(len(y), 1.0 + _BEYOND)
+    least, most = _kept(y, limit, held)
+    low, high = (np.clip(each, least, most) for each in _envelopes(y, limit, closed))
+    active = np.ones(y.shape, dtype=bool) if whole else high - low > _SAME
+    begins = active & ~np.pad(active, ((0, 0), (1, 0)))[:, :-1]
+    stretch = (np.cumsum(begins.ravel()) - 1)[active.ravel()]
+    count = int(begins.sum())
+    if not count:
+        return cells.copy(), np.ones(len(cells), dtype=bool)
+    total = np.bincount(stretch, cells[active], count)
+    ends = low[active], high[active], least[active], most[active]
+    reach = _BEYOND if whole else 0.0
+    lower, upper = np.full(count, -reach), np.full(count, 1.0 + reach)
     for _ in range(_STEPS):
         part = 0.5 * (lower + upper)
-        sums = np.exp(_between(part, low, high, least, most)).sum(axis=1)
+        sums = np.bincount(stretch, _between(part[stretch], *ends), count)
         lower, upper = np.where(sums < total, part, lower), np.where(sums < total, upper, part)
-    new = np.exp(_between(0.5 * (lower + upper), low, high, least, most))
-    possible = np.abs(new.sum(axis=1) / total - 1.0) < 1e-6
-    return np.where(possible[:, None], new, cells), possible
+    new = cells.copy()
+    new[active] = _between((0.5 * (lower + upper))[stretch], *ends)
+    off = np.abs(np.bincount(stretch, new[active], count) / total - 1.0) > 1e-6
+    row = np.nonzero(begins)[0]
+    possible = np.ones(len(cells), dtype=bool)
+    possible[row[off]] = False
+    new[~possible] = cells[~possible]
+    return new, possible
 
 
 def _between(part: Floats, low: Floats, high: Floats, least: Floats, most: Floats) -> Floats:
-    """Return the mean of envelopes (k, n) that `part` (k,) stands for; both are left below 0 and above 1."""
-    inside = np.clip(part, 0.0, 1.0)[:, None]
-    return np.clip(low + inside * (high - low) + (part[:, None] - inside), least, most)
+    """Return cells (n,) at means of envelopes (n,) that `part` (n,) stands for; both are left beyond 0 to 1."""
+    inside = np.clip(part, 0.0, 1.0)
+    return np.exp(np.clip(low + inside * (high - low) + (part - inside), least, most))
+
+
+def _kept(y: Floats, limit: float, held: tuple[int, int]) -> tuple[Floats, Floats]:
+    """Return bounds (k, n) of logarithms (k, n) that leave the first and last `held` as they are."""
+    least, most = np.full_like(y, -np.inf), np.full_like(y, np.inf)
+    n = y.shape[1]
+    for count, from_end in zip(held, (False, True), strict=True):
+        if count:
+            last = y[:, n - count if from_end else count - 1][:, None]
+            away = np.maximum(np.arange(n) - (count - 1), 0)
+            reach = limit * (away[::-1] if from_end else away)
+            least, most = np.maximum(least, last - reach), np.minimum(most, last + reach)
+            kept = slice(n - count, n) if from_end else slice(0, count)
+            least[:, kept] = most[:, kept] = y[:, kept]
+    return least, np.maximum(least, most)
 
 
 def _envelopes(y: Floats, limit: float, closed: bool) -> tuple[Floats, Floats]:

@@ -41,6 +41,8 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
+FREE = 2
+"""Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
 EVEN = float(np.log(1.15))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 PRICE = 0.02
@@ -135,14 +137,14 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
     with timings.stage("optimum"):
         mesh = coarse.mesh
         on = np.zeros(len(mesh.nodes), dtype=bool)
-        for held in (False, True):
+        for turn in range(FREE + 1):
             optimum = optimise(
-                mesh, iterations=ITERATIONS, targets=metric.edges(mesh), held=on if held else None
+                mesh, iterations=ITERATIONS, targets=metric.edges(mesh), held=on if turn == FREE else None
             )
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
-            if not held:
+            if turn == FREE - 1:
                 mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
                 on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
