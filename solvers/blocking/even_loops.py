@@ -16,6 +16,7 @@ from meshonet.solvers.blocking.even_growth import evened
 
 Measure = tuple[Floats, Floats]
 """Arc lengths (m,) along a loop, from 0 to its length, and what rises with them from 0."""
+HELD = False
 TURNS = 4
 """Arc length and the other measure are evened in turn so often."""
 
@@ -68,7 +69,7 @@ def _evened_steps(steps: Floats, corners: Indices, limit: float) -> Floats:
     done = np.zeros(k, dtype=bool)
     for piece in sorted(pieces, key=lambda each: float(steps[each].mean())):
         before, after = (piece[0] - 1) % k, (piece[-1] + 1) % k
-        held = done[before] and len(pieces) > 1, done[after] and len(pieces) > 1
+        held = HELD and done[before] and len(pieces) > 1, HELD and done[after] and len(pieces) > 1
         line = np.concatenate([new[[before]] if held[0] else [], new[piece], new[[after]] if held[1] else []])
         line = evened(line[None], limit, False, int(held[0]), int(held[1]))[0]
         new[piece] = line[int(held[0]) : len(line) - int(held[1])]

@@ -43,7 +43,7 @@ MOST_OPTIMISED = 4000
 ITERATIONS = 120
 FREE = 2
 """Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
-EVEN = float(np.log(1.15))
+EVEN = float(np.log(1.2))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 PRICE = 0.02
 """Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""

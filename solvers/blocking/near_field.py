@@ -21,7 +21,8 @@ NEAR = 2.2
 """The same radii of the circle that stands in for it."""
 _POINTS = 240
 _EVEN = 1.1
-MOST_GROWTH = 1.2
+_OWN = 0.7  # part of a row in which it becomes like the others
+MOST_GROWTH = 1.16
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,8 +84,15 @@ class NearField:
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
         wanted = evened(heights[None], np.log(_EVEN), closed=True)[0] * growth**0.5
-        cells = self.cells(float(np.exp(np.log(wanted).mean())), growth)
-        share = np.stack([_shares(first, cells) for first in (wanted / length).tolist()])
+        mean = float(np.exp(np.log(wanted).mean()))
+        wanted = np.clip(wanted, mean / 1.7, 1.7 * mean)
+        cells = self.cells(mean, growth)
+        whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
+        # each row begins with its own cell and becomes like the others: their angles stay right
+        own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2
+        step = np.diff(whole, axis=1) * np.exp(np.log(wanted / mean)[:, None] * own)
+        step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[:, None]
+        share = np.concatenate([np.zeros((len(step), 1)), np.cumsum(step, axis=1)], axis=1)
         nodes = start[:, None] + share[..., None] * (end - start)[:, None]
         nodes[:, -1] = end
         return Rows(0, nodes, np.mod(arcs, self.outer.length), False)
