@@ -25,6 +25,7 @@ from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.even_loops import Measure, evened_loops
+from meshonet.solvers.blocking.even_rows import evened_rows
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
@@ -45,6 +46,8 @@ FREE = 2
 """Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
 EVEN = float(np.log(1.2))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+MARGIN = 1.1
+"""By how much cells may differ in the end, in logarithms, over the growth of layers."""
 PRICE = 0.02
 """Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 _BISECTIONS = 12
@@ -212,6 +215,7 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     if rings.near is not None:
         rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
     whole = respaced(attach(outside, rings.domain, rows), rings.settings)
+    whole = evened_rows(whole, MARGIN * float(np.log(rings.settings.growth)), rings.settings.constant)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("layers are folded")
     return whole
