@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
@@ -24,6 +25,8 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.even_loops import Measure, evened_loops
+from meshonet.solvers.blocking.even_rows import evened_rows
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
@@ -40,10 +43,14 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS, STRIDING, UNFOLDING = 120, 60, 30
+FREE = 2
+"""Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
+EVEN = float(np.log(1.2))
+"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+MARGIN = 1.1
+"""By how much cells may differ in the end, in logarithms, over the growth of layers."""
 PRICE = 0.02
 """Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
-PASSES = 2
-"""Optimisations, each with the sizes at the nodes of the one before."""
 _BISECTIONS = 12
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
@@ -90,6 +97,14 @@ class Rings:
         largest = self.rest.extent / 12.0 * scale**0.5
         return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
+    @property
+    def measures(self) -> dict[int, Measure]:
+        """What steps are to be even in, besides arc length, along the loops that stand in for others."""
+        measures = {k: ring.along_wall for k, ring in self.rings.items()}
+        if self.near is not None:
+            measures[0] = (np.array([0.0, self.near.circle.length]),) * 2
+        return measures
+
     def rows(self, ring: Ring) -> int:
         """Return the layers of a ring."""
         thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
@@ -126,19 +141,23 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
     with timings.stage("optimum"):
         if stride > 1:
             coarse = multiplied(_optimised(coarse, metric, STRIDING), stride)
-        for _ in range(PASSES):
+        for _ in range(FREE):
             coarse = _optimised(coarse, metric, ITERATIONS)
+        coarse = evened_loops(coarse, rings.measures, times * EVEN)
+        on = np.isin(coarse.mesh.places.loop, list(rings.measures))
+        coarse = _optimised(coarse, metric, ITERATIONS, on)
     with timings.stage("refine"):
-        fine = multiplied(coarse, times)
+        fine = evened_loops(multiplied(coarse, times), rings.measures, EVEN)
     if times == 1 or smallest_corner(fine.mesh) > 0.0:
         return fine
     with timings.stage("optimum"):  # splines through few cells may fold where these bend
-        return _optimised(fine, metric, UNFOLDING)
+        on = np.isin(fine.mesh.places.loop, list(rings.measures))
+        return _optimised(fine, metric, UNFOLDING, on)
 
 
-def _optimised(layout: Layout, metric: SizeMetric, iterations: int) -> Layout:
-    """Return a layout with its nodes optimised for some sizes."""
-    optimum = optimise(layout.mesh, iterations=iterations, targets=metric.edges(layout.mesh))
+def _optimised(layout: Layout, metric: SizeMetric, iterations: int, held: NDArray[np.bool_] | None = None) -> Layout:
+    """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
+    optimum = optimise(layout.mesh, iterations=iterations, targets=metric.edges(layout.mesh), held=held)
     if not optimum.valid:
         raise NoValidGridError("cells outside the layers stay folded")
     return replace(layout, mesh=optimum.mesh)
@@ -217,7 +236,8 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
         rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0), multiple=multiple))
     whole = attach(outside, rings.domain, rows)
     even = respaced(whole, rings.settings)
-    for each in (even, whole):
+    limit = MARGIN * float(np.log(rings.settings.growth))
+    for each in (evened_rows(even, limit, rings.settings.constant), even, whole):
         if smallest_corner(each.mesh) > 0.0:
             return each
     raise NoValidGridError("layers are folded")
