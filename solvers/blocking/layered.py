@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -140,22 +141,35 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         if stride > 1:
-            coarse = multiplied(_optimised(coarse, metric, STRIDING), stride)
+            with suppress(NoValidGridError):  # so few cells may stay folded, and more not
+                coarse = _optimised(coarse, metric, STRIDING)
+            coarse = multiplied(coarse, stride)
         for _ in range(FREE):
             coarse = _optimised(coarse, metric, ITERATIONS)
         coarse = evened_loops(coarse, rings.measures, times * EVEN)
         on = np.isin(coarse.mesh.places.loop, list(rings.measures))
         coarse = _optimised(coarse, metric, ITERATIONS, on)
-    with timings.stage("refine"):
-        fine = evened_loops(multiplied(coarse, times), rings.measures, EVEN)
-    if times == 1 or smallest_corner(fine.mesh) > 0.0:
-        return fine
-    with timings.stage("optimum"):  # splines through few cells may fold where these bend
-        on = np.isin(fine.mesh.places.loop, list(rings.measures))
-        return _optimised(fine, metric, UNFOLDING, on)
+    return _multiplied(rings, coarse, times, metric, timings)
 
 
-def _optimised(layout: Layout, metric: SizeMetric, iterations: int, held: NDArray[np.bool_] | None = None) -> Layout:
+def _multiplied(rings: Rings, coarse: Layout, times: int, metric: SizeMetric, timings: Timings) -> Layout:
+    """Return the layout with `times` as many cells each way, even along fronts, in steps where it would fold."""
+    while True:
+        with timings.stage("refine"):
+            plain = multiplied(coarse, times) if times > 1 else coarse
+            fine = evened_loops(plain, rings.measures, EVEN)
+        for each in (fine, plain):
+            if times == 1 or smallest_corner(each.mesh) > 0.0:
+                return each
+        step = next(k for k in range(2, times + 1) if times % k == 0)
+        with timings.stage("optimum"):
+            coarse = _optimised(multiplied(coarse, step), metric, UNFOLDING)
+        times //= step
+
+
+def _optimised(
+    layout: Layout, metric: SizeMetric, iterations: int, held: NDArray[np.bool_] | None = None
+) -> Layout:
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
     optimum = optimise(layout.mesh, iterations=iterations, targets=metric.edges(layout.mesh), held=held)
     if not optimum.valid:
@@ -214,7 +228,7 @@ class _Wanted:
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
     def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
-        """Return counts (chords,): multiples near the mean, by length, of the logarithms of what edges want."""
+        """Return counts (chords,), multiples near what edges want: its geometric mean, by length."""
         parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)

@@ -39,9 +39,7 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
         raise InputError("cascades are not made yet", "leave {pitch} out", parameter="pitch")
     if height is None:
         layout = layout or decompose(domain, timings=timings)
-        fine = fine_layout(
-            layout, cells=cells, cell_size=size, halved=request.refine, timings=timings
-        )
+        fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
         fine = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
