@@ -123,6 +123,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
     "infer": GRIDS | BLOCKS | {
         "--model": (f"{BODY} {MADE}", "OPTION airfoil-o", "nodes"),
         "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
+        "--refine": (f"step.wkt --cells 400 {MADE}", "OPTION 1", "nodes"),
         "--device": (f"{BODY} {MADE}", "OPTION cpu", "nodes" if TORCH else "code"),
         "--answer": (f"duct.h5 --model m.safetensors {MADE}", "OPTION raw", "nodes"),
         "--repair": (f"wave.h5 --model m.safetensors --answer pasted {MADE}", "OPTION", "code"),
