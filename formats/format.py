@@ -134,5 +134,5 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
 def size_of(sample: Boundary | Grid) -> str:
     """Return the counts of nodes and the topology of a grid or boundary, as words."""
     if isinstance(sample, Grid) and sample.topology == "blocks":
-        return "blocks of " + ", ".join("x".join(map(str, block.counts)) for block in sample.blocks)
+        return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
     return f"{sample.ni}x{sample.nj} {sample.topology}"
