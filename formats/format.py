@@ -7,14 +7,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
+
+if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
 
 Heights: TypeAlias = tuple[float, ...]
 """z of each plane of a grid that is repeated in z, increasing from 0; none for a flat one."""
@@ -134,5 +136,5 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
 def size_of(sample: Boundary | Grid) -> str:
     """Return the counts of nodes and the topology of a grid or boundary, as words."""
     if isinstance(sample, Grid) and sample.topology == "blocks":
-        return "blocks of " + ", ".join("x".join(map(str, block.counts)) for block in sample.blocks)
+        return "blocks of " + ", ".join("x".join(map(str, block.nodes.shape)) for block in sample.blocks)
     return f"{sample.ni}x{sample.nj} {sample.topology}"

@@ -20,15 +20,17 @@ from meshonet.geometry.blocks.grid import Grid
 def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid, planes: int) -> None:
     """Join the two sides of each connection of `grid`, once from each, in the `zones` of its blocks."""
     groups: dict[int, Node] = {}
+    taken: dict[int, set[str]] = {}
     counts = [block.counts for block in grid.blocks]
     for each in grid.connections:
         for way in (each, each.reversed()):
             if way.block not in groups:
                 group = child(zones[way.block], "ZoneGridConnectivity", "ZoneGridConnectivity_t")
-                groups[way.block] = group
+                groups[way.block], taken[way.block] = group, set()
             group = groups[way.block]
             title = _title(grid, way, names)
-            word = words([title], NAME_LENGTH, set(group))[title]
+            word = words([title], NAME_LENGTH, taken[way.block])[title]
+            taken[way.block].add(word)
             joint = child(group, word, "GridConnectivity1to1_t", names[way.donor])
             ((first, last),), (along,) = way.donor_range, way.orientation
             start, stop = (first, last)[::along]

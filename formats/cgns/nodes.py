@@ -8,6 +8,7 @@ https://cgns.org/standard/FMM/hdf5_impl.html
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -50,7 +51,10 @@ def child(parent: Node, name: str, label: str, value: str | NDArray[Any] | None 
     data = _codes(value, len(value.encode())) if isinstance(value, str) else value
     _label(node, name, label, "MT" if data is None else _TYPES[data.dtype.name])
     if data is not None:
-        node.create_dataset(_DATA, data=data)
+        from h5py import h5d
+
+        stored, space = _stored_as(data.dtype.str, data.shape)
+        h5d.create(node.id, _DATA.encode(), stored, space).write(space, space, np.ascontiguousarray(data))
     return node
 
 
@@ -88,10 +92,26 @@ def text(node: Node) -> str:
 
 
 def _label(node: Node, name: str, label: str, kind: str) -> None:
-    node.attrs.create("name", np.bytes_(name), dtype="S33")
-    node.attrs.create("label", np.bytes_(label), dtype="S33")
-    node.attrs.create("type", np.bytes_(kind), dtype="S3")
-    node.attrs.create("flags", np.array([1], np.int32))
+    _set(node, b"name", np.array(name.encode(), "S33"))
+    _set(node, b"label", np.array(label.encode(), "S33"))
+    _set(node, b"type", np.array(kind.encode(), "S3"))
+    _set(node, b"flags", np.array([1], np.int32))
+
+
+def _set(node: Node, name: bytes, value: NDArray[Any]) -> None:
+    """Set an attribute, by what h5py calls itself: its own way takes half of the time of a file of blocks."""
+    from h5py import h5a
+
+    stored, space = _stored_as(value.dtype.str, value.shape)
+    h5a.create(node.id, name, stored, space).write(value)
+
+
+@cache
+def _stored_as(dtype: str, shape: tuple[int, ...]) -> tuple[Any, Any]:
+    from h5py import h5s, h5t
+
+    space = h5s.create_simple(shape) if shape else h5s.create(h5s.SCALAR)
+    return h5t.py_create(np.dtype(dtype), logical=True), space
 
 
 def _attribute(node: Node, name: str) -> str:

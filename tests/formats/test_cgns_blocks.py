@@ -325,8 +325,8 @@ def test_what_gmsh_writes_of_transfinite_surfaces_is_one_grid(ending: str, tmp_p
     points = {
         name: geo.addPoint(x, y, 0)
         for name, (x, y) in {
-            "a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (2, 1), "e": (1, 1), "f": (0, 1), "g": (1, 2),
-            "h": (0, 2),
+            "a": (0, 0), "b": (1, 0), "c": (2, 0), "d": (2, 1),
+            "e": (1, 1), "f": (0, 1), "g": (1, 2), "h": (0, 2),
         }.items()
     }  # fmt: skip
     for corners in ("abef", "bcde", "fegh"):

@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from many_blocks import MANY, butterfly, passage, sector, step
 
+import meshonet
+from meshonet.formats.cgns.write import write_grids as write_cgns
 from meshonet.formats.gmsh.geo import write_grids as write_geo
 from meshonet.formats.gmsh.msh import write_grids as write_msh
 from meshonet.formats.mesh.unstructured import unstructured
@@ -136,6 +138,17 @@ def test_su2_has_a_marker_a_name_and_the_line_that_couples_them(tmp_path: Path) 
         mesh = meshio.read(tmp_path / "g.su2")
         assert len(mesh.points) == 78
         assert len(mesh.get_cells_type("quad")) == 60
+
+
+def test_convert_makes_one_mesh_of_a_file_of_blocks(tmp_path: Path) -> None:
+    write_cgns(tmp_path / "blocks.cgns", [step()])
+    meshonet.convert(tmp_path / "blocks.cgns", tmp_path / "mesh.su2")
+    text = (tmp_path / "mesh.su2").read_text()
+    assert text.startswith("NDIME= 2\nNELEM= 80\n")
+    assert "NPOIN= 101\n" in text
+    assert set(re.findall(r"MARKER_TAG= (\S+)", text)) == {
+        "inlet", "lower_wall", "top", "outlet", "south", "east", "north"
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("words", ["2.2", "2.2,ascii", "4.1", "4.1,ascii"])
