@@ -55,7 +55,7 @@ def template(passage: Passage) -> Layout:
             if (i, j) != (1, 0):
                 u = np.linspace(columns[i], columns[i + 1], (along if i == 1 else CELLS) + 1)[:, None]
                 v = np.linspace(rows[j], rows[j + 1], CELLS + 1)[None, :]
-                pieces.append(flow.disc(u + 1j * v))
+                pieces.append(flow.disc(np.asarray(u + 1j * v, dtype=np.complex128)))
     pieces += _ring(flow, x, along)
     nodes, blocks = _joined(pieces)
     return _placed(passage, flow, nodes, blocks)
@@ -89,9 +89,7 @@ def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
     return places[kept], tuple(part.reshape(piece.shape) for part, piece in zip(parts, pieces, strict=True))
 
 
-def _placed(
-    passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...]
-) -> Layout:
+def _placed(passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...]) -> Layout:
     """Return the layout with nodes of the disc in the plane of the map, those of walls on its loops."""
     domain = passage.domain
     front = domain.loops[BLADE]
@@ -99,7 +97,10 @@ def _placed(
     places = Places.inside(len(nodes))
     feet = np.unique(np.concatenate([block[:, 0] for block in blocks[-4:]]))
     places.loop[feet], places.arc[feet] = BLADE, _arcs(flow, nodes[feet], front)
-    for number, columns in ((INLET, [block[0] for block in blocks[:3]]), (OUTLET, [block[-1] for block in blocks[-7:-4]])):
+    for number, columns in (
+        (INLET, [block[0] for block in blocks[:3]]),
+        (OUTLET, [block[-1] for block in blocks[-7:-4]]),
+    ):
         on = np.unique(np.concatenate(columns))
         places.loop[on] = number
         places.arc[on] = passage.line_arcs(number, mapped[on])

@@ -68,11 +68,10 @@ def _turns(layout: Layout, passage: PassageMap, z: Floats, cut: Indices) -> list
     along = passage.along(z)
     turns = []
     for block in layout.blocks:
-        place = along[block]
-        turn = np.zeros(block.shape)
-        turn[1:, 0] = -np.cumsum(np.round(np.diff(place[:, 0])))
-        turn[:, 1:] = turn[:, :1] - np.cumsum(np.round(np.diff(place, axis=1)), axis=1)
-        turns.append(turn.astype(np.intp))
+        jump = np.zeros(block.shape)
+        jump[1:, 0] = -np.cumsum(np.round(np.diff(along[block[:, 0]])))
+        jump[:, 1:] = jump[:, :1] - np.cumsum(np.round(np.diff(along[block], axis=1)), axis=1)
+        turns.append(jump.astype(np.intp))
     closed = np.zeros(len(z), dtype=bool)
     closed[cut] = True
     sides: dict[tuple[int, ...], list[tuple[int, int]]] = {}
@@ -86,9 +85,9 @@ def _turns(layout: Layout, passage: PassageMap, z: Floats, cut: Indices) -> list
     queue = [0]
     for number in queue:
         for pair in sides.values():
-            mine = [turn for block, turn in pair if block == number]
-            for block, turn in pair if mine else ():
-                if block not in moved:
-                    moved[block] = moved[number] + mine[0] - turn
-                    queue.append(block)
+            mine = [own for which, own in pair if which == number]
+            for which, other in pair if mine else ():
+                if which not in moved:
+                    moved[which] = moved[number] + mine[0] - other
+                    queue.append(which)
     return [turn + moved[number] for number, turn in enumerate(turns)]
