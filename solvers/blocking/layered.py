@@ -25,7 +25,7 @@ from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.even_loops import Measure, evened_loops
-from meshonet.solvers.blocking.even_rows import evened_rows
+from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
@@ -42,6 +42,9 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
+FEW_ITERATIONS = 10
+RESPACED_SINE = 0.1
+"""Of angles, that no node that is placed anew across layers may make smaller."""
 FREE = 2
 """Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
 EVEN = float(np.log(1.2))
@@ -151,7 +154,18 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
                 mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
                 on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
-        return evened_loops(multiplied(Layout(mesh, coarse.blocks), times), rings.measures, EVEN)
+        fine = _unfolded(multiplied(Layout(mesh, coarse.blocks), times), rings)
+        even = evened_loops(fine, rings.measures, EVEN)
+        return even if smallest_corner(even.mesh) > 0.0 else fine
+
+
+def _unfolded(layout: Layout, rings: Rings) -> Layout:
+    """Return the layout with nodes off its fronts moved, where splines have folded cells."""
+    mesh = layout.mesh
+    if smallest_corner(mesh) > 0.0:
+        return layout
+    on = np.isin(mesh.places.loop, list(rings.measures))
+    return replace(layout, mesh=optimise(mesh, iterations=FEW_ITERATIONS, held=on).mesh)
 
 
 def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
@@ -214,7 +228,10 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     ]
     if rings.near is not None:
         rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
-    whole = respaced(attach(outside, rings.domain, rows), rings.settings)
+    whole = attach(outside, rings.domain, rows)
+    respaced_nodes = respaced(whole, rings.settings).mesh.nodes
+    nodes = guarded(whole.mesh.nodes, respaced_nodes - whole.mesh.nodes, whole.mesh, RESPACED_SINE)
+    whole = replace(whole, mesh=whole.mesh.with_nodes(nodes))
     whole = evened_rows(whole, MARGIN * float(np.log(rings.settings.growth)), rings.settings.constant)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("layers are folded")
