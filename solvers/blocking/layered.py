@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import NoValidGridError
@@ -129,12 +130,22 @@ def layered(
         plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
         layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
-    fine = _outside(rings, layout, cells, timings)
+    for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
+        try:
+            return _whole(rings, layout, cells, timings, even)
+        except NoValidGridError as error:
+            problem = error
+    raise problem
+
+
+def _whole(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
+    """Return the fine layout, its cells evened along fronts or not."""
+    fine = _outside(rings, layout, cells, timings, even)
     with timings.stage("layers"):
         return _joined(rings, fine)
 
 
-def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layout:
+def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
@@ -143,20 +154,20 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
     with timings.stage("optimum"):
         mesh = coarse.mesh
         on = np.zeros(len(mesh.nodes), dtype=bool)
-        for turn in range(FREE + 1):
+        for turn in range(FREE + even):
             optimum = optimise(
                 mesh, iterations=ITERATIONS, targets=metric.edges(mesh), held=on if turn == FREE else None
             )
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
-            if turn == FREE - 1:
+            if even and turn == FREE - 1:
                 mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
                 on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
         fine = _unfolded(multiplied(Layout(mesh, coarse.blocks), times), rings)
-        even = evened_loops(fine, rings.measures, EVEN)
-        return even if smallest_corner(even.mesh) > 0.0 else fine
+        moved = evened_loops(fine, rings.measures, EVEN) if even else fine
+        return moved if smallest_corner(moved.mesh) > 0.0 else fine
 
 
 def _unfolded(layout: Layout, rings: Rings) -> Layout:
@@ -233,8 +244,10 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     nodes = guarded(whole.mesh.nodes, respaced_nodes - whole.mesh.nodes, whole.mesh, RESPACED_SINE)
     whole = replace(whole, mesh=whole.mesh.with_nodes(nodes))
     whole = evened_rows(whole, MARGIN * float(np.log(rings.settings.growth)), rings.settings.constant)
-    if smallest_corner(whole.mesh) <= 0.0:
-        raise NoValidGridError("layers are folded")
+    corners = corner_jacobians(whole.mesh)
+    if corners.min() <= 0.0:
+        x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)
+        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
     return whole
 
 
@@ -246,7 +259,12 @@ def _smooth(loop: Loop) -> Loop:
 
 def smallest_corner(mesh: QuadMesh) -> float:
     """Return the smallest Jacobian, of parallelograms at corners, of the quads of a mesh."""
+    return float(corner_jacobians(mesh).min())
+
+
+def corner_jacobians(mesh: QuadMesh) -> Floats:
+    """Return the smallest corner Jacobian (m,) of each quad of a mesh."""
     z = mesh.nodes[mesh.quads]
     edge = np.roll(z, -1, axis=1) - z
     before = np.roll(edge, 1, axis=1)
-    return float((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min())
+    return np.asarray((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min(axis=1))
