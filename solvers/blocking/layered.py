@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
@@ -44,6 +45,8 @@ MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
 FEW_ITERATIONS = 10
+NEAR_FOLDS = 5
+"""Cells around folded ones that are optimised with them."""
 RESPACED_SINE = 0.1
 """Of angles, that no node that is placed anew across layers may make smaller."""
 FREE = 2
@@ -165,18 +168,24 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings, even: b
                 mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
                 on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
-        fine = _unfolded(multiplied(Layout(mesh, coarse.blocks), times), rings)
+        fine = multiplied(Layout(mesh, coarse.blocks), times)
+        fine = _unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
         moved = evened_loops(fine, rings.measures, EVEN) if even else fine
         return moved if smallest_corner(moved.mesh) > 0.0 else fine
 
 
-def _unfolded(layout: Layout, rings: Rings) -> Layout:
-    """Return the layout with nodes off its fronts moved, where splines have folded cells."""
+def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
+    """Return the layout with nodes near folded cells moved, but for `held` (n,) ones, until none is folded."""
     mesh = layout.mesh
-    if smallest_corner(mesh) > 0.0:
+    bad = corner_jacobians(mesh) <= 0.0
+    if not bad.any():
         return layout
-    on = np.isin(mesh.places.loop, list(rings.measures))
-    return replace(layout, mesh=optimise(mesh, iterations=FEW_ITERATIONS, held=on).mesh)
+    free = np.zeros(len(mesh.nodes), dtype=bool)
+    free[mesh.quads[bad]] = True
+    for _ in range(NEAR_FOLDS):
+        free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
+    optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
+    return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
 
 
 def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
@@ -244,6 +253,11 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     nodes = guarded(whole.mesh.nodes, respaced_nodes - whole.mesh.nodes, whole.mesh, RESPACED_SINE)
     whole = replace(whole, mesh=whole.mesh.with_nodes(nodes))
     whole = evened_rows(whole, MARGIN * float(np.log(rings.settings.growth)), rings.settings.constant)
+    held = np.zeros(len(nodes), dtype=bool)
+    for number in whole.layers:
+        block = whole.blocks[number]
+        held[block[:, : 2 * block.shape[1] // 3]] = True
+    whole = _unfolded(whole, held)
     corners = corner_jacobians(whole.mesh)
     if corners.min() <= 0.0:
         x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)
