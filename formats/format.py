@@ -7,14 +7,16 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from meshonet.formats.source import Source
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
+
+if TYPE_CHECKING:
+    from meshonet.geometry.layout.layout import Layout
 
 Heights: TypeAlias = tuple[float, ...]
 """z of each plane of a grid that is repeated in z, increasing from 0; none for a flat one."""

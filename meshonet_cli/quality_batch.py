@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from meshonet.api.quality import quality
 from meshonet.formats.figure.picture import Picture
@@ -66,7 +67,9 @@ def measure_grids(
 
 
 def _metrics_file(output: str) -> Destination:
-    """Return the destination of a grid with every metric as cell data, which ``.vts`` files can hold."""
-    if format_for_output(output).name != "vts":
-        raise InputError("only a .vts file holds metrics", "name it FILE.vts", source=output)
-    return Destination(output, None, put=write_metrics)
+    """Return the destination of a grid with every metric as cell data, which these files can hold."""
+    name = format_for_output(output).name
+    if name not in ("vts", "vtm"):
+        remedy = "name it FILE.vts, or FILE.vtm for many blocks"
+        raise InputError("only .vts and .vtm files hold metrics", remedy, source=output)
+    return Destination(output, None, put=partial(write_metrics, many=name == "vtm"))

@@ -7,7 +7,7 @@ from operator import call
 from typing import Any, TypeVar
 
 from meshonet.formats.hdf5.check import Checked, checked
-from meshonet.formats.mesh.recover_topology import usable
+from meshonet.formats.mesh.recover_topology import boundary_of, usable
 from meshonet.formats.source import Source
 from meshonet.geometry.arrays import SIDES, Side
 from meshonet.geometry.blocks.block import Block
@@ -15,14 +15,16 @@ from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid, Origin
 from meshonet.geometry.blocks.patches import Kind, Patch
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.shape import Shape
 
 T = TypeVar("T")
 
 
-def read_shapes(source: Source) -> Iterator[Boundary]:
+def read_shapes(source: Source) -> Iterator[Shape]:
     """Return an iterator over the boundaries, for grids their outer edges as they were stored.
 
-    It continues after a sample that is not right and raised InputError.
+    Of grids of many blocks it returns their domains. It continues after a sample that is not right and raised
+    InputError.
     """
     return map(call, _samples(source, _boundary))
 
@@ -38,14 +40,13 @@ def _samples(source: Source, read: Callable[[Checked, int], T]) -> Iterator[Call
         if read is _grid and "nodes" not in data and not data.blocks:
             remedy = "make grids of them first: meshonet solve-pde IN -o OUT.h5"
             raise InputError("holds boundaries, not grids", remedy)
-        if read is _boundary and data.blocks:
-            problem = f"holds grids of {data.blocks} blocks, not boundaries"
-            raise InputError(problem, "give a grid of one block")
         for k in data.kept(source.split):
             yield partial(read, data, k)
 
 
-def _boundary(data: Checked, k: int) -> Boundary:
+def _boundary(data: Checked, k: int) -> Shape:
+    if data.blocks:
+        return boundary_of(_grid(data, k))
     with data.place(k):
         edges: dict[str, Any] = {side: data.sample(side, k) for side in SIDES}
         patches, name, origin = _patches(data, k), data.text("names", k), _origin(data, k)

@@ -1,20 +1,41 @@
-"""A grid with every quality metric as cell data, in a ``.vts`` file."""
+"""Grids with every quality metric as cell data: one block in a ``.vts`` file, many in a ``.vtm``."""
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.formats.format import only_one
+from meshonet.formats.vtk import vtm
 from meshonet.formats.vtk.vts import write
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.quality.measure import folded_cells, per_cell
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.quality.measure import folded_cells, per_cell_of_blocks
 from meshonet.geometry.quality.metrics import NAMES
 
 
-def write_metrics(path: Path, grids: Iterable[Grid]) -> None:
-    """Write the one grid of `grids` to `path`."""
+def write_metrics(path: Path, grids: Iterable[Grid], *, many: bool = False) -> None:
+    """Write the one grid of `grids` to `path`, a ``.vtm`` file where there may be `many` blocks.
+
+    Raises InputError: many blocks and a file of one.
+    """
+    if many:
+        vtm.write_grids(path, grids, cell_data=metrics_of)
+        return
     grid = only_one(grids, "a .vts file")
-    folded = np.zeros((grid.ni - 1, grid.nj - 1), dtype=np.int8)
-    folded[tuple(folded_cells(grid.nodes).T)] = 1
-    write(path, grid, {**{name: per_cell(grid, name) for name in NAMES}, "folded": folded})
+    if grid.topology == "blocks":
+        raise InputError(f"a .vts file holds one block, not {len(grid.blocks)}", "name it FILE.vtm")
+    write(path, grid, metrics_of(grid)[0])
+
+
+def metrics_of(grid: Grid) -> list[dict[str, NDArray[Any]]]:
+    """Return for each block every metric, and ``folded``, of its cells (ni-1, nj-1) by name."""
+    every = {name: per_cell_of_blocks(grid, name) for name in NAMES}
+    found: list[dict[str, NDArray[Any]]] = []
+    for number, block in enumerate(grid.blocks):
+        folded = np.zeros([count - 1 for count in block.counts], dtype=np.int8)
+        folded[tuple(folded_cells(block.nodes).T)] = 1
+        found.append({**{name: cells[number] for name, cells in every.items()}, "folded": folded})
+    return found

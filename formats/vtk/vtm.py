@@ -6,10 +6,12 @@ touch make one grid. https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import count, groupby
 from pathlib import Path, PurePosixPath
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
+
+from numpy.typing import NDArray
 
 from meshonet.formats.format import Heights
 from meshonet.formats.mesh.gather import Piece, grids_of
@@ -24,12 +26,16 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
+CellData: TypeAlias = Callable[[Grid], Sequence[Mapping[str, NDArray[Any]]]]
+"""Gives values (ni-1, nj-1) of the cells by name, for each block of a grid."""
 _MOST_BYTES = 16 << 20
 _OURS = re.compile(r"block-\d+\.vts")
 
 
-def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) -> None:
-    """Write every grid of `grids`, a plane of its nodes at each of `heights`.
+def write_grids(
+    path: Path, grids: Iterable[Grid], heights: Heights = (0.0,), cell_data: CellData | None = None
+) -> None:
+    """Write every grid of `grids`, a plane of its nodes at each of `heights`, with data of its cells.
 
     Raises InputError: there is no grid; the folder of the blocks holds something else, which would be lost.
     """
@@ -45,9 +51,10 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) ->
             title = escaped(grid.name or f"block-{number}")
             if several:
                 lines.append(f'    <Block index="{number}" name="{title}">')
+            values = cell_data(grid) if cell_data else [{}] * len(grid.blocks)
             for block in range(len(grid.blocks)):
                 name = f"block-{next(files)}.vts"
-                write(part / name, grid, heights=heights, block=block, number=number)
+                write(part / name, grid, values[block], heights, block=block, number=number)
                 place = f'index="{block if several else number}"'
                 told = f"block-{block}" if several else title
                 file = f"{escaped(folder.name)}/{name}"

@@ -13,7 +13,6 @@ from meshonet.formats.format import size_of
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.layout.layout import Layout
 from meshonet_cli.batch.destination import Destination
 from meshonet_cli.batch.item import Item, Name, Named
 from meshonet_cli.batch.timed import Timed
@@ -22,8 +21,10 @@ from meshonet_cli.session import Session
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
+    from meshonet.geometry.layout.layout import Layout
+
 T = TypeVar("T", bound=Named)
-S = TypeVar("S", bound=Grid | Boundary | Layout)
+S = TypeVar("S", bound="Grid | Boundary | Layout")
 R = TypeVar("R", bound=Timed)
 Make = Callable[[Iterable[Item[T]]], Iterator[tuple[S, R] | Exception]]
 """Yields for each member, in order, what to write and a report, or the error that it ended in."""
@@ -198,7 +199,7 @@ def _streamed(
 
 
 def _same_size(what: Grid | Boundary | Layout, size: str) -> str:
-    if isinstance(what, Layout):
+    if not isinstance(what, Grid | Boundary):  # files of layouts hold one
         return ""
     own = size_of(what)
     if size and own != size:

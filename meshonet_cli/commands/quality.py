@@ -30,7 +30,7 @@ def quality(
         "--plot", metavar="F.png", help="Draw the grid, coloured by max_angle.",
     )] = None,
     per_cell: Annotated[str | None, _output(
-        "--per-cell", metavar="F.vts", help="Write every metric of every cell.",
+        "--per-cell", metavar="F.vts", help="Write every metric of every cell; of many blocks to an F.vtm.",
     )] = None,
     compare: Annotated[str | None, _check(
         "--compare", metavar="OTHER",

@@ -46,15 +46,17 @@ class BaseComplex:
     def sides(self) -> tuple[Indices, Indices, Indices]:
         """Sides of the blocks: south, north, west and east of each, one after another.
 
-        Their nodes (k,), where in these each side begins (4 b,), and its chord (4 b,).
+        The edge behind each of their nodes (k,), -1 behind the last of a side, where in these each side
+        begins (4 b,), and its chord (4 b,).
         """
         lines = [line for block in self.blocks for line in (block[:, 0], block[:, -1], block[0], block[-1])]
         nodes = np.concatenate(lines)
         first = np.cumsum([0] + [len(line) for line in lines[:-1]])
-        a, b = nodes[first], nodes[first + 1]
-        keys = self.mesh.edges[:, 0] * len(self.mesh.nodes) + self.mesh.edges[:, 1]
-        edge = np.searchsorted(keys, np.minimum(a, b) * len(self.mesh.nodes) + np.maximum(a, b))
-        return nodes, first, self.chord[edge]
+        a, b, n = nodes[:-1], nodes[1:], len(self.mesh.nodes)
+        keys = self.mesh.edges[:, 0] * n + self.mesh.edges[:, 1]
+        edge = np.append(np.searchsorted(keys, np.minimum(a, b) * n + np.maximum(a, b)), -1)
+        edge[first[1:] - 1] = -1
+        return edge, first, self.chord[edge[first]]
 
     def moved(self, mesh: QuadMesh) -> BaseComplex:
         """Return the blocks of the same quads with other nodes."""
@@ -63,13 +65,15 @@ class BaseComplex:
             moved.__dict__["sides"] = self.sides
         return moved
 
-    def side_lengths(self) -> Floats:
-        """Return the lengths (b, 4) of south, north, west and east of each block."""
-        nodes, first, _ = self.sides
-        points = self.mesh.nodes[nodes]
-        step = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
-        step[first] = 0.0  # from one side to the next
-        return np.asarray(np.add.reduceat(step, first).reshape(-1, 4))
+    def side_lengths(self, unit: Floats | None = None) -> Floats:
+        """Return the lengths (b, 4) of south, north, west and east of each block, in units (e,) at edges."""
+        edge, first, _ = self.sides
+        step = self.mesh.nodes[self.mesh.edges[:, 1]] - self.mesh.nodes[self.mesh.edges[:, 0]]
+        length = np.hypot(step[:, 0], step[:, 1])
+        if unit is not None:
+            length = length / unit
+        along = np.where(edge >= 0, length[edge], 0.0)
+        return np.asarray(np.add.reduceat(along, first).reshape(-1, 4))
 
 
 def base_complex(mesh: QuadMesh) -> BaseComplex:

@@ -26,7 +26,7 @@ OPTIMISED = 6000
 ITERATIONS = 150
 CUT_OFF = 7e-4
 """Most of the area that cells may cut off along walls, before walls get more of them."""
-ROUNDS, STEP, MORE = 4, 1.3, 1.15
+ROUNDS, STEP, MORE = 5, 1.12, 1.19
 """How often at the most, by which factor, and up to how many times the cells asked for."""
 
 

@@ -40,7 +40,7 @@ def simplify(
     `price` is what a block costs, in degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
     """
     current = base_complex(mesh)
-    best = score(current, price)
+    best = score(current, price, sizes.edges(mesh) if sizes else None)
     while True:
         better = _first_gain(current, best, price, iterations, sizes)
         if better is None:
@@ -64,7 +64,7 @@ def _first_gain(
                 break
             mesh = optimum.mesh
             judged = trial.moved(mesh)
-            value = score(judged, price)
+            value = score(judged, price, sizes.edges(mesh) if sizes else None)
             if value < best:
                 return judged, value
         failures += 1

@@ -6,7 +6,7 @@
     + 0.05 of the 99th percentile of cells' worst + 0.1 of what the worst exceeds 60 degrees by
     + 0.15 of what the turning of a wall along one edge exceeds 35 degrees by
     + 4 for each wall node with a wrong count of quads + `price` for each block
-    + `SIZES` times the mean square of the log of cell lengths over the length wanted everywhere
+    + `SIZES` times the mean square of the log of cell lengths over the lengths wanted
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ SIZES = 8.0
 """Degrees of mean deviation that cells everywhere e times too long or short cost."""
 
 
-def score(blocks: BaseComplex, price: float = PRICE) -> float:
-    """Return the score of the blocks of a quad mesh; the lower, the better."""
+def score(blocks: BaseComplex, price: float = PRICE, wanted: Floats | None = None) -> float:
+    """Return the score of blocks whose edges should be `wanted` (e,) long, or all alike; less is better."""
     mesh = blocks.mesh
     off = deviations(mesh)
     worst = off.max(axis=1)
@@ -39,17 +39,17 @@ def score(blocks: BaseComplex, price: float = PRICE) -> float:
         + 0.15 * max(0.0, largest_turning(mesh) - 35.0)
         + 4.0 * np.count_nonzero(wrong_count(mesh))
         + price * len(blocks.blocks)
-        + SIZES * size_spread(blocks)
+        + SIZES * size_spread(blocks, wanted)
     )
 
 
-def size_spread(blocks: BaseComplex) -> float:
+def size_spread(blocks: BaseComplex, wanted: Floats | None = None) -> float:
     """Return the mean square of log(length / mean length) of sides of blocks across each chord.
 
     A chord has as many cells everywhere, so the spread of these lengths is that of its cells. Means are by
-    the area of blocks.
+    the area of blocks. With lengths `wanted` (e,) of edges, lengths and areas are in units of these.
     """
-    lengths = np.log(blocks.side_lengths())
+    lengths = np.log(blocks.side_lengths(wanted))
     chord = blocks.sides[2]
     across = np.exp(lengths).reshape(-1, 2, 2).mean(axis=2)
     area = np.repeat(across[:, 0] * across[:, 1], 4)

@@ -12,6 +12,8 @@ from meshonet.geometry.quality.measure import count_folded
 
 _SLACK = 1e-7
 """Degrees, and parts of a skewness, that rounding may add."""
+_NOTHING = 1.0, 0.05, 0.1
+"""Non-orthogonality, skewness and mean deviation up to which one is as good as the other."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +34,8 @@ class Measures:
         if than.folded or self.folded:
             return self.folded < than.folded
         pairs = (self.angle, than.angle), (self.skew, than.skew), (self.mean, than.mean)
-        return all(own <= other + _SLACK for own, other in pairs)
+        both = zip(pairs, _NOTHING, strict=True)
+        return all(own <= max(other + _SLACK, nothing) for (own, other), nothing in both)
 
 
 def measures(grid: Grid) -> Measures:

@@ -1,10 +1,11 @@
 """Given grids of many blocks, smoothed: the joint optimum of their nodes, with the spacing that they have.
 
 The optimum is `meshonet.solvers.energy.quads`'s, which wants cells as long to wide, and edges as long to
-their neighbours, as they were given (`meshonet.solvers.smoothing.spacing`); thin first cells keep their
-heights. It is looked for twice, with jumps from block to block evened out and with all of them kept, and the
-better one is taken. No face of it has a larger non-orthogonality or skewness than the worst of the given
-grid, nor is the mean deviation from 90 degrees larger: where it would be, nodes go part of the way.
+their neighbours, as they were given (`meshonet.solvers.smoothing.spacing`); layers at the boundary keep their
+heights (`meshonet.solvers.smoothing.layers`). It is looked for twice, with jumps from block to block evened
+out and with all of them kept, and the better one is taken. No face of it has a larger non-orthogonality or
+skewness than the worst of the given grid, nor is the mean deviation from 90 degrees larger: where it would
+be, nodes go part of the way.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.layout.from_grid import layout_of, with_nodes
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.energy.quads import optimise
-from meshonet.solvers.smoothing.first_cells import with_first_cells
 from meshonet.solvers.smoothing.hold_back import held_back
 from meshonet.solvers.smoothing.judge import Measures, measures
+from meshonet.solvers.smoothing.layers import with_layers
 from meshonet.solvers.smoothing.spacing import aspects, lengths, wanted_lengths
 from meshonet.solvers.solution import Outcome, Solution
 
@@ -78,8 +79,8 @@ def _optima(given: Layout, *, slide: bool, iterations: int) -> Iterator[Layout]:
         found = towards(mesh, held=stays)
         if not found.valid:
             continue
-        layers, first = with_first_cells(found.mesh, mesh)
-        if first.any():
-            found = towards(layers, held=stays | first)
+        layers, inside = with_layers(found.mesh, mesh)
+        if inside.any():
+            found = towards(layers, held=stays | inside)
         if found.valid:
             yield replace(given, mesh=found.mesh)

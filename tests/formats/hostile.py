@@ -12,10 +12,12 @@ from random import Random
 from tempfile import TemporaryDirectory
 
 import numpy as np
+from domains import step_layout
 from format_shapes import VARIANTS, channel
 from many_blocks import passage
 
 from meshonet.formats.format import Format
+from meshonet.formats.layout.write import as_text
 from meshonet.formats.registry import TABLE, format_named
 
 READABLE = [
@@ -37,7 +39,8 @@ TEXTS = {
     "wkt": "POLYGON ((0 0, 2 0, 2 1, 0 1, 0 0))",
     "geojson": json.dumps({"type": "Feature", "geometry": {"type": "Polygon", "coordinates": [SQUARE]}}),
 }
-"""A good file of each format that this package reads and does not write."""
+"""A good file of each format that this package reads and does not write as grids."""
+TEXTS["layout"] = as_text(step_layout())
 TEXTS["dxf"] = "\n".join(
     ["0", "SECTION", "2", "ENTITIES"]
     + [f"0\nLINE\n8\nside\n10\n{a[0]}\n20\n{a[1]}\n11\n{b[0]}\n21\n{b[1]}" for a, b in pairwise(SQUARE)]

@@ -1,0 +1,118 @@
+"""Layers at the boundary with the heights that they had, before what is beyond them is optimised once more.
+
+::
+
+    wall |-o--o---o-----o-----      nodes of thin cells are moved along the optimised line that leaves the
+         |-o--o---o------o----      wall to where their old heights add up, and held there
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.kernels._native import line_neighbours
+from meshonet.solvers.smoothing.spacing import THIN, aspects, lengths, thin_heights
+
+ROWS = 200
+"""Rows of layers at the most."""
+
+
+def with_layers(mesh: QuadMesh, given: QuadMesh) -> tuple[QuadMesh, NDArray[np.bool_]]:
+    """Return `mesh` with the heights of layers that `given`, the same quads, has, and their nodes (n,).
+
+    Layers are rows of cells from the boundary on that are `THIN`. Where wall nodes slid, heights are those at
+    the same arc length. Nodes in the layers of two walls stay where they are.
+    """
+    lines = _lines(given)
+    held = np.zeros(len(given.nodes), dtype=bool)
+    if not len(lines.nodes):
+        return mesh, held
+    claimed = np.bincount(lines.nodes[:, 1:][lines.thin], minlength=len(held))
+    heights = _at_new_places(_heights(given.nodes, lines), lines, mesh, given)
+    nodes, own = mesh.nodes.copy(), _heights(mesh.nodes, lines)
+    for k, line in enumerate(lines.nodes):
+        rows = int(lines.thin[k].sum())
+        alone = claimed[line[1 : rows + 1]] == 1
+        rows = int(np.argmin(alone)) if not alone.all() else rows
+        place, wanted = np.cumsum(own[k]), np.cumsum(heights[k])[:rows]
+        if not rows or not wanted[-1] < place[-1]:
+            continue
+        points = mesh.nodes[line]
+        for axis in (0, 1):
+            moved = np.interp(wanted, np.concatenate([[0.0], place]), points[:, axis])
+            nodes[line[1 : rows + 1], axis] = moved
+        first = nodes[line[1]] - points[0]  # to the last digit, past the bend of the line at its old place
+        nodes[line[1]] = points[0] + first * (wanted[0] / np.hypot(*first))
+        held[line[: rows + 1]] = True
+    return mesh.with_nodes(nodes), held
+
+
+@dataclass(frozen=True)
+class _Lines:
+    """Lines that leave the boundary: nodes (n, m), the wall first, and whether they end a thin cell (n, m-1).
+
+    A line that ends earlier repeats its last node. There is a step beyond the thin ones, if there is one.
+    """
+
+    nodes: Indices
+    thin: NDArray[np.bool_]
+
+
+def _lines(mesh: QuadMesh) -> _Lines:
+    edge_of = np.ascontiguousarray(mesh.edge_of)
+    numbers = np.arange(len(mesh.nodes)), np.arange(len(mesh.edges))
+    beside, _ = line_neighbours(np.ascontiguousarray(mesh.quads), edge_of, *numbers)
+    thin = _thin(mesh)
+    edge = np.flatnonzero(thin_heights(mesh))
+    ends = mesh.edges[edge]
+    first = mesh.wall_nodes[ends[:, 0]]
+    node = np.where(first, ends[:, 1], ends[:, 0])
+    nodes, flags = [np.where(first, ends[:, 0], ends[:, 1]), node], [np.ones(len(edge), dtype=bool)]
+    going = ~mesh.wall_nodes[node]
+    for _ in range(ROWS):
+        ahead = beside[edge, 2:]
+        on = ((mesh.edges[ahead] == node[:, None, None]).any(axis=2)) & (ahead != edge[:, None])
+        going = going & on.any(axis=1) & flags[-1]
+        if not going.any():
+            break
+        edge = np.where(going, ahead[np.arange(len(edge)), on.argmax(axis=1)], edge)
+        ends = mesh.edges[edge]
+        node = np.where(going, ends.sum(axis=1) - node, node)
+        nodes.append(node)
+        going = going & ~mesh.wall_nodes[node]
+        flags.append(thin[edge] & going)
+    return _Lines(np.stack(nodes, axis=1), np.stack(flags, axis=1))
+
+
+def _thin(mesh: QuadMesh) -> NDArray[np.bool_]:
+    """Say of each edge (e,) whether it is the short side of all cells beside it, by `THIN`."""
+    ratio = aspects(mesh, lengths(mesh))[:, None]
+    short = np.concatenate([ratio, 1.0 / ratio, ratio, 1.0 / ratio], axis=1) > THIN
+    wide = np.zeros(len(mesh.edges), dtype=bool)
+    wide[mesh.edge_of[~short]] = True
+    return ~wide
+
+
+def _heights(nodes: Floats, lines: _Lines) -> Floats:
+    return np.asarray(np.hypot(*np.moveaxis(np.diff(nodes[lines.nodes], axis=1), -1, 0)))
+
+
+def _at_new_places(heights: Floats, lines: _Lines, mesh: QuadMesh, given: QuadMesh) -> Floats:
+    """Return heights (n, m) of lines whose wall nodes slid, between those at the places they came from."""
+    wall = lines.nodes[:, 0]
+    new = heights.copy()
+    for number, loop in enumerate(given.domain.loops):
+        on = np.flatnonzero(given.places.loop[wall] == number)
+        old, now = (each.places.arc[wall[on]] for each in (given, mesh))
+        for row in range(heights.shape[1] if (old != now).any() else 0):
+            known = lines.thin[on, row]
+            if known.any():
+                values = np.interp(now, old[known], np.log(heights[on[known], row]), period=loop.length)
+                new[on[known], row] = np.exp(values[known])
+    return new
