@@ -49,7 +49,7 @@ def evened_rows(layout: Layout, limit: float, held: int = 1, rounds: int = ROUND
         change[mesh.wall_nodes] = 0.0
         if not change.any():
             break
-        nodes = _guarded(nodes, change, mesh)
+        nodes = guarded(nodes, change, mesh, LEAST_SINE)
     return replace(layout, mesh=mesh.with_nodes(nodes))
 
 
@@ -98,9 +98,9 @@ def _add_moves(change: Floats, nodes: Floats, each: _Held, limit: float) -> None
     np.add.at(change, lines[:, :last], moves[:, :last])
 
 
-def _guarded(nodes: Floats, change: Floats, mesh: QuadMesh) -> Floats:
+def guarded(nodes: Floats, change: Floats, mesh: QuadMesh, least_sine: float) -> Floats:
     """Return nodes (n, 2) moved by `change` (n, 2), or less where cells would become too skew."""
-    bound = np.minimum(LEAST_SINE, 0.95 * _sines(nodes, mesh.quads))
+    bound = np.minimum(least_sine, 0.95 * _sines(nodes, mesh.quads))
     part = np.ones(len(nodes))
     for _ in range(_ATTEMPTS):
         moved = nodes + part[:, None] * change

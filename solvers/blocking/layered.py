@@ -17,6 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import NoValidGridError
@@ -27,7 +28,7 @@ from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.even_loops import Measure, evened_loops
-from meshonet.solvers.blocking.even_rows import evened_rows
+from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
@@ -43,7 +44,12 @@ THICKNESS = 0.018
 """Thickness of a ring where there is room, in lengths of its loop."""
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
-ITERATIONS, STRIDING, UNFOLDING = 120, 60, 30
+ITERATIONS, STRIDING = 120, 60
+FEW_ITERATIONS = 10
+NEAR_FOLDS = 5
+"""Cells around folded ones that are optimised with them."""
+RESPACED_SINE = 0.1
+"""Of angles, that no node that is placed anew across layers may make smaller."""
 FREE = 2
 """Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
 EVEN = float(np.log(1.2))
@@ -128,12 +134,22 @@ def layered(
         plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
         layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
-    fine = _outside(rings, layout, cells, timings)
+    for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
+        try:
+            return _whole(rings, layout, cells, timings, even)
+        except NoValidGridError as error:
+            problem = error
+    raise problem
+
+
+def _whole(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
+    """Return the fine layout, its cells evened along fronts or not."""
+    fine = _outside(rings, layout, cells, timings, even)
     with timings.stage("layers"):
         return _joined(rings, fine)
 
 
-def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layout:
+def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
@@ -146,25 +162,15 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layo
             coarse = multiplied(coarse, stride)
         for _ in range(FREE):
             coarse = _optimised(coarse, metric, ITERATIONS)
-        coarse = evened_loops(coarse, rings.measures, times * EVEN)
-        on = np.isin(coarse.mesh.places.loop, list(rings.measures))
-        coarse = _optimised(coarse, metric, ITERATIONS, on)
-    return _multiplied(rings, coarse, times, metric, timings)
-
-
-def _multiplied(rings: Rings, coarse: Layout, times: int, metric: SizeMetric, timings: Timings) -> Layout:
-    """Return the layout with `times` as many cells each way, even along fronts, in steps where it would fold."""
-    while True:
-        with timings.stage("refine"):
-            plain = multiplied(coarse, times) if times > 1 else coarse
-            fine = evened_loops(plain, rings.measures, EVEN)
-        for each in (fine, plain):
-            if times == 1 or smallest_corner(each.mesh) > 0.0:
-                return each
-        step = next(k for k in range(2, times + 1) if times % k == 0)
-        with timings.stage("optimum"):
-            coarse = _optimised(multiplied(coarse, step), metric, UNFOLDING)
-        times //= step
+        if even:
+            coarse = evened_loops(coarse, rings.measures, times * EVEN)
+            on = np.isin(coarse.mesh.places.loop, list(rings.measures))
+            coarse = _optimised(coarse, metric, ITERATIONS, on)
+    with timings.stage("refine"):
+        fine = multiplied(coarse, times)
+        fine = _unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
+        moved = evened_loops(fine, rings.measures, EVEN) if even else fine
+        return moved if smallest_corner(moved.mesh) > 0.0 else fine
 
 
 def _optimised(
@@ -175,6 +181,20 @@ def _optimised(
     if not optimum.valid:
         raise NoValidGridError("cells outside the layers stay folded")
     return replace(layout, mesh=optimum.mesh)
+
+
+def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
+    """Return the layout with nodes near folded cells moved, but for `held` (n,) ones, until none is folded."""
+    mesh = layout.mesh
+    bad = corner_jacobians(mesh) <= 0.0
+    if not bad.any():
+        return layout
+    free = np.zeros(len(mesh.nodes), dtype=bool)
+    free[mesh.quads[bad]] = True
+    for _ in range(NEAR_FOLDS):
+        free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
+    optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
+    return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
 
 
 def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, int, SizeMetric]:
@@ -249,12 +269,20 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
         multiple = rings.settings.multiple
         rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0), multiple=multiple))
     whole = attach(outside, rings.domain, rows)
-    even = respaced(whole, rings.settings)
-    limit = MARGIN * float(np.log(rings.settings.growth))
-    for each in (evened_rows(even, limit, rings.settings.constant), even, whole):
-        if smallest_corner(each.mesh) > 0.0:
-            return each
-    raise NoValidGridError("layers are folded")
+    respaced_nodes = respaced(whole, rings.settings).mesh.nodes
+    nodes = guarded(whole.mesh.nodes, respaced_nodes - whole.mesh.nodes, whole.mesh, RESPACED_SINE)
+    whole = replace(whole, mesh=whole.mesh.with_nodes(nodes))
+    whole = evened_rows(whole, MARGIN * float(np.log(rings.settings.growth)), rings.settings.constant)
+    held = np.zeros(len(nodes), dtype=bool)
+    for number in whole.layers:
+        block = whole.blocks[number]
+        held[block[:, : 2 * block.shape[1] // 3]] = True
+    whole = _unfolded(whole, held)
+    corners = corner_jacobians(whole.mesh)
+    if corners.min() <= 0.0:
+        x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)
+        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
+    return whole
 
 
 def _smooth(loop: Loop) -> Loop:
@@ -265,7 +293,12 @@ def _smooth(loop: Loop) -> Loop:
 
 def smallest_corner(mesh: QuadMesh) -> float:
     """Return the smallest Jacobian, of parallelograms at corners, of the quads of a mesh."""
+    return float(corner_jacobians(mesh).min())
+
+
+def corner_jacobians(mesh: QuadMesh) -> Floats:
+    """Return the smallest corner Jacobian (m,) of each quad of a mesh."""
     z = mesh.nodes[mesh.quads]
     edge = np.roll(z, -1, axis=1) - z
     before = np.roll(edge, 1, axis=1)
-    return float((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min())
+    return np.asarray((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min(axis=1))

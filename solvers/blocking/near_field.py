@@ -21,8 +21,9 @@ NEAR = 2.2
 """The same radii of the circle that stands in for it."""
 _POINTS = 240
 _EVEN = 1.1
-_OWN = 0.7  # part of a row in which it becomes like the others
-MOST_GROWTH = 1.16
+_UNLIKE = 1.2  # first cells of rows over their mean
+_OWN = 0.5  # part of a row in which it becomes like the others
+MOST_GROWTH = 1.18
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +87,7 @@ class NearField:
         length = np.hypot(*(end - start).T)
         wanted = evened(heights[None], np.log(_EVEN), closed=True)[0] * growth**0.5
         mean = float(np.exp(np.log(wanted).mean()))
-        wanted = np.clip(wanted, mean / 1.7, 1.7 * mean)
+        wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
         cells = self.cells(mean, growth, multiple)
         whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
         # each row begins with its own cell and becomes like the others: their angles stay right
