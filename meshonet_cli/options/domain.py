@@ -38,7 +38,8 @@ class DomainOptions:
     )] = None
     layout: Annotated[str | None, _option(
         "--layout", metavar="LAYOUT.json",
-        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it.",
+        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it; with layers, of "
+        "a layout with a first cell.",
     )] = None
     pitch: Annotated[str | None, _option(
         "--pitch", metavar="DX,DY",

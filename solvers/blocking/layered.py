@@ -26,12 +26,13 @@ from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_loops import Measure, evened_loops
 from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
+from meshonet.solvers.blocking.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.blocking.rings import Ring, march_ring
@@ -56,8 +57,6 @@ EVEN = float(np.log(1.2))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 MARGIN = 1.1
 """By how much cells may differ in the end, in logarithms, over the growth of layers."""
-PRICE = 0.02
-"""Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 _BISECTIONS = 12
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
@@ -124,16 +123,17 @@ def layered(
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about so many cells, with layers at some loops of a domain.
 
-    `layout` is one of the rest of the domain, outside its rings, to be taken instead of one that is found.
+    `layout` is to be taken instead of one that is found: of a domain like it outside layers like these, or of
+    the whole of it.
     Raises InputError, BlockingError; NoValidGridError: cells stay folded.
     """
     timings = timings or Timings()
     with timings.stage("layers"):
         rings = Rings.around(domain, loops, settings)
     if layout is None:
-        plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
-        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
-        layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
+        layout = found_outside(rings.rest, rings.rings, timings)
+    else:
+        layout = taken_outside(layout, rings.rest, rings.rings)
     for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
         try:
             return _whole(rings, layout, cells, timings, even)
@@ -283,12 +283,6 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
         x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)
         raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
     return whole
-
-
-def _smooth(loop: Loop) -> Loop:
-    """Return a loop without the corners at which the field is not to turn: nodes are put there later."""
-    corners = tuple(k for k, cells in zip(loop.corners, loop.corner_cells, strict=True) if cells != 2)
-    return loop if corners == loop.corners else Loop(loop.curve, corners, loop.names[:1])
 
 
 def smallest_corner(mesh: QuadMesh) -> float:

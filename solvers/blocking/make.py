@@ -56,7 +56,11 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     domain = _checked(shape.domain, request)
     if request.pitch is not None:
         raise InputError("the blocks of a cascade are always the same", "make the grid", parameter="pitch")
-    layout = _given(shape, domain, request) or decompose(domain)
+    layout = _given(shape, domain, request)
+    height = request.height(shape.unit)
+    if height is not None:
+        return _outside_layers(domain, request, height, layout)
+    layout = layout or decompose(domain)
     if not (request.cells or request.cell_size or request.res or request.refine):
         return layout
     cells, size = _wanted(domain, request)
@@ -64,9 +68,18 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
 
 
 def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout | None:
-    """Return the layout that was asked for, or that the input has."""
-    if request.layout is None:
-        return shape.layout
+    """Return the layout that was asked for, or that the input has; layers are looked at later.
+
+    Raises InputError: without layers, one that leaves room for them; another kind of domain.
+    """
+    if shape.layout is not None and shape.layout.fronts:
+        problem = "is a layout of what layers leave of a domain"
+        raise InputError(problem, "give the domain, and this with {layout}")
+    if request.layout is None or request.layers:
+        return request.layout or shape.layout
+    if request.layout.fronts:
+        problem = "the layout leaves room for layers"
+        raise InputError(problem, "give {first_cell} or {y_plus}", parameter="layout")
     return carried_over(request.layout, domain)
 
 
@@ -77,6 +90,35 @@ def _with_layers(
     from meshonet.solvers.blocking.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layered import layered
 
+    numbers = _layered_loops(domain, request)
+    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
+    if request.cell_size is not None or request.res is not None:
+        raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
+    cells = (request.cells or LAYERED_CELLS) * request.multiple**2
+    return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
+
+
+def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
+    """Return the blocks of what the layers leave of a domain."""
+    from meshonet.solvers.blocking.layer_rows import LayerSettings
+    from meshonet.solvers.blocking.layered import Rings
+    from meshonet.solvers.blocking.outside import found_outside, taken_outside
+
+    for name in ("cells", "cell_size", "res", "refine"):
+        if getattr(request, name):
+            problem = f"{{{name}}} for a layout with layers"
+            raise InputError(problem, f"drop {{{name}}}: the grid has cells, which follow from the layers")
+    rings = Rings.around(domain, _layered_loops(domain, request), LayerSettings(height))
+    if layout is None:
+        return found_outside(rings.rest, rings.rings)
+    return taken_outside(layout, rings.rest, rings.rings)
+
+
+def _layered_loops(domain: Domain, request: BlockRequest) -> list[int]:
+    """Return the numbers of the loops that layers are around.
+
+    Raises InputError: there are none; only a part of a loop was named.
+    """
     numbers = [
         k for k, loop in enumerate(domain.loops) if (request.walls and set(loop.names) & set(request.walls))
     ] or list(range(1, len(domain.loops)))
@@ -88,11 +130,7 @@ def _with_layers(
         if others:
             problem = f"layers at a part of a loop, which is {', '.join(others)} too"
             raise InputError(problem, "name all of its parts", parameter="walls")
-    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
-    if request.cell_size is not None or request.res is not None:
-        raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
-    cells = (request.cells or LAYERED_CELLS) * request.multiple**2
-    return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
+    return numbers
 
 
 def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:
