@@ -36,8 +36,11 @@ def evened_rows(layout: Layout, limit: float, held: int = 1, rounds: int = ROUND
     walls = np.zeros(len(mesh.nodes), dtype=bool)
     for number in layout.layers:
         walls[layout.blocks[number][:, 0]] = True
-    rows = [_Held(row, *(held if walls[row.nodes[:, k]].all() else 0 for k in (0, -1)))
-            for row in rows_of(Chords.of(layout)) if not _along_layers(layout, row)]
+    rows = [
+        _Held(row, *(held if walls[row.nodes[:, k]].all() else 0 for k in (0, -1)))
+        for row in rows_of(Chords.of(layout))
+        if not _along_layers(layout, row)
+    ]
     nodes = mesh.nodes
     for _ in range(rounds):
         change = np.zeros_like(nodes)

@@ -52,7 +52,9 @@ def rows_of(chords: Chords) -> Iterator[Row]:
             parts.append(part)
             blocks.append(block)
             out = _OPPOSITE[side]
-            here = next((each for each in beside[int(chords.sides[block, out])] if each != (block, out)), None)
+            here = next(
+                (each for each in beside[int(chords.sides[block, out])] if each != (block, out)), None
+            )
         if parts:
             nodes = np.concatenate([parts[0], *(part[:, 1:] for part in parts[1:])], axis=1)
             yield Row(nodes, here is not None and bool((nodes[:, 0] == nodes[:, -1]).all()), tuple(blocks))

@@ -118,11 +118,12 @@ class Rings:
 
 
 def layered(
-    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int,
-    layout: Layout | None = None, timings: Timings | None = None,
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int = 0,
+    cell_size: float = 0.0,    layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about so many cells, with layers at some loops of a domain.
 
+    Without `cells`, the longest cells along its fronts are about `cell_size` long.
     `layout` is one of the rest of the domain, outside its rings, to be taken instead of one that is found.
     Raises InputError, BlockingError; NoValidGridError: cells stay folded.
     """
@@ -135,24 +136,24 @@ def layered(
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
     for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
         try:
-            return _whole(rings, layout, cells, timings, even)
+            return _whole(rings, layout, (cells, cell_size), timings, even)
         except NoValidGridError as error:
             problem = error
     raise problem
 
 
-def _whole(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
+def _whole(rings: Rings, layout: Layout, size: tuple[int, float], timings: Timings, even: bool) -> Layout:
     """Return the fine layout, its cells evened along fronts or not."""
-    fine = _outside(rings, layout, cells, timings, even)
+    fine = _outside(rings, layout, size, timings, even)
     with timings.stage("layers"):
         return _joined(rings, fine)
 
 
-def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
+def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Timings, even: bool) -> Layout:
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = _counts(rings, chords, cells)
+        counts, times, metric = _counts(rings, chords, *size)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
@@ -175,7 +176,7 @@ def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings, even: b
 
 
 def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
-    """Return the layout with nodes near folded cells moved, but for `held` (n,) ones, until none is folded."""
+    """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
     mesh = layout.mesh
     bad = corner_jacobians(mesh) <= 0.0
     if not bad.any():
@@ -188,9 +189,11 @@ def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
     return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
 
 
-def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
+def _counts(rings: Rings, chords: Chords, cells: int, cell_size: float) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
     low, high = np.log(0.1), np.log(8.0)
+    if not cells:
+        low = high = float(np.log(cell_size / rings.metric(1.0).along.max()))
     wanted = _Wanted(chords, rings.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)

@@ -92,7 +92,9 @@ class NearField:
         # each row begins with its own cell and becomes like the others: their angles stay right
         own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2
         step = np.diff(whole, axis=1) * np.exp(np.log(wanted / mean)[:, None] * own)
-        step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[:, None]
+        step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[
+            :, None
+        ]
         share = np.concatenate([np.zeros((len(step), 1)), np.cumsum(step, axis=1)], axis=1)
         nodes = start[:, None] + share[..., None] * (end - start)[:, None]
         nodes[:, -1] = end
