@@ -48,7 +48,7 @@ def layout(
 
     first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
     return write_layouts(
-        domain, output, blocks.parameters(walls) | first, far_field, printing.session(), assemble=blocks.assemble,
-        from_format=from_format, skip_existing=skip_existing, jobs=jobs,
+        domain, output, blocks.parameters(walls) | first, far_field, printing.session(),
+        assemble=blocks.assemble, from_format=from_format, skip_existing=skip_existing, jobs=jobs,
     )
 # fmt: on

@@ -34,12 +34,13 @@ class DomainOptions:
         "--cells", metavar="N", help="About so many cells in all blocks. [default: 2500]",
     )] = None
     cell_size: Annotated[float | None, _option(
-        "--cell-size", metavar="H", help="Length of edges away from walls, in the domain's unit.",
+        "--cell-size", metavar="H", help="Length of edges away from walls, in the domain's unit; with layers the greatest one, except on the "
+        "way to a distant far field.",
     )] = None
     layout: Annotated[str | None, _option(
         "--layout", metavar="LAYOUT.json",
-        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it; with layers, of "
-        "a layout with a first cell.",
+        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it; for "
+        "layers, of a layout with a first cell.",
     )] = None
     pitch: Annotated[str | None, _option(
         "--pitch", metavar="DX,DY",

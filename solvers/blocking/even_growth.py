@@ -51,7 +51,7 @@ def _evened(
     y = np.log(cells)
     least, most = _kept(y, limit, held)
     low, high = (np.clip(each, least, most) for each in _envelopes(y, limit, closed))
-    active = np.ones(y.shape, dtype=bool) if whole else high - low > _SAME
+    active = np.ones(y.shape, dtype=bool) if whole else np.maximum(np.abs(high - y), np.abs(y - low)) > _SAME
     begins = active & ~np.pad(active, ((0, 0), (1, 0)))[:, :-1]
     stretch = (np.cumsum(begins.ravel()) - 1)[active.ravel()]
     count = int(begins.sum())
@@ -76,7 +76,7 @@ def _evened(
 
 
 def _between(part: Floats, low: Floats, high: Floats, least: Floats, most: Floats) -> Floats:
-    """Return cells (n,) at means of envelopes (n,) that `part` (n,) stands for; both are left beyond 0 to 1."""
+    """Return cells (n,) at means of envelopes (n,) that `part` (n,) stands for, beyond them too."""
     inside = np.clip(part, 0.0, 1.0)
     return np.exp(np.clip(low + inside * (high - low) + (part - inside), least, most))
 

@@ -17,6 +17,7 @@ from meshonet.solvers.blocking.even_growth import evened
 Measure = tuple[Floats, Floats]
 """Arc lengths (m,) along a loop, from 0 to its length, and what rises with them from 0."""
 HELD = False
+"""Whether steps go on across corners; nodes far from short edges would have to move for it."""
 TURNS = 4
 """Arc length and the other measure are evened in turn so often."""
 
@@ -31,7 +32,7 @@ def evened_loops(layout: Layout, measures: Mapping[int, Measure], limit: float) 
     nodes, arcs = mesh.nodes.copy(), mesh.places.arc.copy()
     for number, measure in measures.items():
         order = loop_nodes(mesh, number)
-        new = _evened_arcs(mesh, number, order, measure, limit)
+        new = _evened_arcs(mesh, order, measure, limit)
         shift = np.zeros_like(nodes)
         shift[order] = mesh.domain.loops[number].at(new) - mesh.nodes[order]
         arcs[order] = new
@@ -42,7 +43,7 @@ def evened_loops(layout: Layout, measures: Mapping[int, Measure], limit: float) 
     return replace(layout, mesh=mesh.with_nodes(nodes, arcs))
 
 
-def _evened_arcs(mesh: QuadMesh, number: int, order: Indices, measure: Measure, limit: float) -> Floats:
+def _evened_arcs(mesh: QuadMesh, order: Indices, measure: Measure, limit: float) -> Floats:
     """Return new arc lengths (k,) of the nodes `order` (k,) of a loop."""
     old = mesh.places.arc[order]
     corners = np.flatnonzero(mesh.places.cells[order] > 0)

@@ -98,8 +98,11 @@ class Rings:
             return feature_sizes(self.rest)
         return SizeMetric.joined([ring_metric(ring, self.settings) for ring in self.rings.values()])
 
-    def metric(self, scale: float) -> SizeMetric:
-        """Return the sizes of cells outside the rings; `scale` is that of their columns."""
+    def metric(self, scale: float, size: float = 0.0) -> SizeMetric:
+        """Return the sizes of cells outside the rings: at most `size`, or `scale` times their columns."""
+        if size:
+            along = self._metric.along * max(size / self._metric.along.max(), 1.0) ** 0.5
+            return replace(self._metric, along=np.minimum(along, size), largest=size)
         largest = self.rest.extent / 12.0 * scale**0.5
         return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
@@ -118,13 +121,13 @@ class Rings:
 
 
 def layered(
-    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int,
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int = 0, cell_size: float = 0.0,
     layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about so many cells, with layers at some loops of a domain.
 
-    `layout` is to be taken instead of one that is found: of a domain like it outside layers like these, or of
-    the whole of it.
+    Without `cells`, none away from walls is longer than `cell_size`. `layout` is to be taken instead of one
+    that is found: of a domain like it outside layers like these, or of the whole of it.
     Raises InputError, BlockingError; NoValidGridError: cells stay folded.
     """
     timings = timings or Timings()
@@ -136,24 +139,24 @@ def layered(
         layout = taken_outside(layout, rings.rest, rings.rings)
     for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
         try:
-            return _whole(rings, layout, cells, timings, even)
+            return _whole(rings, layout, (cells, cell_size), timings, even)
         except NoValidGridError as error:
             problem = error
     raise problem
 
 
-def _whole(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
+def _whole(rings: Rings, layout: Layout, size: tuple[int, float], timings: Timings, even: bool) -> Layout:
     """Return the fine layout, its cells evened along fronts or not."""
-    fine = _outside(rings, layout, cells, timings, even)
+    fine = _outside(rings, layout, size, timings, even)
     with timings.stage("layers"):
         return _joined(rings, fine)
 
 
-def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
+def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Timings, even: bool) -> Layout:
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, stride, times, metric = _counts(rings, chords, cells)
+        counts, stride, times, metric = _counts(rings, chords, *size)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         if stride > 1:
@@ -184,7 +187,7 @@ def _optimised(
 
 
 def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
-    """Return the layout with nodes near folded cells moved, but for `held` (n,) ones, until none is folded."""
+    """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
     mesh = layout.mesh
     bad = corner_jacobians(mesh) <= 0.0
     if not bad.any():
@@ -197,17 +200,17 @@ def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
     return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
 
 
-def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, int, SizeMetric]:
+def _counts(rings: Rings, chords: Chords, cells: int, size: float) -> tuple[Indices, int, int, SizeMetric]:
     """Return coarse counts (chords,), and the sizes that they follow.
 
-    Between these by how much counts are multiplied before all cells are optimised, and after that.
+    Between these by how much counts are multiplied before cells are optimised, and after.
     """
     multiple = rings.settings.multiple
     low, high = np.log(0.1), np.log(8.0)
     wanted = _Wanted(chords, rings.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        metric = rings.metric(float(np.exp(middle)))
+        metric = rings.metric(float(np.exp(middle)), 0.0 if cells else size)
         counts = wanted.counts(metric, multiple)
         total = chords.cells(counts) + _attached_cells(rings, chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)

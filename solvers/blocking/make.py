@@ -91,11 +91,11 @@ def _with_layers(
     from meshonet.solvers.blocking.layered import layered
 
     numbers = _layered_loops(domain, request)
+    size = _wanted(domain, request)[1]
     settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
-    if request.cell_size is not None or request.res is not None:
-        raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
-    cells = (request.cells or LAYERED_CELLS) * request.multiple**2
-    return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
+    cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
+    size = (size or 0.0) / request.multiple
+    return layered(domain, numbers, settings, cells=cells, cell_size=size, layout=layout, timings=timings)
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
@@ -117,19 +117,26 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout
 def _layered_loops(domain: Domain, request: BlockRequest) -> list[int]:
     """Return the numbers of the loops that layers are around.
 
-    Raises InputError: there are none; only a part of a loop was named.
+    Raises InputError: there are none; only a part of a loop was named, or one with convex corners.
     """
     numbers = [
         k for k, loop in enumerate(domain.loops) if (request.walls and set(loop.names) & set(request.walls))
     ] or list(range(1, len(domain.loops)))
     if not numbers:
-        remedy = "name the walls that layers are to be at with {walls}"
+        remedy = "drop it: layers go around holes, or along an outer loop that {walls} names"
         raise InputError("a first cell in a domain without holes", remedy)
-    for number in numbers if request.walls else ():
-        others = sorted(set(domain.loops[number].names) - set(request.walls))
-        if others:
+    for number in numbers:
+        loop = domain.loops[number]
+        others = list(dict.fromkeys(name for name in loop.names if name not in request.walls))
+        if request.walls and others:
             problem = f"layers at a part of a loop, which is {', '.join(others)} too"
-            raise InputError(problem, "name all of its parts", parameter="walls")
+            raise InputError(problem, "layers go along whole loops: name all of its parts", parameter="walls")
+        if (loop.corner_cells == 1).any():
+            x, y = loop.at(loop.corner_arcs[loop.corner_cells == 1][:1])[0]
+            problem = (
+                f"layers at {', '.join(dict.fromkeys(loop.names))} would cross in corner ({x:.6g}, {y:.6g})"
+            )
+            raise InputError(problem, "name walls without convex corners", parameter="walls")
     return numbers
 
 

@@ -172,10 +172,10 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
         "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
         "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
-        "--first-cell": ("hole.wkt -o made.json -q", "OPTION .02", "bytes"),
-        "--y-plus": ("hole.wkt --y-plus 90 --reynolds 1e4 -o made.json -q", "OPTION 60", "bytes"),
-        "--reynolds": ("hole.wkt --y-plus 90 --reynolds 1e4 -o made.json -q", "OPTION 2e4", "bytes"),
-        "--walls": ("hole.wkt --first-cell .02 -o made.json -q", "OPTION bolt", "error"),
+        "--first-cell": ("hole.wkt -o made.json -q", "OPTION .002", "bytes"),
+        "--y-plus": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 1", "bytes"),
+        "--reynolds": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 2e4", "bytes"),
+        "--walls": ("hole.wkt --first-cell .002 -o made.json -q", "OPTION bolt", "error"),
         "--assemble": ("naca:0012 tail.csv -o {name}.json -q", "OPTION", "files"),
         **{
             name: (base.replace(MADE, "-o made.json -q"), more, differs.replace("nodes", "bytes"))

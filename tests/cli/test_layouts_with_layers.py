@@ -120,3 +120,57 @@ def test_cells_and_inputs_that_a_layout_outside_layers_cannot_be_are_refused(
     done = meshonet("infer", saved, *FIRST, "-o", "g.h5")
     assert (done.code, len(done.err.splitlines())) == (2, 1)
     assert "is a layout of what layers leave of a domain; give the domain, and this with --layout" in done.err
+
+
+@pytest.mark.parametrize(("option", "size"), [("--cell-size", 0.08), ("--res", 50)])
+def test_a_size_of_cells_is_that_of_the_longest_edges_outside_layers(
+    meshonet: Meshonet, option: str, size: float
+) -> None:
+    rod(1.5, -0.1, 0.1)
+    Path("box.csv").write_text("0,-1\n4,-1\n4,1\n0,1\n")
+    words = ("infer", "box.csv", "rod.csv", "--assemble", "--first-cell", 1e-3, option)
+    assert meshonet(*words, size, "-o", "g.h5").code == 0
+    grid = grid_of("g.h5")
+    np.testing.assert_allclose(first_cells(grid), 1e-3, rtol=1e-6)
+    outer = [patch for patch in grid.outer_patches() if patch.kind != "wall"]
+    cut = {"south": np.s_[:, 0], "north": np.s_[:, -1], "west": np.s_[0], "east": np.s_[-1]}
+    sides = [grid.blocks[patch.block].nodes[cut[patch.side]] for patch in outer]
+    steps = np.concatenate([np.hypot(*np.diff(side[:, :2], axis=0).T) for side in sides])
+    assert 0.04 < np.median(steps) <= 0.08
+    assert steps.max() < 1.5 * 0.08
+
+
+@pytest.mark.parametrize(
+    ("walls", "problem"),
+    [
+        (
+            ("--walls", "floor"),
+            "layers at a part of a loop, which is outlet, roof, inlet too; layers go along",
+        ),
+        (("--walls", "floor,outlet,roof,inlet"), "would cross in corner (0, 0); name walls without convex"),
+        ((), "a first cell in a domain without holes; drop it: layers go around holes, or along an outer"),
+    ],
+)
+def test_walls_that_no_layers_go_along_are_refused(
+    meshonet: Meshonet, walls: tuple[str, ...], problem: str
+) -> None:
+    ring = [[0, 0], [4, 0], [4, 1], [0, 2], [0, 0]]
+    properties = {"names": [["floor", "outlet", "roof", "inlet"]]}
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    text = json.dumps({"type": "Feature", "geometry": geometry, "properties": properties})
+    Path("duct.geojson").write_text(text)
+    words = ("infer", "duct.geojson", "--cells", 900, "--first-cell", 1e-3)
+    done = meshonet(*words, *walls, "-o", "g.h5")
+    assert (done.code, len(done.err.splitlines())) == (2, 1), done.err
+    assert problem in done.err
+
+
+def test_layers_go_along_a_smooth_outer_loop(meshonet: Meshonet) -> None:
+    rod(1.5, -0.1, 0.1)
+    pipe = "".join(f"{x!r},{y!r}\n" for x, y in circle(1.4, 0, 1, 200).tolist())
+    Path("pipe.csv").write_text(pipe)
+    words = ("infer", "pipe.csv", "rod.csv", "--assemble", "--first-cell", 1e-3, "--walls", "pipe,rod")
+    done = meshonet(*words, "-o", "g.h5")
+    assert done.code == 0, done.err
+    grid = grid_of("g.h5")
+    assert {patch.side for patch in grid.outer_patches()} == {"south"}
