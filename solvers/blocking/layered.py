@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
@@ -86,10 +85,9 @@ class Rings:
             loop = domain.loops[number]
             thickness, largest = THICKNESS * loop.length, loop.length / COLUMNS
             rings[number] = march_ring(domain, loop, settings.first, thickness, largest)
-        near = NearField.of(domain)
-        outer = near.circle if near else domain.loops[0]
-        rest: list[Loop] = [outer if 0 not in rings else rings[0].front]
-        rest += [rings[k].front if k in rings else domain.loops[k] for k in range(1, len(domain.loops))]
+        near = None if 0 in rings else NearField.of(domain)
+        left = [near.circle if near else domain.loops[0], *domain.loops[1:]]
+        rest = [rings[k].front if k in rings else loop for k, loop in enumerate(left)]
         return cls(domain, rings, near, Domain(tuple(rest), domain.name), settings)
 
     @cached_property
