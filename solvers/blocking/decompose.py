@@ -34,8 +34,8 @@ ATTEMPTS = 5
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
 CELLS = 900
 """Cells of the quad mesh that blocks are found in and judged on."""
-MOST = 12_000
-"""Cells beyond which blocks are not looked for: outlines with too many corners come to more."""
+MOST = 9_000
+"""Blocks, before any collapse, beyond which there is no answer in good time: of too many corners, say."""
 COUNT = 1500
 """About how many points the triangulation has."""
 
@@ -89,23 +89,23 @@ def decompose(
         finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
-            if sizes is None and len(mesh.quads) > max(MOST, 4 * cells):
+            if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
                 break
             return _blocks(mesh, price, timings, sizes)
         except SolverError as error:
             problem = error
     else:
         raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
-    raise BlockingError(_too_many(domain, len(mesh.quads)))
+    raise BlockingError(_too_many(domain))
 
 
-def _too_many(domain: Domain, cells: int) -> str:
-    """Return what is wrong with a domain that takes too many cells: most likely its corners."""
+def _too_many(domain: Domain) -> str:
+    """Return what is wrong with a domain that takes too many blocks: most likely its corners."""
     number = int(np.argmax([len(loop.corners) for loop in domain.loops]))
     loop = domain.loops[number]
     at = loop.curve.points[loop.corners[0] if loop.corners else 0]
     return (
-        f"blocks of this domain take {cells} cells at least, over the {MOST} that are looked at: "
+        f"the domain takes more than {MOST} blocks: "
         f"{describe(domain, number)} has {len(loop.corners)} corners, the first at "
         f"({at[0]:.6g}, {at[1]:.6g}); smooth it, or name its corners"
     )
