@@ -96,7 +96,7 @@ def kept(keep: Path, way: str, path: Path, environment: dict[str, str]) -> Row:
 
 def by_blocks(path: Path, environment: dict[str, str]) -> Row:
     """Return the figures of the grid that the command makes of a domain."""
-    out = Path(environment["PYTHONPYCACHEPREFIX"]).parent / "grid.vtm"
+    out = Path(environment["PYTHONPYCACHEPREFIX"]).parent / f"grid-{os.getpid()}.vtm"
     command = [sys.executable, "-m", "meshonet_cli", "solve-pde", str(path), "--cells", str(CELLS)]
     row = timed([*command, "-o", str(out), "--quiet"], "ours", environment)
     if row["status"] != 0:
@@ -108,7 +108,7 @@ def by_blocks(path: Path, environment: dict[str, str]) -> Row:
 
 def by_gmsh(path: Path, algorithm: str, environment: dict[str, str]) -> Row:
     """Return the figures of Gmsh's quads; its seconds are those of meshing alone."""
-    out = Path(environment["PYTHONPYCACHEPREFIX"]).parent / "gmsh.npz"
+    out = Path(environment["PYTHONPYCACHEPREFIX"]).parent / f"gmsh{algorithm}-{path.stem}-{os.getpid()}.npz"
     out.unlink(missing_ok=True)
     command = [sys.executable, str(ROOT / "benchmarks" / "gmsh_quads.py"), str(path), algorithm, str(CELLS)]
     row = timed([*command, str(out)], "gmsh", environment)
