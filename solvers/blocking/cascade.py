@@ -11,6 +11,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.assembly import far_loop
@@ -23,6 +24,9 @@ from meshonet.solvers.blocking.size_metric import SizeMetric
 
 THICKNESS, COLUMNS = 0.018, 140
 """Thickness of the layers and cells around the blade, by its length around, where there is room."""
+GAP_PART = 0.25
+"""Part of the narrowest gap between blades that layers fill at the most: the channel is not to be a slit."""
+_SAMPLES = 400
 ACROSS = 12.0
 """Cells in a pitch at the least, where nothing is near, before counts are made up to what was asked for."""
 SHORTEST = 0.08
@@ -102,7 +106,10 @@ class Cascade:
         if self.settings is None:
             return None
         length = self.blade.length
-        return march_ring(self.blades, self.blade, self.settings.first, THICKNESS * length, length / COLUMNS)
+        arcs = np.linspace(0.0, length, _SAMPLES, endpoint=False)
+        gap = float(wall_gaps(self.blades, self.blade, arcs).min())
+        thickness = min(THICKNESS * length, GAP_PART * gap)
+        return march_ring(self.blades, self.blade, self.settings.first, thickness, length / COLUMNS)
 
     @cached_property
     def ends(self) -> tuple[float, float]:

@@ -32,6 +32,8 @@ from meshonet.solvers.energy.quads import optimise
 
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
+LEAST = 4
+"""Cells along the side of a block that is optimised."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2
 ROW_GROWTH = 1.1
 """Ratio of neighbouring cells on the way to inlet and outlet."""
@@ -140,7 +142,8 @@ def _counts(
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
         times += 1
-    return np.maximum(chords.least, np.round(counts / times).astype(np.intp)), times, metric
+    least = np.maximum(chords.least, LEAST)
+    return np.maximum(least, np.round(counts / times).astype(np.intp)), times, metric
 
 
 def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric) -> int:
