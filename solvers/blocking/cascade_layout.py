@@ -69,8 +69,7 @@ def cascade_layout(
     with timings.stage("layers"):
         rows = _rows(cascade, flat.layout, metric)
         whole = extended(flat, passage, cascade.blade, rows)
-        if cascade.settings is not None:
-            whole = respaced(whole, cascade.settings)
+        whole = respaced(whole, cascade.layers)
     if smallest_corner(whole.mesh) <= 0.0:
         raise NoValidGridError("cells of the passage are folded")
     return turned_round(whole) if cascade.opposite else whole
@@ -86,10 +85,9 @@ def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> La
 
 def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     """Return the layers, and the straight rows to inlet and outlet."""
-    mesh, passage, rows = layout.mesh, cascade.passage, []
-    if cascade.ring is not None and cascade.settings is not None:
-        inner = heights_inside(layout, BLADE)
-        rows.append(ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.settings, inner))
+    mesh, passage = layout.mesh, cascade.passage
+    inner = heights_inside(layout, BLADE)
+    rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
     axis = np.array([passage.map.axis.real, passage.map.axis.imag])
     for number, length, way in _straight(cascade):
         if length > 0.0:
