@@ -38,8 +38,8 @@ _SAME = 1e-9  # distance at which nodes are one
 _FEET = 1e3  # a place that is not used
 
 
-def template(passage: Passage) -> Layout:
-    """Return the layout of a passage in the plane of its map."""
+def template(passage: Passage, *, at_corners: bool = True) -> Layout:
+    """Return the layout of a passage in the plane of its map, if wanted with nodes at the blade's corners."""
     flow = PassageFlow.of(passage.map.zeta(passage.front.curve.points))
     x = flow.half + AHEAD
     to_axis = np.pi / abs(passage.map.pitch)
@@ -57,11 +57,14 @@ def template(passage: Passage) -> Layout:
                 pieces.append(np.asarray(u + 1j * v, dtype=np.complex128))
     ring, angles = _ring(flow, x, along)
     nodes, blocks = _joined(pieces + ring)
-    return _placed(passage, flow, nodes, blocks, angles)
+    layout = _placed(passage, flow, nodes, blocks, angles)
+    if at_corners:
+        _put_at_corners(layout, passage.domain.loops[BLADE])
+    return layout
 
 
 def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], list[Floats]]:
-    """Return the four blocks of the ring in the plane of the flow, i clockwise around the blade, j away from it.
+    """Return the four blocks of the ring, i clockwise around the blade, j away from it.
 
     Their feet are not where they should be; the second list has the angles (n,) of these instead. Lines lead
     away along hyperbolae, G = h cosh(μ + iν).
@@ -78,7 +81,10 @@ def _ring(flow: PassageFlow, x: float, cells: int) -> tuple[list[Complexes], lis
 
 
 def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
-    """Return the places of nodes, and blocks of their numbers: what coincides, but for periods iπ, is one node."""
+    """Return the places of nodes, and blocks of their numbers.
+
+    What coincides, but for periods iπ, is one node.
+    """
     places = np.concatenate([piece.ravel() for piece in pieces])
     inner = np.zeros(len(places), dtype=bool)
     ends = np.cumsum([0, *(piece.size for piece in pieces)])
@@ -97,7 +103,7 @@ def _joined(pieces: list[Complexes]) -> tuple[Complexes, tuple[Indices, ...]]:
 def _placed(
     passage: Passage, flow: PassageFlow, nodes: Complexes, blocks: tuple[Indices, ...], angles: list[Floats]
 ) -> Layout:
-    """Return the layout with nodes of the plane of the flow in the plane of the map, those of walls on its loops.
+    """Return the layout with `nodes` taken to the plane of the map, those of walls on its loops.
 
     Those of the blade are at `angles` around the slit, for each block of the ring.
     """
@@ -107,7 +113,6 @@ def _placed(
     places = Places.inside(len(nodes))
     feet, angle = np.concatenate([block[:, 0] for block in blocks[-4:]]), np.concatenate(angles)
     places.loop[feet], places.arc[feet] = BLADE, _arcs(flow, angle, front)
-    _put_at_corners(places, front)
     for number, columns in (
         (INLET, [block[0] for block in blocks[:3]]),
         (OUTLET, [block[-1] for block in blocks[-7:-4]]),
@@ -121,14 +126,16 @@ def _placed(
     return Layout(QuadMesh(domain, mapped, quads_of(blocks), places), blocks)
 
 
-def _put_at_corners(places: Places, front: Loop) -> None:
-    """Put the nearest node, none twice, at each corner of the blade or of the front of its layers, in place."""
+def _put_at_corners(layout: Layout, front: Loop) -> None:
+    """Put the nearest node, none twice, at each corner of the blade or of its layers, in place."""
+    places = layout.mesh.places
     free = places.loop == BLADE
     for arc, cells in zip(front.corner_arcs, front.corner_cells, strict=True):
         away = np.abs(places.arc - arc)
         away = np.where(free, np.minimum(away, front.length - away), np.inf)
         node = int(np.argmin(away))
         places.arc[node], places.cells[node], free[node] = arc, cells, False
+        layout.mesh.nodes[node] = front.at(np.array([arc]))[0]
 
 
 def _arcs(flow: PassageFlow, angles: Floats, front: Loop) -> Floats:
