@@ -55,7 +55,7 @@ def test_periodic_sides_are_bitwise_a_pitch_apart_and_nothing_is_folded(stagger,
     layout = cascade_layout(cascade, cells=2 * CELLS)
     grid = to_grid(layout)
     sides = periodic_nodes(grid)
-    np.testing.assert_array_equal(sides["periodic1"] + [0.0, pitch], sides["periodic2"])
+    np.testing.assert_array_equal(sides["periodic1"] + np.array([0.0, pitch]), sides["periodic2"])
     assert sum(count_folded(block.nodes) for block in grid.blocks) == 0
     assert {patch.name for patch in grid.patches} == {"periodic1", "periodic2", "inlet", "outlet", "blade"}
     assert layout.cells == pytest.approx(2 * CELLS, rel=0.2)
@@ -124,7 +124,7 @@ def test_flow_past_a_flat_plate_along_it_is_the_plate_itself():
 
 def test_the_map_of_a_passage_has_its_period_and_its_inverse():
     to = PassageMap(0.2 + 1.1j, 0.1 + 0.05j)
-    z = np.random.default_rng(1).uniform(-0.4, 0.4, (50, 2)) + [1.0, 0.0]
-    np.testing.assert_allclose(to.forward(z), to.forward(z + [0.2, 1.1]), atol=1e-12)
+    z = np.random.default_rng(1).uniform(-0.4, 0.4, (50, 2)) + np.array([1.0, 0.0])
+    np.testing.assert_allclose(to.forward(z), to.forward(z + np.array([0.2, 1.1])), atol=1e-12)
     back = to.back(to.forward(z))
-    np.testing.assert_allclose(back + to.shifts(back, z)[:, None] * [0.2, 1.1], z, atol=1e-10)
+    np.testing.assert_allclose(back + to.shifts(back, z)[:, None] * np.array([0.2, 1.1]), z, atol=1e-10)
