@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from time import perf_counter
 
 import numpy as np
@@ -15,7 +16,7 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import fine_layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
-from meshonet.solvers.blocking.request import CELLS, BlockRequest
+from meshonet.solvers.blocking.request import CELLS, MOST_CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
 from meshonet.solvers.solution import Solution
 
@@ -148,6 +149,10 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
     if request.res is not None:
         return None, domain.extent / request.res
     if request.cell_size is not None:
+        least = math.sqrt(domain.area / MOST_CELLS)
+        if request.cell_size < least:
+            problem = f"edges of {request.cell_size:g} are more than {MOST_CELLS} cells"
+            raise InputError(problem, f"use {least:.2g} or more", parameter="cell_size")
         return None, request.cell_size
     return request.cells or CELLS, None
 
