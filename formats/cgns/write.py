@@ -27,6 +27,8 @@ _CONDITIONS: dict[Kind, str] = {
     "wall": "BCWall", "farfield": "BCFarfield", "inlet": "BCInflow", "outlet": "BCOutflow",
     "symmetry": "BCSymmetryPlane",
 }  # fmt: skip
+_IN_MEMORY = 1 << 24
+"""Numbers up to which a grid of many blocks, thousands of small objects, is put together in memory."""
 _METRE = np.array([0, 1, 0, 0, 0], np.float64)
 """Exponents of mass, length, time, temperature and angle in a coordinate."""
 
@@ -36,7 +38,8 @@ def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> Non
     rest = iter(grids)
     first = at_least_one(rest)
     dimension = 3 if heights else 2
-    with created(path, track_order=True, libver=("earliest", "v108")) as file:
+    small = len(first.blocks) > 1 and sum(block.nodes.size for block in first.blocks) < _IN_MEMORY
+    with created(path, in_memory=small, track_order=True, libver=("earliest", "v108")) as file:
         base = child(root(file), "Base", "CGNSBase_t", np.full(2, dimension, np.int32))
         child(base, "DataClass", "DataClass_t", "NormalizedByUnknownDimensional")
         zones: set[str] = set()

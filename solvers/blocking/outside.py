@@ -14,7 +14,7 @@ from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.reuse import carried_over
 
 PRICE = -0.02
-"""Degrees of mean deviation that a block costs, a gain here: few blocks leave sizes of cells no way to change."""
+"""Degrees of mean deviation that a block costs, a gain here: few blocks leave sizes no way to change."""
 
 
 def found_outside(rest: Domain, fronts: Collection[int], timings: Timings | None = None) -> Layout:
