@@ -126,12 +126,12 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def domains(folder: Path) -> dict[str, Any]:
-    """Write the domains of examples/domains into a folder; return points of two airfoils by file."""
+    """Write the domains of examples/domains into a folder; return points of airfoils and a blade by file."""
     path = ROOT / "examples" / "domains" / "domains.py"
     module = runpy.run_path(str(path))
     module["write_all"](folder)
     _, main, flap = module["DOMAINS"]["two-elements"]()
-    return {"main.dat": main, "flap.dat": flap}
+    return {"main.dat": main, "flap.dat": flap, "blade.dat": module["moved"](main, 35.0, 1.0, 0.0, 0.0)}
 
 
 def run(line: str, folder: Path) -> None:
