@@ -95,6 +95,18 @@ class Rings:
         thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
         return self.settings.rows(float(thickness.max()))
 
+    def attached_cells(self, chords: Chords, counts: Indices) -> int:
+        """Return the cells of rings and of the rows to the far field, for counts (chords,)."""
+        along = np.zeros(len(self.rest.loops), dtype=np.intp)
+        places = chords.layout.mesh.places
+        for edge in np.flatnonzero(chords.wall):
+            along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
+        total = sum(int(along[number]) * self.rows(ring) for number, ring in self.rings.items())
+        if self.near is not None:
+            around = max(int(along[0]), 1)
+            total += int(along[0]) * self.near.cells(2.0 * np.pi * self.near.radius / around)
+        return total
+
 
 def layered(
     domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int,
@@ -142,24 +154,12 @@ def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, Siz
         middle = 0.5 * (low + high)
         metric = rings.metric(float(np.exp(middle)))
         counts = wanted.counts(metric)
-        total = chords.cells(counts) + _attached_cells(rings, chords, counts)
+        total = chords.cells(counts) + rings.attached_cells(chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
         times += 1
     return np.maximum(chords.least, np.round(counts / times).astype(np.intp)), times, metric
-
-
-def _attached_cells(rings: Rings, chords: Chords, counts: Indices) -> int:
-    """Return the cells of rings and of the rows to the far field."""
-    along = np.zeros(len(rings.rest.loops), dtype=np.intp)
-    places = chords.layout.mesh.places
-    for edge in np.flatnonzero(chords.wall):
-        along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
-    total = sum(int(along[number]) * rings.rows(ring) for number, ring in rings.rings.items())
-    if rings.near is not None:
-        total += int(along[0]) * rings.near.cells(2.0 * np.pi * rings.near.radius / max(int(along[0]), 1))
-    return total
 
 
 class _Wanted:

@@ -32,13 +32,20 @@ def respaced(layout: Layout, settings: LayerSettings) -> Layout:
     for strip in strips:
         lines = layout.mesh.nodes[strip]
         last, cells = beyond[strip[:, -1]], strip.shape[1] - 1
+        opening = np.hypot(*(lines[:, 1] - lines[:, 0]).T) / settings.first  # 1 at walls, more along wakes
+        opening = np.where(opening > 1.0 + 1e-6, opening, 1.0)
 
-        def law(length: Floats, last: Floats = last, cells: int = cells) -> Floats:
-            return layer_arcs(length, settings.first, last, cells, settings.constant, settings.growth)
+        def law(
+            length: Floats, last: Floats = last, cells: int = cells, scale: Floats = opening
+        ) -> Floats:
+            arcs = layer_arcs(
+                length / scale, settings.first, last / scale, cells, settings.constant, settings.growth
+            )
+            return np.asarray(scale[:, None] * arcs)
 
         moved = spaced(lines, law)
         step = moved[:, 1] - moved[:, 0]
-        moved[:, 1] = moved[:, 0] + step * (settings.first / np.hypot(*step.T))[:, None]
+        moved[:, 1] = moved[:, 0] + step * (opening * settings.first / np.hypot(*step.T))[:, None]
         nodes[strip[:, 1:-1]] = moved[:, 1:-1]
     return replace(layout, mesh=layout.mesh.with_nodes(nodes))
 

@@ -1,0 +1,254 @@
+"""Grids of blocks with C sheets at bodies with one sharp edge and a free wake, rings at all others.
+
+::
+
+    walls --march--> sheets, rings    cut outer loop, fronts --decompose--> layout --counts, optimum-->
+        fine layout, nodes of both sides of wakes alike --columns at the fronts--> whole
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.layout.layout import Layout
+from meshonet.geometry.layout.quad_mesh import QuadMesh
+from meshonet.geometry.polygon.corners import Indices
+from meshonet.solvers.blocking import layered
+from meshonet.solvers.blocking.attach import attach
+from meshonet.solvers.blocking.base_complex import base_complex
+from meshonet.solvers.blocking.c_attach import attach_sheets, front_nodes
+from meshonet.solvers.blocking.c_sheets import Sheet, free_wake, march_sheet
+from meshonet.solvers.blocking.chords import Chords
+from meshonet.solvers.blocking.cut_loop import CutLoop
+from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.feature_sizes import feature_sizes
+from meshonet.solvers.blocking.layer_law import layer_arcs
+from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, heights_inside, ring_metric, ring_rows
+from meshonet.solvers.blocking.near_field import NearField
+from meshonet.solvers.blocking.refine import multiplied, refine
+from meshonet.solvers.blocking.respace import respaced
+from meshonet.solvers.blocking.rings import march_ring
+from meshonet.solvers.blocking.size_metric import SizeMetric
+from meshonet.solvers.energy.quads import optimise
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets(layered.Rings):
+    """Walls with their rings and C sheets; loops of `rest` are fewer than those of `domain`.
+
+    `cut` is the first loop of `rest`; `numbers` are those that the loops of `rest` have in `domain`.
+    """
+
+    cut: CutLoop
+    numbers: dict[int, int]
+
+    @classmethod
+    def along(cls, domain: Domain, loops: list[int], settings: LayerSettings) -> Sheets | None:
+        """Return the sheets and rings around some loops of a domain, None where no sheet can be."""
+        near = NearField.of(domain)
+        outer = near.circle if near else domain.loops[0]
+        sheets: list[Sheet] = []
+        if 0 in loops or domain.periodic is not None:
+            return None
+        for number in loops:
+            wake = free_wake(domain, number, outer)
+            if wake is None:
+                continue
+            loop = domain.loops[number]
+            sizes = layered.THICKNESS * loop.length, loop.length / layered.COLUMNS
+            sheet = march_sheet(domain, number, wake, outer, settings.first, *sizes)
+            if sheet is not None and not any(_close(sheet, other) for other in sheets):
+                sheets.append(sheet)
+        if not sheets:
+            return None
+        taken = {sheet.number for sheet in sheets}
+        rings = {
+            k: march_ring(
+                domain, domain.loops[k], settings.first, layered.THICKNESS * domain.loops[k].length,
+                domain.loops[k].length / layered.COLUMNS,
+            )
+            for k in loops if k not in taken
+        }  # fmt: skip
+        cut = CutLoop.of(outer, sheets)
+        left = [k for k in range(1, len(domain.loops)) if k not in taken]
+        rest = [cut.loop, *(rings[k].front if k in rings else domain.loops[k] for k in left)]
+        numbers = {0: 0} | {i + 1: k for i, k in enumerate(left)}
+        return cls(domain, rings, near, Domain(tuple(rest), domain.name), settings, cut, numbers)
+
+    @cached_property
+    def _metric(self) -> SizeMetric:
+        parts = [ring_metric(ring, self.settings) for ring in self.rings.values()]
+        return SizeMetric.joined([*(_sheet_metric(s, self.settings) for s in self.cut.sheets), *parts])
+
+    def sheet_rows(self, sheet: Sheet) -> int:
+        """Return the layers of a sheet."""
+        wall = slice(sheet.edge, len(sheet.levels) - sheet.edge)
+        return self.settings.rows(float(sheet.thickness[wall].max()))
+
+    def attached_cells(self, chords: Chords, counts: Indices) -> int:
+        """Return the cells of sheets, rings and of the rows to the far field, for counts (chords,)."""
+        places, total, around = chords.layout.mesh.places, 0, 0
+        spans = [self.cut.span(k) for k in range(len(self.cut.sheets))]
+        for edge in np.flatnonzero(chords.wall):
+            nodes, cells = chords.edges[edge], int(counts[chords.chord[edge]])
+            number = self.numbers[int(places.loop[nodes[0]])]
+            if number in self.rings:
+                total += cells * self.rows(self.rings[number])
+            elif number == 0:
+                arc = places.arc[nodes[len(nodes) // 2]]
+                on = [k for k, (start, stop) in enumerate(spans) if start < arc < stop]
+                total += cells * self.sheet_rows(self.cut.sheets[on[0]]) if on else 0
+                around += 0 if on else cells
+        if self.near is not None:
+            around += 2 * sum(self.sheet_rows(sheet) for sheet in self.cut.sheets)
+            total += around * self.near.cells(2.0 * np.pi * self.near.radius / max(around, 1))
+        return total
+
+
+def _close(first: Sheet, second: Sheet) -> bool:
+    apart = first.levels[:, 0][:, None] - second.levels[:, 0][None]
+    return bool(np.hypot(apart[..., 0], apart[..., 1]).min() < 2.0 * (first.thickness.max() + second.thickness.max()))
+
+
+def _sheet_metric(sheet: Sheet, settings: LayerSettings) -> SizeMetric:
+    """Return the sizes that the front of a sheet asks for: its columns and its last layer."""
+    points = sheet.front
+    length = np.hypot(*np.diff(points, axis=0).T)
+    length = np.concatenate([length[:1], np.sqrt(length[1:] * length[:-1]), length[-1:]])
+    around = np.pad(np.log(length), 4, mode="reflect")
+    along = np.exp(np.convolve(around, np.full(9, 1.0 / 9.0), "valid"))
+    tangent = np.gradient(points, axis=0)
+    tangent /= np.hypot(*tangent.T)[:, None]
+    normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+    thickness = sheet.thickness / sheet.opening
+    wall = slice(sheet.edge, len(points) - sheet.edge)
+    rows = settings.rows(float(sheet.thickness[wall].max()))
+    none = np.full_like(thickness, np.inf)
+    arcs = layer_arcs(np.maximum(thickness, rows * settings.first), settings.first, none, rows, settings.constant)
+    across = JOIN * sheet.opening * (arcs[:, -1] - arcs[:, -2])
+    return SizeMetric(points, normal, across, along, np.inf)
+
+
+def c_layered(
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int, timings: Timings | None = None
+) -> Layout | None:
+    """Return a fine layout of about so many cells with C sheets and rings at some loops of a domain.
+
+    None where no body has one sharp edge and a free wake. Raises InputError, BlockingError,
+    NoValidGridError: cells stay folded.
+    """
+    timings = timings or Timings()
+    with timings.stage("layers"):
+        sheets = Sheets.along(domain, loops, settings)
+    if sheets is None:
+        return None
+    plain = replace(sheets.rest, loops=tuple(layered._smooth(loop) for loop in sheets.rest.loops))
+    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=layered.PRICE)
+    layout = replace(layout, mesh=replace(layout.mesh, domain=sheets.rest))
+    fine = _outside(sheets, layout, cells, timings)
+    with timings.stage("layers"):
+        return _whole(sheets, fine)
+
+
+def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings) -> Layout:
+    """Return the fine layout outside sheets and rings, its nodes alike on both sides of wakes."""
+    chords = Chords.of(layout)
+    with timings.stage("refine"):
+        counts, times, metric = layered._counts(sheets, chords, cells)
+        coarse = refine(layout, counts, chords)
+    with timings.stage("optimum"):
+        mesh = coarse.mesh
+        for k in range(len(sheets.cut.sheets)):
+            mesh = _balanced(mesh, sheets.cut, k)
+        held = None
+        for turn in range(layered.PASSES + 1):
+            optimum = optimise(mesh, iterations=layered.ITERATIONS, targets=metric.edges(mesh), held=held)
+            if not optimum.valid:
+                raise NoValidGridError("cells outside the layers stay folded")
+            mesh = optimum.mesh
+            if turn == layered.PASSES - 1:
+                held = np.zeros(len(mesh.nodes), dtype=bool)
+                for k in range(len(sheets.cut.sheets)):
+                    mesh, on = _tied(mesh, sheets.cut, k)
+                    held[on] = True
+    with timings.stage("refine"):
+        return multiplied(Layout(mesh, coarse.blocks), times)
+
+
+def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
+    """Return the mesh with nodes of a front moved along it, as many on both sides of the wake."""
+    order, index = front_nodes(mesh, cut, k)
+    sheet, last = cut.sheets[k], len(order) - 1
+    n = len(sheet.levels)
+    corner = mesh.places.cells[order] > 0
+    low, high = (int(np.flatnonzero(corner & (index == at))[0]) for at in (sheet.edge, n - 1 - sheet.edge))
+    edge = round(0.5 * (low + last - high))
+    if edge == low and edge == last - high:
+        return mesh
+    was = np.interp(np.arange(last + 1.0), [0, edge, last - edge, last], [0, low, high, last])
+    new = np.interp(was, np.arange(last + 1.0), index)
+    new[[edge, last - edge]] = sheet.edge, n - 1 - sheet.edge
+    cells = mesh.places.cells.copy()
+    cells[order[[low, high]]] = 0
+    cells[order[[edge, last - edge]]] = 2
+    return _moved(mesh.with_places(mesh.nodes, replace(mesh.places, cells=cells)), cut, k, order, new)
+
+
+def _tied(mesh: QuadMesh, cut: CutLoop, k: int) -> tuple[QuadMesh, Indices]:
+    """Return the mesh with nodes at the same columns on both sides of a wake, and these nodes."""
+    order, index = front_nodes(mesh, cut, k)
+    last = len(cut.sheets[k].levels) - 1.0
+    edge = int(np.flatnonzero(index == cut.sheets[k].edge)[0])
+    new = index.copy()
+    mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
+    new[: edge + 1], new[::-1][: edge + 1] = mean, last - mean
+    held = np.concatenate([order[: edge + 1], order[::-1][: edge + 1]])
+    return _moved(mesh, cut, k, order, new), held
+
+
+def _moved(mesh: QuadMesh, cut: CutLoop, k: int, order: Indices, index: Floats) -> QuadMesh:
+    nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
+    arc[order] = cut.front_arcs(k, index)
+    nodes[order] = cut.loop.at(arc[order])
+    return mesh.with_nodes(nodes, arc)
+
+
+def _whole(sheets: Sheets, outside: Layout) -> Layout:
+    """Return the layout with sheets, rings and the rows to a distant outer loop."""
+    domain, near = sheets.domain, sheets.near
+    first = near.circle if near else domain.loops[0]
+    fronts = [sheets.rings[k].front if k in sheets.rings else loop for k, loop in enumerate(domain.loops)]
+    inner = Domain((first, *fronts[1:]), domain.name)
+    rows = [sheets.sheet_rows(sheet) for sheet in sheets.cut.sheets]
+    layout = attach_sheets(outside, sheets.cut, inner, sheets.numbers, sheets.settings, rows)
+    rings = [
+        ring_rows(layout.mesh, k, ring, sheets.rows(ring), sheets.settings, heights_inside(layout, k))
+        for k, ring in sheets.rings.items()
+    ]
+    walls = Domain((first, *domain.loops[1:]), domain.name)
+    layout = respaced(attach(layout, walls, rings), sheets.settings)
+    layout = _on_outer(layout)
+    if near is not None:
+        layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
+    if layered.smallest_corner(layout.mesh) <= 0.0:
+        raise NoValidGridError("layers are folded")
+    return base_complex(layout.mesh).layout
+
+
+def _on_outer(layout: Layout) -> Layout:
+    """Return the layout with nodes of the outer loop on it."""
+    mesh = layout.mesh
+    nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
+    on = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.cells == 0))
+    outer = mesh.domain.loops[0]
+    for _ in range(3):
+        arc[on] += ((nodes[on] - outer.at(arc[on])) * outer.tangent(arc[on])).sum(axis=1)
+    arc[on] = np.mod(arc[on], outer.length)
+    nodes[on] = outer.at(arc[on])
+    return replace(layout, mesh=mesh.with_nodes(nodes, arc))
