@@ -155,6 +155,7 @@ class _Records(Iterator[T]):
         try:
             with in_source(self._source.name):
                 if self._records is None:
+                    self._records = iter(())  # a reader that fails at once is not asked again
                     self._records = self._read()
                 return next(self._records)
         except MeshonetError:

@@ -1,7 +1,5 @@
 cdef extern from "quads/topology.h":
     int NEXT_EDGES
-    ptrdiff_t c_quad_edges "quad_edges"(const ptrdiff_t *quads, ptrdiff_t m, ptrdiff_t n, ptrdiff_t *edges,
-                                        ptrdiff_t *edge_of, ptrdiff_t *room) nogil
     ptrdiff_t c_line_neighbours "line_neighbours"(
         const ptrdiff_t *quads, const ptrdiff_t *edge_of, ptrdiff_t m, ptrdiff_t n, ptrdiff_t e, const ptrdiff_t *node,
         const ptrdiff_t *edge, ptrdiff_t *line, ptrdiff_t *room) nogil
@@ -55,21 +53,6 @@ cdef extern from "quads/descent.h":
     void quad_descent_free(CQuadDescent *d) nogil
     int quad_descent_start(CQuadDescent *d, int renew) nogil
     void quad_descent_end(CQuadDescent *d) nogil
-
-
-def quad_edges(quads, ptrdiff_t nodes):
-    """Return the edges (e, 2) of `quads` (m, 4), as ``topology.h`` has them, and the edge (m, 4) from each node to the next."""
-    cdef ptrdiff_t m = len(quads), count
-    cdef const ptrdiff_t *q = reads_indices(quads, (m, 4))
-    if m and not (0 <= quads.min() and quads.max() < nodes):
-        raise ValueError(f"quads of other than {nodes} nodes")
-    edges, edge_of, room = np.empty((4 * m, 2), np.intp), np.empty((m, 4), np.intp), np.empty(nodes + 1 + 8 * m, np.intp)
-    cdef ptrdiff_t *to = fills_indices(edges, (4 * m, 2))
-    cdef ptrdiff_t *sides = fills_indices(edge_of, (m, 4))
-    cdef ptrdiff_t *scratch = fills_indices(room, room.shape)
-    with nogil:
-        count = c_quad_edges(q, m, nodes, to, sides, scratch)
-    return edges[:count].copy(), edge_of
 
 
 def line_neighbours(quads, edge_of, node, edge):

@@ -1,43 +1,6 @@
-/* The edges of quads, and their neighbours along grid lines, by sorting sides into buckets of nodes. */
+/* The neighbours of edges of quads along grid lines. */
 #include "topology.h"
 #include <string.h>
-
-ptrdiff_t quad_edges(const ptrdiff_t *quads, ptrdiff_t m, ptrdiff_t n, ptrdiff_t *edges, ptrdiff_t *edge_of,
-                     ptrdiff_t *room)
-{
-    ptrdiff_t *start = room, *side = room + n + 1, *high = side + 4 * m, found = 0;
-    memset(start, 0, (size_t)(n + 1) * sizeof *start);
-    for (ptrdiff_t k = 0; k < 4 * m; k++) {
-        const ptrdiff_t a = quads[k], b = quads[k % 4 == 3 ? k - 3 : k + 1];
-        start[(a < b ? a : b) + 1]++;
-    }
-    for (ptrdiff_t v = 0; v < n; v++)
-        start[v + 1] += start[v];
-    for (ptrdiff_t k = 0; k < 4 * m; k++) {
-        const ptrdiff_t a = quads[k], b = quads[k % 4 == 3 ? k - 3 : k + 1];
-        const ptrdiff_t slot = start[a < b ? a : b]++;
-        side[slot] = k, high[slot] = a < b ? b : a;
-    }
-    for (ptrdiff_t v = 0, first = 0; v < n; v++) {
-        const ptrdiff_t stop = start[v];
-        for (ptrdiff_t i = first + 1; i < stop; i++) { /* few sides meet at a node */
-            const ptrdiff_t h = high[i], s = side[i];
-            ptrdiff_t j = i;
-            for (; j > first && high[j - 1] > h; j--)
-                high[j] = high[j - 1], side[j] = side[j - 1];
-            high[j] = h, side[j] = s;
-        }
-        for (ptrdiff_t i = first; i < stop; i++) {
-            if (i == first || high[i] != high[i - 1]) {
-                edges[2 * found] = v, edges[2 * found + 1] = high[i];
-                found++;
-            }
-            edge_of[side[i]] = found - 1;
-        }
-        first = stop;
-    }
-    return found;
-}
 
 typedef struct {
     ptrdiff_t *line, *filled, pairs;

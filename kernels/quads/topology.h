@@ -1,13 +1,8 @@
-/* Which edges quads over shared nodes have, and which edges follow each other along grid lines. */
+/* Which edges of quads over shared nodes follow each other along grid lines. */
 #pragma once
 #include <stddef.h>
 
 #define NEXT_EDGES 4 /* neighbours of an edge along grid lines at the most: beside it in two cells, before and behind it */
-
-/* Fill `edges` (4 m, 2) with the edges of m quads over n nodes, the lower node first and in ascending order, `edge_of`
-   (m, 4) with the edge from each node of a quad to the next; return how many there are. `room` holds n + 1 + 8 m. */
-ptrdiff_t quad_edges(const ptrdiff_t *quads, ptrdiff_t m, ptrdiff_t n, ptrdiff_t *edges, ptrdiff_t *edge_of,
-                     ptrdiff_t *room);
 
 /* Fill `line` (e, NEXT_EDGES) with the edges whose lengths those of each edge are compared with, itself where there are fewer:
    opposite ones in a quad, and the next ones through regular nodes: inner ones of four quads, and those of two along

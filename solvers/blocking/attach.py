@@ -112,10 +112,10 @@ def spaced(lines: Floats, law: Callable[[Floats], Floats]) -> Floats:
     length = np.hypot(step[..., 0], step[..., 1])
     arc = np.concatenate([np.zeros((len(lines), 1)), np.cumsum(length, axis=1)], axis=1)
     wanted = law(arc[:, -1])
-    return _hermite(lines, arc, np.minimum(wanted, arc[:, -1:]))
+    return sampled(lines, arc, np.minimum(wanted, arc[:, -1:]))
 
 
-def _hermite(lines: Floats, arc: Floats, at: Floats) -> Floats:
+def sampled(lines: Floats, arc: Floats, at: Floats) -> Floats:
     """Return points (k, n, 2) at arcs (k, n): cubic pieces, tangents those of parabolas through three."""
     h = np.diff(arc, axis=1)[..., None]
     delta = np.diff(lines, axis=1) / h

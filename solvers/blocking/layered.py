@@ -14,7 +14,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import NoValidGridError
@@ -24,6 +26,8 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.even_loops import Measure, evened_loops
+from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
@@ -40,10 +44,19 @@ THICKNESS = 0.018
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
 ITERATIONS = 120
+FEW_ITERATIONS = 10
+NEAR_FOLDS = 5
+"""Cells around folded ones that are optimised with them."""
+RESPACED_SINE = 0.1
+"""Of angles, that no node that is placed anew across layers may make smaller."""
+FREE = 2
+"""Optimisations, each with the sizes at the nodes of the one before, before one with fronts held."""
+EVEN = float(np.log(1.2))
+"""Logarithm of the ratio by which neighbouring cells along fronts may differ."""
+MARGIN = 1.1
+"""By how much cells may differ in the end, in logarithms, over the growth of layers."""
 PRICE = 0.02
 """Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
-PASSES = 2
-"""Optimisations, each with the sizes at the nodes of the one before."""
 _BISECTIONS = 12
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
@@ -90,6 +103,14 @@ class Rings:
         largest = self.rest.extent / 12.0 * scale**0.5
         return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
+    @property
+    def measures(self) -> dict[int, Measure]:
+        """What steps are to be even in, besides arc length, along the loops that stand in for others."""
+        measures = {k: ring.along_wall for k, ring in self.rings.items()}
+        if self.near is not None:
+            measures[0] = (np.array([0.0, self.near.circle.length]),) * 2
+        return measures
+
     def rows(self, ring: Ring) -> int:
         """Return the layers of a ring."""
         thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
@@ -109,11 +130,12 @@ class Rings:
 
 
 def layered(
-    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int,
-    layout: Layout | None = None, timings: Timings | None = None,
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int = 0,
+    cell_size: float = 0.0,    layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about so many cells, with layers at some loops of a domain.
 
+    Without `cells`, the longest cells along its fronts are about `cell_size` long.
     `layout` is one of the rest of the domain, outside its rings, to be taken instead of one that is found.
     Raises InputError, BlockingError; NoValidGridError: cells stay folded.
     """
@@ -124,31 +146,66 @@ def layered(
         plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
         layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
-    fine = _outside(rings, layout, cells, timings)
+    for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
+        try:
+            return _whole(rings, layout, (cells, cell_size), timings, even)
+        except NoValidGridError as error:
+            problem = error
+    raise problem
+
+
+def _whole(rings: Rings, layout: Layout, size: tuple[int, float], timings: Timings, even: bool) -> Layout:
+    """Return the fine layout, its cells evened along fronts or not."""
+    fine = _outside(rings, layout, size, timings, even)
     with timings.stage("layers"):
         return _joined(rings, fine)
 
 
-def _outside(rings: Rings, layout: Layout, cells: int, timings: Timings) -> Layout:
+def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Timings, even: bool) -> Layout:
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = _counts(rings, chords, cells)
+        counts, times, metric = _counts(rings, chords, *size)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
-        for _ in range(PASSES):
-            optimum = optimise(mesh, iterations=ITERATIONS, targets=metric.edges(mesh))
+        on = np.zeros(len(mesh.nodes), dtype=bool)
+        for turn in range(FREE + even):
+            optimum = optimise(
+                mesh, iterations=ITERATIONS, targets=metric.edges(mesh), held=on if turn == FREE else None
+            )
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
+            if even and turn == FREE - 1:
+                mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
+                on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
-        return multiplied(Layout(mesh, coarse.blocks), times)
+        fine = multiplied(Layout(mesh, coarse.blocks), times)
+        fine = _unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
+        moved = evened_loops(fine, rings.measures, EVEN) if even else fine
+        return moved if smallest_corner(moved.mesh) > 0.0 else fine
 
 
-def _counts(rings: Rings, chords: Chords, cells: int) -> tuple[Indices, int, SizeMetric]:
+def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
+    """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
+    mesh = layout.mesh
+    bad = corner_jacobians(mesh) <= 0.0
+    if not bad.any():
+        return layout
+    free = np.zeros(len(mesh.nodes), dtype=bool)
+    free[mesh.quads[bad]] = True
+    for _ in range(NEAR_FOLDS):
+        free[mesh.quads[free[mesh.quads].any(axis=1)]] = True
+    optimum = optimise(mesh, iterations=FEW_ITERATIONS, held=held | ~free)
+    return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
+
+
+def _counts(rings: Rings, chords: Chords, cells: int, cell_size: float) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
     low, high = np.log(0.1), np.log(8.0)
+    if not cells:
+        low = high = float(np.log(cell_size / rings.metric(1.0).along.max()))
     wanted = _Wanted(chords, rings.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
@@ -194,9 +251,20 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     ]
     if rings.near is not None:
         rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
-    whole = respaced(attach(outside, rings.domain, rows), rings.settings)
-    if smallest_corner(whole.mesh) <= 0.0:
-        raise NoValidGridError("layers are folded")
+    whole = attach(outside, rings.domain, rows)
+    respaced_nodes = respaced(whole, rings.settings).mesh.nodes
+    nodes = guarded(whole.mesh.nodes, respaced_nodes - whole.mesh.nodes, whole.mesh, RESPACED_SINE)
+    whole = replace(whole, mesh=whole.mesh.with_nodes(nodes))
+    whole = evened_rows(whole, MARGIN * float(np.log(rings.settings.growth)), rings.settings.constant)
+    held = np.zeros(len(nodes), dtype=bool)
+    for number in whole.layers:
+        block = whole.blocks[number]
+        held[block[:, : 2 * block.shape[1] // 3]] = True
+    whole = _unfolded(whole, held)
+    corners = corner_jacobians(whole.mesh)
+    if corners.min() <= 0.0:
+        x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)
+        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
     return whole
 
 
@@ -208,7 +276,12 @@ def _smooth(loop: Loop) -> Loop:
 
 def smallest_corner(mesh: QuadMesh) -> float:
     """Return the smallest Jacobian, of parallelograms at corners, of the quads of a mesh."""
+    return float(corner_jacobians(mesh).min())
+
+
+def corner_jacobians(mesh: QuadMesh) -> Floats:
+    """Return the smallest corner Jacobian (m,) of each quad of a mesh."""
     z = mesh.nodes[mesh.quads]
     edge = np.roll(z, -1, axis=1) - z
     before = np.roll(edge, 1, axis=1)
-    return float((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min())
+    return np.asarray((before[..., 0] * edge[..., 1] - before[..., 1] * edge[..., 0]).min(axis=1))

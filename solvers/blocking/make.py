@@ -36,8 +36,8 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     cells, size = _wanted(domain, request)
     height = request.height(shape.unit)
     if request.pitch is not None:
-        raise InputError("cascades are not made yet", "leave {pitch} out", parameter="pitch")
-    if height is None:
+        fine = _passage(domain, request, height, timings)
+    elif height is None:
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, timings=timings)
     else:
@@ -54,6 +54,8 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     Raises InputError: as `make_blocks`; SolverError: no blocks are found.
     """
     domain = _checked(shape.domain, request)
+    if request.pitch is not None:
+        raise InputError("the blocks of a cascade are always the same", "make the grid", parameter="pitch")
     layout = _given(shape, domain, request) or decompose(domain)
     if request.cells is None and request.cell_size is None and request.res is None:
         return layout
@@ -91,6 +93,29 @@ def _with_layers(
         raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
     cells = request.cells or LAYERED_CELLS
     return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
+
+
+def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:
+    """Return the passage of a cascade, whose blade is the only hole of a domain."""
+    from meshonet.solvers.blocking.cascade import Cascade
+    from meshonet.solvers.blocking.cascade_layout import cascade_layout
+    from meshonet.solvers.blocking.layer_rows import LayerSettings
+
+    if request.layout is not None:
+        problem = "{layout} beside {pitch}"
+        raise InputError(problem, "drop {layout}: the blocks of a cascade are always the same")
+    settings, size = None, request.cell_size
+    if height is not None:
+        settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1)
+        if size is not None or request.res is not None:
+            raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
+    inlet, outlet = (1.0 if each is None else each for each in (request.inlet, request.outlet))
+    assert request.pitch is not None  # noqa: S101 - the caller looked
+    cascade = Cascade(domain.loops[1], request.pitch, inlet, outlet, settings, domain.name)
+    if request.res is not None:
+        size = cascade.extent / request.res
+    cells = request.cells or (CELLS if height is None else LAYERED_CELLS)
+    return cascade_layout(cascade, cells=cells, cell_size=size, timings=timings)
 
 
 def _checked(domain: Domain, request: BlockRequest) -> Domain:

@@ -13,13 +13,17 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.attach import Rows, loop_nodes
+from meshonet.solvers.blocking.even_growth import evened
 
 FAR = 4.0
 """Radii of the circle around all bodies at which an outer loop counts as distant."""
 NEAR = 2.2
 """The same radii of the circle that stands in for it."""
 _POINTS = 240
-MOST_GROWTH = 1.2
+_EVEN = 1.1
+_UNLIKE = 1.2  # first cells of rows over their mean
+_OWN = 0.5  # part of a row in which it becomes like the others
+MOST_GROWTH = 1.18
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +84,19 @@ class NearField:
         arcs = np.interp(angle, closed, np.append(self.arcs, self.arcs[0] + self.outer.length))
         end = self.outer.at(arcs)
         length = np.hypot(*(end - start).T)
-        first = float(np.exp(np.log(heights).mean())) * growth**0.5
-        mean = float(length.mean())
-        share = _shares(first / mean, self.cells(first, growth))
-        nodes = start[:, None] + share[None, :, None] * (end - start)[:, None]
+        wanted = evened(heights[None], np.log(_EVEN), closed=True)[0] * growth**0.5
+        mean = float(np.exp(np.log(wanted).mean()))
+        wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
+        cells = self.cells(mean, growth)
+        whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
+        # each row begins with its own cell and becomes like the others: their angles stay right
+        own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2
+        step = np.diff(whole, axis=1) * np.exp(np.log(wanted / mean)[:, None] * own)
+        step[:, own == 0.0] *= ((1.0 - step[:, own > 0.0].sum(axis=1)) / step[:, own == 0.0].sum(axis=1))[
+            :, None
+        ]
+        share = np.concatenate([np.zeros((len(step), 1)), np.cumsum(step, axis=1)], axis=1)
+        nodes = start[:, None] + share[..., None] * (end - start)[:, None]
         nodes[:, -1] = end
         return Rows(0, nodes, np.mod(arcs, self.outer.length), False)
 

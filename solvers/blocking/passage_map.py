@@ -35,23 +35,34 @@ class PassageMap:
 
     def axial(self, points: Floats) -> Floats:
         """Return how far (n,) points (n, 2) are from the centre along the axis."""
-        return np.asarray(((_complex(points) - self.centre) * np.conj(self.axis)).real)
+        return np.asarray(((complex_of(points) - self.centre) * np.conj(self.axis)).real)
+
+    def along(self, points: Floats) -> Floats:
+        """Return how many pitches (n,) points (n, 2) are from the centre in the direction of the pitch."""
+        return np.asarray(((complex_of(points) - self.centre) / self.pitch).real)
+
+    def zeta(self, points: Floats) -> Complexes:
+        """Return ζ (n,) of points z (n, 2)."""
+        return np.asarray(1j * np.pi * (complex_of(points) - self.centre) / self.pitch)
 
     def forward(self, points: Floats) -> Floats:
         """Return the places w (n, 2) of points z (n, 2)."""
-        zeta = 1j * np.pi * (_complex(points) - self.centre) / self.pitch
-        return _pairs(1.0 / np.tanh(zeta))
+        return pairs_of(1.0 / np.tanh(self.zeta(points)))
 
     def back(self, places: Floats) -> Floats:
         """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
-        w = _complex(places)
+        w = complex_of(places)
         zeta = 0.5 * np.log((w + 1.0) / (w - 1.0))
-        return _pairs(self.centre + zeta * self.pitch / (1j * np.pi))
+        return pairs_of(self.centre + zeta * self.pitch / (1j * np.pi))
+
+    def derivative(self, places: Floats) -> Complexes:
+        """Return dw/dz (n,) at places w (n, 2)."""
+        w = complex_of(places)
+        return np.asarray(1j * np.pi / self.pitch * (1.0 - w * w))
 
     def stretching(self, places: Floats) -> Floats:
         """Return |dw/dz| (n,) at places w (n, 2)."""
-        w = _complex(places)
-        return np.asarray(np.pi / abs(self.pitch) * np.abs(1.0 - w * w))
+        return np.abs(self.derivative(places))
 
     def line(self, distance: float, count: int) -> Floats:
         """Return `count` places w (count, 2) of the line across the flow at an axial distance of the centre.
@@ -59,13 +70,13 @@ class PassageMap:
         They run clockwise around the hole that it becomes, in equal steps along the line.
         """
         steps = np.arange(count) / count
-        way = -1.0 if distance > 0 else 1.0
+        way = 1.0 if distance > 0 else -1.0
         points = self.centre + distance * self.axis + (way * steps) * self.pitch
-        return self.forward(_pairs(points))
+        return self.forward(pairs_of(points))
 
     def shifts(self, points: Floats, beside: Floats) -> Floats:
         """Return how many pitches (n,) are to be added to points (n, 2) to have them nearest to others."""
-        away = (_complex(beside) - _complex(points)) / self.pitch
+        away = (complex_of(beside) - complex_of(points)) / self.pitch
         return np.asarray(np.round(away.real))
 
 
@@ -97,9 +108,11 @@ def _crossings(polygon: Floats, x: float) -> Floats:
     return np.sort(a[:, 1] + (x - a[:, 0]) / (b[:, 0] - a[:, 0]) * (b[:, 1] - a[:, 1]))
 
 
-def _complex(points: Floats) -> Complexes:
+def complex_of(points: Floats) -> Complexes:
+    """Return points (n, 2) as complex numbers (n,)."""
     return np.asarray(points[..., 0] + 1j * points[..., 1])
 
 
-def _pairs(values: NDArray[Any]) -> Floats:
+def pairs_of(values: NDArray[Any]) -> Floats:
+    """Return complex numbers (n,) as points (n, 2)."""
     return np.stack([values.real, values.imag], axis=-1)

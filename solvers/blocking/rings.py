@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -39,6 +40,7 @@ MARCH_GROWTH = 1.2
 THINNER = 0.6
 """What the thickness is multiplied by when the march has folded with every setting."""
 TRIES = 4
+_FINER = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +99,15 @@ class Ring:
         nodes += left[..., None] * (wall - nodes[:, 0])[:, None]
         nodes[:, 0] = wall
         return nodes, starts
+
+    @cached_property
+    def along_wall(self) -> tuple[Floats, Floats]:
+        """Arc lengths (m,) of the front, from 0 to its length, and of the wall, rising, beneath them."""
+        n = len(self.arcs)
+        index = np.arange(_FINER * n + 1) / _FINER
+        knots = np.append(self.front.curve.knots, self.front.length)
+        wall = monotone_cubic(np.arange(-1.0, n + 2.0), self._unwrapped(), index)
+        return np.interp(index, np.arange(n + 1.0), knots), wall - wall[0]
 
     def _unwrapped(self) -> Floats:
         """Return arc lengths (n + 3,) of columns -1 to n + 1, ascending."""

@@ -1,0 +1,92 @@
+"""Layers around bodies: first cells, growth and angles of whole grids, over arrangements of bodies."""
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.layer_rows import LayerSettings
+from meshonet.solvers.blocking.layered import layered, smallest_corner
+
+
+def cylinder(x, y, radius, points=80):
+    turn = -2 * np.pi * np.arange(points) / points
+    places = np.stack([x + radius * np.cos(turn), y + radius * np.sin(turn)], axis=1)
+    return Loop(Curve(places, closed=True, corners=()), (), ("cylinder",))
+
+
+def blunt_airfoil(x, y, thickness=0.12, points=61):
+    at = 0.5 * (1 - np.cos(np.linspace(0, np.pi, points)))
+    half = (
+        5 * thickness * (0.2969 * np.sqrt(at) - 0.126 * at - 0.3516 * at**2 + 0.2843 * at**3 - 0.1015 * at**4)
+    )
+    upper, lower = np.stack([at, half], axis=1), np.stack([at, -half], axis=1)
+    places = np.concatenate([upper, lower[:0:-1]]) + np.array([x, y])
+    corners = (points - 1, points)
+    return Loop(Curve(places, closed=True, corners=corners), corners, ("airfoil",))
+
+
+CHANNEL = Loop.of_polygon(np.array([[-3.0, -2.0], [5.0, -2.0], [5.0, 2.0], [-3.0, 2.0]]))
+FAR = cylinder(0.5, 0.0, 60.0, 200)
+FAR = Loop(Curve(FAR.curve.points[::-1], closed=True, corners=()), (), ("far",))
+
+ARRANGEMENTS = {
+    "cylinder in a channel": (Domain((CHANNEL, cylinder(0.1, 0.1, 0.5))), 1e-3),
+    "two cylinders close together": (Domain((FAR, cylinder(0, 0, 0.5), cylinder(1.15, 0, 0.5))), 1e-4),
+    "airfoil and flap": (Domain((FAR, blunt_airfoil(0, 0), blunt_airfoil(0.9, -0.2, 0.15))), 1e-5),
+}
+
+
+@pytest.mark.parametrize("name", ARRANGEMENTS)
+def test_bodies_get_layers_of_the_first_cells_asked_for(name):
+    domain, first = ARRANGEMENTS[name]
+    layout = layered(domain, list(range(1, len(domain.loops))), LayerSettings(first), cells=12000)
+    assert smallest_corner(layout.mesh) > 0.0
+    assert 0.7 * 12000 < layout.cells < 1.4 * 12000
+    nodes = layout.mesh.nodes
+    for number in layout.layers:
+        block = layout.blocks[number]
+        height = np.hypot(*(nodes[block[:, 1]] - nodes[block[:, 0]]).T)
+        np.testing.assert_allclose(height, first, rtol=1e-6)
+
+
+def test_a_cylinder_in_a_far_field_has_cells_that_grow_evenly():
+    layout = layered(Domain((FAR, cylinder(0, 0, 0.5))), [1], LayerSettings(1e-4), cells=8000)
+    for block in layout.blocks:
+        nodes = layout.mesh.nodes[block]
+        for lines in (nodes, nodes.transpose(1, 0, 2)):
+            cells = np.hypot(*np.diff(lines, axis=0).transpose(2, 0, 1))
+            assert np.abs(np.diff(np.log(cells), axis=0)).max() < np.log(1.25)
+
+
+def test_cells_can_be_given_by_their_size():
+    domain = Domain((FAR, cylinder(0, 0, 0.5)))
+    few = layered(domain, [1], LayerSettings(1e-3), cell_size=0.2)
+    assert few.cells < layered(domain, [1], LayerSettings(1e-3), cell_size=0.1).cells
+
+
+def test_no_room_for_layers_is_said_with_its_place():
+    domain = Domain((FAR, cylinder(0, 0, 0.5), cylinder(1.0001, 0, 0.5)))
+    with pytest.raises(InputError, match="no room for layers"):
+        layered(domain, [1, 2], LayerSettings(1e-3), cells=8000)
+
+
+def test_evened_cells_keep_their_sum_and_move_only_where_they_differ_by_too_much():
+    cells = np.ones((1, 60))
+    cells[0, 30:] = 4.0
+    new = evened(cells, np.log(1.2))
+    assert new.sum() == pytest.approx(cells.sum())
+    assert np.abs(np.diff(np.log(new))).max() <= np.log(1.2) * (1 + 1e-9)
+    np.testing.assert_array_equal(new[0, :15], 1.0)
+    np.testing.assert_array_equal(new[0, -15:], 4.0)
+
+
+def test_held_cells_are_kept():
+    cells = np.array([[0.1, *[1.0] * 40]])
+    new = evened(cells, np.log(1.2), start=1)
+    assert new[0, 0] == pytest.approx(0.1)
+    assert new.sum() == pytest.approx(cells.sum())
+    assert np.abs(np.diff(np.log(new))).max() <= np.log(1.2) * (1 + 1e-9)
