@@ -15,7 +15,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.errors import InputError, NoValidGridError
+from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -27,6 +27,8 @@ from meshonet.solvers.blocking.c_sheets import Sheet, free_wake, march_sheet
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_law import layer_arcs
 from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, heights_inside, ring_metric, ring_rows
@@ -151,31 +153,36 @@ def c_layered(
     plain = replace(sheets.rest, loops=tuple(layered._smooth(loop) for loop in sheets.rest.loops))
     layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=layered.PRICE)
     layout = replace(layout, mesh=replace(layout.mesh, domain=sheets.rest))
-    fine = _outside(sheets, layout, cells, timings)
-    with timings.stage("layers"):
-        return _whole(sheets, fine)
+    for even in (True, False):
+        try:
+            fine = _outside(sheets, layout, cells, timings, even)
+            with timings.stage("layers"):
+                return _whole(sheets, fine)
+        except NoValidGridError as error:
+            problem = error
+    raise problem
 
 
-def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings) -> Layout:
+def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
     """Return the fine layout outside sheets and rings, its nodes alike on both sides of wakes."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = layered._counts(sheets, chords, cells)
+        counts, times, metric = layered._counts(sheets, chords, cells, 0.0)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
         for k in range(len(sheets.cut.sheets)):
             mesh = _balanced(mesh, sheets.cut, k)
         held = None
-        for turn in range(layered.PASSES + 1):
+        for turn in range(layered.FREE + 1):
             optimum = optimise(mesh, iterations=layered.ITERATIONS, targets=metric.edges(mesh), held=held)
             if not optimum.valid:
                 raise NoValidGridError("cells outside the layers stay folded")
             mesh = optimum.mesh
-            if turn == layered.PASSES - 1:
+            if turn == layered.FREE - 1:
                 held = np.zeros(len(mesh.nodes), dtype=bool)
                 for k in range(len(sheets.cut.sheets)):
-                    mesh, on = _tied(mesh, sheets.cut, k)
+                    mesh, on = _tied(mesh, sheets.cut, k, times * layered.EVEN if even else 0.0)
                     held[on] = True
     with timings.stage("refine"):
         return multiplied(Layout(mesh, coarse.blocks), times)
@@ -200,15 +207,28 @@ def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
     return _moved(mesh.with_places(mesh.nodes, replace(mesh.places, cells=cells)), cut, k, order, new)
 
 
-def _tied(mesh: QuadMesh, cut: CutLoop, k: int) -> tuple[QuadMesh, Indices]:
-    """Return the mesh with nodes at the same columns on both sides of a wake, and these nodes."""
+def _tied(mesh: QuadMesh, cut: CutLoop, k: int, limit: float) -> tuple[QuadMesh, Indices]:
+    """Return the mesh with nodes at the same columns on both sides of a wake, and these nodes.
+
+    Neighbouring cells along the front differ by at most the exponential of `limit`, unless that is 0.
+    """
     order, index = front_nodes(mesh, cut, k)
     last = len(cut.sheets[k].levels) - 1.0
     edge = int(np.flatnonzero(index == cut.sheets[k].edge)[0])
     new = index.copy()
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
+    if limit:
+        arcs = cut.front_arcs(k, mean)
+        arcs[1:-1] = arcs[0] + np.cumsum(evened(np.diff(arcs)[None], limit)[0])[:-1]
+        mean[1:-1] = cut.index(k, arcs[1:-1])
     new[: edge + 1], new[::-1][: edge + 1] = mean, last - mean
     held = np.concatenate([order[: edge + 1], order[::-1][: edge + 1]])
+    if limit:  # the wall's cells fit to those of the wake
+        piece = slice(edge - 1, len(new) - edge + 1)
+        arcs = cut.front_arcs(k, new[piece])
+        steps = evened(np.diff(arcs)[None], limit, False, 1, 1)[0]
+        new[piece][2:-2] = cut.index(k, arcs[0] + np.cumsum(steps)[1:-2])
+        held = order
     return _moved(mesh, cut, k, order, new), held
 
 
@@ -232,13 +252,39 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
         for k, ring in sheets.rings.items()
     ]
     walls = Domain((first, *domain.loops[1:]), domain.name)
-    layout = respaced(attach(layout, walls, rings), sheets.settings)
-    layout = _on_outer(layout)
+    layout = attach(layout, walls, rings)
+    change = respaced(layout, sheets.settings).mesh.nodes - layout.mesh.nodes
+    nodes = guarded(layout.mesh.nodes, change, layout.mesh, layered.RESPACED_SINE)
+    layout = _on_outer(replace(layout, mesh=layout.mesh.with_nodes(nodes)))
     if near is not None:
         layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
+    layout = evened_rows(
+        _conforming(layout), layered.MARGIN * float(np.log(sheets.settings.growth)), sheets.settings.constant
+    )
     if layered.smallest_corner(layout.mesh) <= 0.0:
-        raise NoValidGridError("layers are folded")
-    return base_complex(layout.mesh).layout
+        raise NoValidGridError("layers or cells beside them are folded")
+    return layout
+
+
+def _conforming(layout: Layout) -> Layout:
+    """Return the layout with blocks that meet along whole sides, layers in blocks of their own."""
+    mesh = layout.mesh
+    front = np.zeros(len(mesh.nodes), dtype=bool)
+    within = np.zeros(len(mesh.nodes), dtype=bool)
+    for number in layout.layers:
+        front[layout.blocks[number][:, -1]] = True
+        within[layout.blocks[number][:, :-1]] = True
+    blocks, layers = [], {}
+    found = base_complex(mesh, front[mesh.edges].all(axis=1) & ~mesh.on_wall)
+    for block in found.blocks:
+        turned = block
+        if within[block[1:-1, 1:-1]].all() and within[block].sum() > front[block].sum():
+            sides = (block, block.T[::-1], block[::-1, ::-1], block.T[:, ::-1])
+            turned = next((side for side in sides if front[side[:, -1]].all()), block)
+            if front[turned[:, -1]].all():
+                layers[len(blocks)] = turned.shape[1] - 1
+        blocks.append(turned)
+    return Layout(mesh, tuple(blocks), layers)
 
 
 def _on_outer(layout: Layout) -> Layout:
