@@ -88,7 +88,7 @@ def kept(keep: Path, way: str, path: Path, environment: dict[str, str]) -> Row:
         record.write_text(json.dumps(row))
         print(path.stem, way, row, file=sys.stderr, flush=True)
     row = json.loads(record.read_text())
-    assert isinstance(row, dict)  # noqa: S101
+    assert isinstance(row, dict)
     return row
 
 

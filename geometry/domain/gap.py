@@ -27,9 +27,7 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
 def wall_points(loops: Sequence[Loop]) -> Floats:
     """Return points (m, 2) on loops, `_SAMPLES` in all and some on every loop."""
     total = sum(each.length for each in loops)
-    return np.concatenate(
-        [each.sample(max(32, round(_SAMPLES * each.length / total))) for each in loops]
-    )
+    return np.concatenate([each.sample(max(32, round(_SAMPLES * each.length / total))) for each in loops])
 
 
 def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:

@@ -79,7 +79,7 @@ class BaseComplex:
 def base_complex(mesh: QuadMesh, lines: NDArray[np.bool_] | None = None) -> BaseComplex:
     """Return the blocks of a quad mesh.
 
-    Lines run through periodic sides to their partners; blocks end there, and at edges on further `lines` (e,).
+    Lines run through periodic sides to their partners; blocks end there, and at edges on more `lines` (e,).
 
     Raises BlockingError: the mesh is not manifold, or what its lines bound are no lattices.
     """

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -11,11 +9,11 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.attach import _beside, quads_of, spaced
+from meshonet.solvers.blocking.attach import beside, quads_of, spaced
+from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.layer_law import layer_arcs
-from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, _arc_shares, heights_inside
-from meshonet.solvers.blocking.c_sheets import Sheet
+from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, arc_shares, heights_inside
 
 
 def front_nodes(mesh: QuadMesh, cut: CutLoop, k: int) -> tuple[Indices, Floats]:
@@ -38,8 +36,8 @@ def attach_sheets(
     """
     mesh, old = layout.mesh, layout.mesh.places
     loop, arc, cells = old.loop.copy(), old.arc.copy(), old.cells.copy()
-    for number, new in numbers.items():
-        loop[old.loop == number] = new
+    for number, renamed in numbers.items():
+        loop[old.loop == number] = renamed
     nodes = mesh.nodes.copy()
     heights = _heights(layout)
     on_fronts = np.zeros(len(nodes), dtype=bool)
@@ -50,7 +48,7 @@ def attach_sheets(
     arc[rest] = cut.outer_arcs(old.arc[rest])
     nodes[rest] = cut.outer.at(arc[rest])
     parts = [Places(loop, arc, cells, old.partner.copy())]
-    tables, coordinates = [], [nodes]
+    coordinates = [nodes]
     count = len(nodes)
     blocks, layers = list(layout.blocks), dict(layout.layers)
     for k, (order, index) in enumerate(found):
@@ -64,7 +62,7 @@ def attach_sheets(
         parts.append(places)
         position = np.full(len(nodes), -1, dtype=np.intp)
         position[order] = np.arange(len(order))
-        for block in _beside(layout.blocks, position, 1 << 40):
+        for block in beside(layout.blocks, position, 1 << 40):
             layers[len(blocks)] = rows[k]
             blocks.append(table[block][:, ::-1])
     joined = Places(*(np.concatenate([vars(p)[name] for p in parts]) for name in vars(parts[0])))
@@ -92,10 +90,8 @@ def _lines(
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
     start[: edge + 1], start[::-1][: edge + 1] = mean, last - mean
     columns, opening = sheet.columns(index, start)
-    opening[: edge + 1] = opening[::-1][: edge + 1] = np.sqrt(
-        opening[: edge + 1] * opening[::-1][: edge + 1]
-    )
-    columns += _arc_shares(columns)[..., None] * (ends - columns[:, -1])[:, None]
+    opening[: edge + 1] = opening[::-1][: edge + 1] = np.sqrt(opening[: edge + 1] * opening[::-1][: edge + 1])
+    columns += arc_shares(columns)[..., None] * (ends - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
         arcs = layer_arcs(

@@ -8,8 +8,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 
@@ -23,124 +22,24 @@ from meshonet.solvers.blocking import layered
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.base_complex import base_complex
 from meshonet.solvers.blocking.c_attach import attach_sheets, front_nodes
-from meshonet.solvers.blocking.c_sheets import Sheet, free_wake, march_sheet
+from meshonet.solvers.blocking.c_domain import Sheets
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings, decompose
 from meshonet.solvers.blocking.even_growth import evened
+from meshonet.solvers.blocking.even_loops import evened_loops
 from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
-from meshonet.solvers.blocking.layer_law import layer_arcs
-from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, heights_inside, ring_metric, ring_rows
-from meshonet.solvers.blocking.near_field import NearField
+from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
-from meshonet.solvers.blocking.rings import march_ring
-from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.energy.quads import optimise
-
-
-@dataclass(frozen=True, eq=False)
-class Sheets(layered.Rings):
-    """Walls with their rings and C sheets; loops of `rest` are fewer than those of `domain`.
-
-    `cut` is the first loop of `rest`; `numbers` are those that the loops of `rest` have in `domain`.
-    """
-
-    cut: CutLoop
-    numbers: dict[int, int]
-
-    @classmethod
-    def along(cls, domain: Domain, loops: list[int], settings: LayerSettings) -> Sheets | None:
-        """Return the sheets and rings around some loops of a domain, None where no sheet can be."""
-        near = NearField.of(domain)
-        outer = near.circle if near else domain.loops[0]
-        sheets: list[Sheet] = []
-        if 0 in loops or domain.periodic is not None:
-            return None
-        for number in loops:
-            wake = free_wake(domain, number, outer)
-            if wake is None:
-                continue
-            loop = domain.loops[number]
-            sizes = layered.THICKNESS * loop.length, loop.length / layered.COLUMNS
-            sheet = march_sheet(domain, number, wake, outer, settings.first, *sizes)
-            if sheet is not None and not any(_close(sheet, other) for other in sheets):
-                sheets.append(sheet)
-        if not sheets:
-            return None
-        taken = {sheet.number for sheet in sheets}
-        rings = {
-            k: march_ring(
-                domain, domain.loops[k], settings.first, layered.THICKNESS * domain.loops[k].length,
-                domain.loops[k].length / layered.COLUMNS,
-            )
-            for k in loops if k not in taken
-        }  # fmt: skip
-        cut = CutLoop.of(outer, sheets)
-        left = [k for k in range(1, len(domain.loops)) if k not in taken]
-        rest = [cut.loop, *(rings[k].front if k in rings else domain.loops[k] for k in left)]
-        numbers = {0: 0} | {i + 1: k for i, k in enumerate(left)}
-        return cls(domain, rings, near, Domain(tuple(rest), domain.name), settings, cut, numbers)
-
-    @cached_property
-    def _metric(self) -> SizeMetric:
-        parts = [ring_metric(ring, self.settings) for ring in self.rings.values()]
-        return SizeMetric.joined([*(_sheet_metric(s, self.settings) for s in self.cut.sheets), *parts])
-
-    def sheet_rows(self, sheet: Sheet) -> int:
-        """Return the layers of a sheet."""
-        wall = slice(sheet.edge, len(sheet.levels) - sheet.edge)
-        return self.settings.rows(float(sheet.thickness[wall].max()))
-
-    def attached_cells(self, chords: Chords, counts: Indices) -> int:
-        """Return the cells of sheets, rings and of the rows to the far field, for counts (chords,)."""
-        places, total, around = chords.layout.mesh.places, 0, 0
-        spans = [self.cut.span(k) for k in range(len(self.cut.sheets))]
-        for edge in np.flatnonzero(chords.wall):
-            nodes, cells = chords.edges[edge], int(counts[chords.chord[edge]])
-            number = self.numbers[int(places.loop[nodes[0]])]
-            if number in self.rings:
-                total += cells * self.rows(self.rings[number])
-            elif number == 0:
-                arc = places.arc[nodes[len(nodes) // 2]]
-                on = [k for k, (start, stop) in enumerate(spans) if start < arc < stop]
-                total += cells * self.sheet_rows(self.cut.sheets[on[0]]) if on else 0
-                around += 0 if on else cells
-        if self.near is not None:
-            around += 2 * sum(self.sheet_rows(sheet) for sheet in self.cut.sheets)
-            total += around * self.near.cells(2.0 * np.pi * self.near.radius / max(around, 1))
-        return total
-
-
-def _close(first: Sheet, second: Sheet) -> bool:
-    apart = first.levels[:, 0][:, None] - second.levels[:, 0][None]
-    return bool(np.hypot(apart[..., 0], apart[..., 1]).min() < 2.0 * (first.thickness.max() + second.thickness.max()))
-
-
-def _sheet_metric(sheet: Sheet, settings: LayerSettings) -> SizeMetric:
-    """Return the sizes that the front of a sheet asks for: its columns and its last layer."""
-    points = sheet.front
-    length = np.hypot(*np.diff(points, axis=0).T)
-    length = np.concatenate([length[:1], np.sqrt(length[1:] * length[:-1]), length[-1:]])
-    around = np.pad(np.log(length), 4, mode="reflect")
-    along = np.exp(np.convolve(around, np.full(9, 1.0 / 9.0), "valid"))
-    tangent = np.gradient(points, axis=0)
-    tangent /= np.hypot(*tangent.T)[:, None]
-    normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-    thickness = sheet.thickness / sheet.opening
-    wall = slice(sheet.edge, len(points) - sheet.edge)
-    rows = settings.rows(float(sheet.thickness[wall].max()))
-    none = np.full_like(thickness, np.inf)
-    arcs = layer_arcs(np.maximum(thickness, rows * settings.first), settings.first, none, rows, settings.constant)
-    across = JOIN * sheet.opening * (arcs[:, -1] - arcs[:, -2])
-    return SizeMetric(points, normal, across, along, np.inf)
 
 
 def c_layered(
     domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int, timings: Timings | None = None
-) -> Layout | None:
-    """Return a fine layout of about so many cells with C sheets and rings at some loops of a domain.
+) -> tuple[Layout, tuple[str, ...]] | None:
+    """Return a fine layout of about so many cells with C sheets and rings at some loops, and notes.
 
     None where no body has one sharp edge and a free wake. Raises InputError, BlockingError,
     NoValidGridError: cells stay folded.
@@ -150,14 +49,14 @@ def c_layered(
         sheets = Sheets.along(domain, loops, settings)
     if sheets is None:
         return None
-    plain = replace(sheets.rest, loops=tuple(layered._smooth(loop) for loop in sheets.rest.loops))
+    plain = replace(sheets.rest, loops=tuple(layered.smoothed(loop) for loop in sheets.rest.loops))
     layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=layered.PRICE)
     layout = replace(layout, mesh=replace(layout.mesh, domain=sheets.rest))
     for even in (True, False):
         try:
             fine = _outside(sheets, layout, cells, timings, even)
             with timings.stage("layers"):
-                return _whole(sheets, fine)
+                return _whole(sheets, fine), sheets.notes
         except NoValidGridError as error:
             problem = error
     raise problem
@@ -167,13 +66,13 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
     """Return the fine layout outside sheets and rings, its nodes alike on both sides of wakes."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = layered._counts(sheets, chords, cells, 0.0)
+        counts, times, metric = layered.wanted_counts(sheets, chords, cells, 0.0)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
         for k in range(len(sheets.cut.sheets)):
             mesh = _balanced(mesh, sheets.cut, k)
-        held = None
+        held, fronts = None, sheets.measures
         for turn in range(layered.FREE + 1):
             optimum = optimise(mesh, iterations=layered.ITERATIONS, targets=metric.edges(mesh), held=held)
             if not optimum.valid:
@@ -184,6 +83,9 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
                 for k in range(len(sheets.cut.sheets)):
                     mesh, on = _tied(mesh, sheets.cut, k, times * layered.EVEN if even else 0.0)
                     held[on] = True
+                if even and fronts:
+                    mesh = evened_loops(replace(coarse, mesh=mesh), fronts, times * layered.EVEN).mesh
+                    held |= np.isin(mesh.places.loop, list(fronts))
     with timings.stage("refine"):
         return multiplied(Layout(mesh, coarse.blocks), times)
 
@@ -274,7 +176,8 @@ def _conforming(layout: Layout) -> Layout:
     for number in layout.layers:
         front[layout.blocks[number][:, -1]] = True
         within[layout.blocks[number][:, :-1]] = True
-    blocks, layers = [], {}
+    blocks: list[Indices] = []
+    layers: dict[int, int] = {}
     found = base_complex(mesh, front[mesh.edges].all(axis=1) & ~mesh.on_wall)
     for block in found.blocks:
         turned = block

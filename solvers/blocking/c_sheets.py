@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
@@ -19,21 +20,15 @@ from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march
+from meshonet.solvers.blocking.free_wake import Wake
 from meshonet.solvers.blocking.rings import GAP_PART, MARCH_GROWTH, SLOPE, THINNER, TRIES
 from meshonet.solvers.blocking.wall_columns import wall_columns
 from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
 from meshonet.solvers.hyperbolic.settings import OPEN_ATTEMPTS, RISING, MarchSettings
 
-SHARP_DEG = 300.0
-"""Angle of the domain from which on an edge is sharp: one of the body of 60 degrees."""
-MOST_BENT = np.radians(40.0)
-"""Most that a wake may turn on its way from the bisector of the edge to the normal of the outer loop."""
-RELAXATION = 0.5
-"""Chords over which the wake does so."""
-FREE = 0.15
-"""Chords that the wake must stay away from other bodies."""
 SPREAD = 0.03
 """By how much the sheet thickens along the wake."""
 WAKE_GROWTH, WAKE_LARGEST = 1.1, 1.0 / 15.0
@@ -42,16 +37,6 @@ OPENING, NEAR = 5.0, 0.3
 """First cells x chords behind the edge are higher than at the wall by 1 + 5 x²/(x + 0.3)."""
 OUTLET = 0.5
 """Chords around the end of the wake in which the outer loop is not in the way."""
-_STEP = 1.0 / 150.0
-
-
-@dataclass(frozen=True, eq=False)
-class Wake:
-    """The line (n, 2) from an edge to the outer loop, and the arc length of that where it ends."""
-
-    points: Floats
-    arc: float
-    chord: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,9 +97,9 @@ class Sheet:
         points[on] = self.wall.at(self.wall_arcs(index[on]))
         return points
 
-    def on_wall(self, index: Floats) -> Floats:
+    def on_wall(self, index: Floats) -> NDArray[np.bool_]:
         """Return which (k,) of columns are on the wall."""
-        return (index >= self.edge) & (index <= len(self.arcs) - 1 - self.edge)
+        return np.asarray((index >= self.edge) & (index <= len(self.arcs) - 1 - self.edge))
 
     def wall_arcs(self, index: Floats) -> Floats:
         """Return the arc lengths (k,) of the wall at columns (k,) that are on it."""
@@ -124,7 +109,7 @@ class Sheet:
         arcs[exact] = self.arcs[index[exact].astype(np.intp)]
         return np.asarray(np.mod(arcs, self.wall.length))
 
-    def _cubics(self, index: Floats) -> tuple[Floats, Floats]:
+    def _cubics(self, index: Floats) -> tuple[Floats, Indices]:
         """Return weights (k, 4) and rows (k, 4) of columns that do not reach over the edge."""
         n, edge = len(self.levels), self.edge
         near = np.round(index)
@@ -145,66 +130,6 @@ class Sheet:
             weights[:, k] = np.where(k > width, 0.0, weight)
         rows = np.minimum(first[:, None] + np.arange(4), n - 1)
         return weights, rows
-
-
-def free_wake(domain: Domain, number: int, outer: Loop) -> Wake | None:
-    """Return the wake of a body with one sharp edge and no other corner, None where it is not free.
-
-    It leaves along the bisector of the edge and turns to the normal of `outer`, the loop it ends at.
-    """
-    loop = domain.loops[number]
-    if number == 0 or len(loop.corners) != 1 or loop.corner_angles[0] < SHARP_DEG:
-        return None
-    edge = loop.corner_arcs[:1]
-    begin = loop.at(edge)[0]
-    chord = float(np.hypot(*(loop.curve.points - begin).T).max())
-    sides = loop.tangent(np.array([edge[0] - 1e-4 * loop.length, edge[0] + 1e-4 * loop.length]))
-    leaving = float(np.angle(complex(*(sides[0] - sides[1]))))
-    found, turn = None, 0.0
-    for _ in range(4):
-        found = _reach(begin, leaving, turn, chord, outer)
-        if found is None:
-            return None
-        along = outer.tangent(np.array([found.arc]))[0]
-        turn = float(np.angle(complex(along[1], -along[0]) * np.exp(-1j * leaving)))
-        if abs(turn) > MOST_BENT:
-            return None
-    others = [each for k, each in enumerate(domain.loops) if k not in (0, number)]
-    if others and found is not None:
-        walls = wall_points(others)
-        apart = found.points[:, None] - walls[None]
-        if np.hypot(apart[..., 0], apart[..., 1]).min() < FREE * chord:
-            return None
-    return found
-
-
-def _reach(begin: Floats, leaving: float, turn: float, chord: float, outer: Loop) -> Wake | None:
-    """Return a wake that turns by `turn` on its way."""
-    reach = float(np.hypot(*(outer.curve.points - begin).T).max()) * 1.5
-    s = np.linspace(0.0, reach, max(400, round(reach / (_STEP * chord)) + 1))
-    middle = 0.5 * (s[1:] + s[:-1])
-    angle = leaving + turn * -np.expm1(-middle / (RELAXATION * chord))
-    step = np.diff(s) * np.exp(1j * angle)
-    z = complex(*begin) + np.concatenate([[0.0], np.cumsum(step)])
-    places = np.unique(np.append(np.linspace(0.0, outer.length, 1200, endpoint=False), outer.corner_arcs))
-    at = outer.at(places)
-    w = at[:, 0] + 1j * at[:, 1]
-    v = np.roll(w, -1) - w
-    area = (np.conj(v)[:, None] * step[None]).imag  # rows are of the loop
-    t = (np.conj(v)[:, None] * (w[:, None] - z[None, :-1])).imag / np.where(area == 0, np.inf, area)
-    u = (np.conj(step)[None] * (z[None, :-1] - w[:, None])).imag / np.where(area == 0, np.inf, -area)
-    hit = (t >= 0) & (t < 1) & (u >= 0) & (u < 1)
-    if not hit.any():
-        return None
-    k = int(np.argmax(hit.any(axis=0)))
-    j = int(np.argmax(hit[:, k]))
-    span = np.diff(places, append=outer.length + places[0])[j]
-    arc = float(places[j] + u[j, k] * span)
-    end = complex(*outer.at(np.array([arc]))[0])
-    line = np.append(z[: k + 1], end)
-    if k > 1 and abs(line[-1] - line[-2]) < 0.5 * abs(step[0]):
-        line = np.delete(line, -2)
-    return Wake(np.stack([line.real, line.imag], axis=1), arc, chord)
 
 
 def march_sheet(

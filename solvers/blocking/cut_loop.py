@@ -11,7 +11,9 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.loop import Loop
 from meshonet.solvers.blocking.c_sheets import Sheet
 
-_MARGIN = 0.3  # of the distance from wake to front: points of the loop nearer than this to a front are left out
+_MARGIN = (
+    0.3  # of the distance from wake to front: points of the loop nearer than this to a front are left out
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ class CutLoop:
             at = np.searchsorted(turns, begin, side="right") - 1
             straight += [False] * (n - 1) + [bool(lines[at % len(knots)])]
             straight += [bool(lines[i % len(knots)]) for i in inner]
-            arcs += [np.full(n - 1, np.nan), [begin], turns[inner]]
+            arcs += [np.full(n - 1, np.nan), np.array([begin]), turns[inner]]
             points += [sheet.front, outer.curve.points[inner % len(knots)]]
             for found, of in ((smooth, outer.curve.corner_index), (corners, outer.corners)):
                 found += (count + n + np.flatnonzero(np.isin(inner % len(knots), of))).tolist()

@@ -143,7 +143,7 @@ def layered(
     with timings.stage("layers"):
         rings = Rings.around(domain, loops, settings)
     if layout is None:
-        plain = replace(rings.rest, loops=tuple(_smooth(loop) for loop in rings.rest.loops))
+        plain = replace(rings.rest, loops=tuple(smoothed(loop) for loop in rings.rest.loops))
         layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
         layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
     for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
@@ -165,7 +165,7 @@ def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Tim
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = _counts(rings, chords, *size)
+        counts, times, metric = wanted_counts(rings, chords, *size)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
@@ -201,7 +201,9 @@ def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
     return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
 
 
-def _counts(rings: Rings, chords: Chords, cells: int, cell_size: float) -> tuple[Indices, int, SizeMetric]:
+def wanted_counts(
+    rings: Rings, chords: Chords, cells: int, cell_size: float
+) -> tuple[Indices, int, SizeMetric]:
     """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
     low, high = np.log(0.1), np.log(8.0)
     if not cells:
@@ -268,7 +270,7 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     return whole
 
 
-def _smooth(loop: Loop) -> Loop:
+def smoothed(loop: Loop) -> Loop:
     """Return a loop without the corners at which the field is not to turn: nodes are put there later."""
     corners = tuple(k for k, cells in zip(loop.corners, loop.corner_cells, strict=True) if cells != 2)
     return loop if corners == loop.corners else Loop(loop.curve, corners, loop.names[:1])

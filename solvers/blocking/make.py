@@ -6,7 +6,7 @@ from time import perf_counter
 
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
 from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
@@ -35,16 +35,17 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     layout = _given(shape, domain, request)
     cells, size = _wanted(domain, request)
     height = request.height(shape.unit)
+    about: tuple[str, ...] = ()
     if request.pitch is not None:
         fine = _passage(domain, request, height, timings)
     elif height is None:
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, timings=timings)
     else:
-        fine = _with_layers(domain, request, height, layout, timings)
+        fine, about = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
     note = request.note(shape.unit)
-    notes = (*domain.notes, *([note] if note else []))
+    notes = (*domain.notes, *([note] if note else []), *about)
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
 
 
@@ -72,8 +73,9 @@ def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout 
 
 def _with_layers(
     domain: Domain, request: BlockRequest, height: float, layout: Layout | None, timings: Timings
-) -> Layout:
-    """Return a fine layout with layers at the walls that were named, or around all holes."""
+) -> tuple[Layout, tuple[str, ...]]:
+    """Return a fine layout with layers at the walls that were named, or around all holes, and notes."""
+    from meshonet.solvers.blocking.c_layered import c_layered
     from meshonet.solvers.blocking.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layered import layered
 
@@ -92,7 +94,15 @@ def _with_layers(
     if request.cell_size is not None or request.res is not None:
         raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
     cells = request.cells or LAYERED_CELLS
-    return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings)
+    notes: tuple[str, ...] = ()
+    if layout is None:
+        try:
+            found = c_layered(domain, numbers, settings, cells=cells, timings=timings)
+            if found is not None:
+                return found
+        except (SolverError, NoValidGridError) as error:
+            notes = (f"rings of layers in place of C sheets: {error}",)
+    return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings), notes
 
 
 def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:

@@ -1,7 +1,8 @@
 """Cells that grow evenly from a wall through its layers and the ring of blocks around them.
 
 A front that has two blocks at each of its nodes has a ring of blocks around it, with as many cells across it
-everywhere, whatever the room. At others, layers are placed anew up to the front. Nodes are placed anew along the lines from the wall to the outer side of that
+everywhere, whatever the room. At others, layers are placed anew up to the front.
+Nodes are placed anew along the lines from the wall to the outer side of that
 ring: the first cell stays what it is, the last one becomes about as large as the one beyond.
 """
 
@@ -35,9 +36,7 @@ def respaced(layout: Layout, settings: LayerSettings) -> Layout:
         opening = np.hypot(*(lines[:, 1] - lines[:, 0]).T) / settings.first  # 1 at walls, more along wakes
         opening = np.where(opening > 1.0 + 1e-6, opening, 1.0)
 
-        def law(
-            length: Floats, last: Floats = last, cells: int = cells, scale: Floats = opening
-        ) -> Floats:
+        def law(length: Floats, last: Floats = last, cells: int = cells, scale: Floats = opening) -> Floats:
             arcs = layer_arcs(
                 length / scale, settings.first, last / scale, cells, settings.constant, settings.growth
             )
@@ -69,7 +68,7 @@ def _strips(layout: Layout) -> list[Indices]:
 
 
 def _without_ring(layout: Layout) -> set[int]:
-    """Return the numbers of blocks of layers on whose front, or farther along it, other than two blocks meet."""
+    """Return the numbers of blocks of layers on whose front, or farther along it, lie irregular nodes."""
     mesh = layout.mesh
     ends = {number: set(layout.blocks[number][[0, -1], -1].tolist()) for number in layout.layers}
     irregular = set(np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist())
