@@ -14,7 +14,7 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.errors import NoValidGridError
+from meshonet.geometry.errors import NoValidGridError, SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -35,6 +35,37 @@ from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.energy.quads import optimise
 
+SKEW_DEG = 35.0
+"""Deviation from a right angle, of one corner in a hundred, beyond which another way is tried and compared."""
+
+
+def bodies_with_layers(
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int, timings: Timings | None = None
+) -> tuple[Layout, tuple[str, ...]]:
+    """Return a fine layout with C sheets where they can be and are better than rings, and notes.
+
+    Raises InputError: no room for layers; BlockingError, NoValidGridError: rings failed too.
+    """
+    found = None
+    notes: tuple[str, ...] = ()
+    try:
+        found = c_layered(domain, loops, settings, cells=cells, timings=timings)
+        if found is not None and skewness(found[0].mesh) < SKEW_DEG:
+            return found
+    except (SolverError, NoValidGridError) as error:
+        notes = (f"rings of layers in place of C sheets: {error}",)
+    try:
+        rings = layered.layered(domain, loops, settings, cells=cells, timings=timings)
+    except (SolverError, NoValidGridError):
+        if found is None:
+            raise
+        return found
+    if found is not None and skewness(found[0].mesh) <= skewness(rings.mesh):
+        return found
+    return rings, notes or (
+        ("rings of layers, whose cells are less skew than those of C sheets",) if found else ()
+    )
+
 
 def c_layered(
     domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int, timings: Timings | None = None
@@ -52,14 +83,32 @@ def c_layered(
     plain = replace(sheets.rest, loops=tuple(layered.smoothed(loop) for loop in sheets.rest.loops))
     layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=layered.PRICE)
     layout = replace(layout, mesh=replace(layout.mesh, domain=sheets.rest))
+    best: Layout | None = None
+    problem = NoValidGridError("cells stay folded")
     for even in (True, False):
         try:
             fine = _outside(sheets, layout, cells, timings, even)
             with timings.stage("layers"):
-                return _whole(sheets, fine), sheets.notes
+                found = _whole(sheets, fine)
         except NoValidGridError as error:
             problem = error
-    raise problem
+            continue
+        if best is None or skewness(found.mesh) < skewness(best.mesh):
+            best = found
+        if skewness(best.mesh) < SKEW_DEG:
+            break
+    if best is None:
+        raise problem
+    return best, sheets.notes
+
+
+def skewness(mesh: QuadMesh) -> float:
+    """Return the deviation from a right angle, in degrees, that 99 of 100 corners do not exceed."""
+    z = mesh.nodes[mesh.quads]
+    edge = np.roll(z, -1, axis=1) - z
+    before = np.roll(edge, 1, axis=1)
+    cosine = (before * edge).sum(axis=2) / np.sqrt((before**2).sum(axis=2) * (edge**2).sum(axis=2))
+    return float(np.degrees(np.arcsin(np.percentile(np.abs(cosine), 99))))
 
 
 def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even: bool) -> Layout:
@@ -87,7 +136,8 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
                     mesh = evened_loops(replace(coarse, mesh=mesh), fronts, times * layered.EVEN).mesh
                     held |= np.isin(mesh.places.loop, list(fronts))
     with timings.stage("refine"):
-        return multiplied(Layout(mesh, coarse.blocks), times)
+        fine = multiplied(Layout(mesh, coarse.blocks), times)
+        return layered.unfolded(fine, fine.mesh.wall_nodes)
 
 
 def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
@@ -163,8 +213,15 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     layout = evened_rows(
         _conforming(layout), layered.MARGIN * float(np.log(sheets.settings.growth)), sheets.settings.constant
     )
-    if layered.smallest_corner(layout.mesh) <= 0.0:
-        raise NoValidGridError("layers or cells beside them are folded")
+    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
+    for number in layout.layers:
+        block = layout.blocks[number]
+        held[block[:, : 2 * block.shape[1] // 3]] = True
+    layout = layered.unfolded(layout, held)
+    corners = layered.corner_jacobians(layout.mesh)
+    if corners.min() <= 0.0:
+        x, y = layout.mesh.nodes[layout.mesh.quads[int(corners.argmin())]].mean(axis=0)
+        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
     return layout
 
 

@@ -182,12 +182,12 @@ def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Tim
                 on = np.isin(mesh.places.loop, list(rings.measures))
     with timings.stage("refine"):
         fine = multiplied(Layout(mesh, coarse.blocks), times)
-        fine = _unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
+        fine = unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
         moved = evened_loops(fine, rings.measures, EVEN) if even else fine
         return moved if smallest_corner(moved.mesh) > 0.0 else fine
 
 
-def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
+def unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
     """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
     mesh = layout.mesh
     bad = corner_jacobians(mesh) <= 0.0
@@ -262,7 +262,7 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     for number in whole.layers:
         block = whole.blocks[number]
         held[block[:, : 2 * block.shape[1] // 3]] = True
-    whole = _unfolded(whole, held)
+    whole = unfolded(whole, held)
     corners = corner_jacobians(whole.mesh)
     if corners.min() <= 0.0:
         x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)

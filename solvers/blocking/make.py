@@ -6,7 +6,7 @@ from time import perf_counter
 
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.errors import InputError, NoValidGridError, SolverError
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
@@ -75,7 +75,7 @@ def _with_layers(
     domain: Domain, request: BlockRequest, height: float, layout: Layout | None, timings: Timings
 ) -> tuple[Layout, tuple[str, ...]]:
     """Return a fine layout with layers at the walls that were named, or around all holes, and notes."""
-    from meshonet.solvers.blocking.c_layered import c_layered
+    from meshonet.solvers.blocking.c_layered import bodies_with_layers
     from meshonet.solvers.blocking.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layered import layered
 
@@ -94,15 +94,9 @@ def _with_layers(
     if request.cell_size is not None or request.res is not None:
         raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
     cells = request.cells or LAYERED_CELLS
-    notes: tuple[str, ...] = ()
-    if layout is None:
-        try:
-            found = c_layered(domain, numbers, settings, cells=cells, timings=timings)
-            if found is not None:
-                return found
-        except (SolverError, NoValidGridError) as error:
-            notes = (f"rings of layers in place of C sheets: {error}",)
-    return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings), notes
+    if layout is not None:
+        return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings), ()
+    return bodies_with_layers(domain, numbers, settings, cells=cells, timings=timings)
 
 
 def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:
