@@ -1,4 +1,4 @@
-"""What is right and how good a mesh of quads is, by means of its own: nodes, quads and the domain's polygons."""
+"""What is right and how good a mesh of quads is, by means of its own, from nodes, quads and polygons."""
 
 from __future__ import annotations
 
@@ -54,7 +54,12 @@ def judged(nodes: Floats, quads: Numbers, loops: list[Floats], *, strict: bool =
 
 
 def faults(
-    nodes: Floats, quads: Numbers, edges: Numbers, counts: Numbers, wall: NDArray[np.bool_], loops: list[Floats]
+    nodes: Floats,
+    quads: Numbers,
+    edges: Numbers,
+    counts: Numbers,
+    wall: NDArray[np.bool_],
+    loops: list[Floats],
 ) -> list[str]:
     """Return what is wrong with a mesh beside folds."""
     extent = float(np.ptp(loops[0], axis=0).max())
@@ -66,7 +71,7 @@ def faults(
     if away > ON_OUTLINE:
         wrong.append(f"wall nodes {away:.1e} off the outline")
     area = abs(shoelace(loops[0])) - sum(abs(shoelace(loop)) for loop in loops[1:])
-    x, y = nodes[quads].transpose(2, 0, 1)
+    x, y = (nodes - loops[0][0])[quads].transpose(2, 0, 1)
     covered = 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum())
     if abs(covered - area) > AREA * area:
         wrong.append(f"area wrong by {covered / area - 1.0:.1e}")
@@ -107,5 +112,5 @@ def min_distance(points: Floats, loops: list[Floats]) -> Floats:
 
 def shoelace(loop: Floats) -> float:
     """Return the signed area of a polygon (n, 2)."""
-    (x, y), (u, v) = loop.T, np.roll(loop, -1, axis=0).T
+    (x, y), (u, v) = (loop - loop[0]).T, np.roll(loop - loop[0], -1, axis=0).T
     return 0.5 * float((x * v - u * y).sum())

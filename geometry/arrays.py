@@ -30,6 +30,12 @@ def distinct(values: AnyArray) -> AnyArray:
     return ordered[np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)]]
 
 
+def middle(values: Floats) -> float:
+    """Return the median of a one-dimensional array without NaN. np.median loads numpy.ma: 25 ms."""
+    ordered, half = np.sort(values), len(values) // 2
+    return float(ordered[half] if len(values) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
+
+
 def read_only(values: AnyArray) -> AnyArray:
     """Return `values`, from now on protected against writing."""
     values.flags.writeable = False

@@ -147,10 +147,16 @@ class Grid(Connected):
 
     def outer_patches(self) -> list[Patch]:
         """Return the outer boundary of planar blocks, each of its edges in one patch (`outer_patches`)."""
+        named: list[list[Patch]] = [[] for _ in self.blocks]
+        inside: list[list[tuple[Side, int, int]]] = [[] for _ in self.blocks]
+        for patch in self.patches:
+            named[patch.block].append(patch)
+        for each in self.connections:
+            for number in {each.block, each.donor}:
+                inside[number] += each.stretches(number)
         outer: list[Patch] = []
         for number, block in enumerate(self.blocks):
-            connected = [stretch for each in self.connections for stretch in each.stretches(number)]
-            outer += outer_patches(self.patches, block.counts, connected, number)
+            outer += outer_patches(named[number], block.counts, inside[number], number)
         return outer
 
     def walls(self) -> list[Patch]:

@@ -60,11 +60,13 @@ def vertices(grid: Grid) -> Vertices:
     """Return the nodes of a grid of planar blocks."""
     numbers = shared_nodes([block.counts for block in grid.blocks], grid.connections, periodic=True)
     count = 1 + max(int(number.max()) for number in numbers)
-    valence, outer = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=bool)
-    for number in numbers:
-        corners = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
-        for corner in corners:
-            valence += np.bincount(corner.ravel(), minlength=count)
+    corners = [
+        corner.ravel()
+        for number in numbers
+        for corner in (number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:])
+    ]
+    valence = np.bincount(np.concatenate(corners), minlength=count)
+    outer = np.zeros(count, dtype=bool)
     for patch in grid.outer_patches():
         outer[face_of(numbers[patch.block], patch.side)[patch.start : patch.stop + 1]] = True
     return Vertices(numbers, valence, outer)

@@ -20,7 +20,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.boundary import Boundary
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.domain.loop import CORNER_DEG, Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.shapes.shape import Shape
@@ -104,8 +104,9 @@ def extent_of(loops: tuple[Loop, ...]) -> float:
 
 def four_sided(domain: Domain) -> bool:
     """Say whether a domain without holes has four convex corners, and no corner that points inwards."""
-    cells = domain.loops[0].corner_cells
-    return len(domain.loops) == 1 and int((cells == 1).sum()) == 4 and not (cells > 2).any()
+    outer = domain.loops[0]
+    convex = int((outer.corner_angles < 180.0 - CORNER_DEG).sum())
+    return len(domain.loops) == 1 and convex == 4 and not (outer.corner_cells > 2).any()
 
 
 def in_far_field(domain: Domain) -> bool:

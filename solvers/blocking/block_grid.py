@@ -16,6 +16,7 @@ from meshonet.geometry.quality.measure import count_folded
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.collapse import irregular_inside
 from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.errors import most_folded
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.energy.quads import optimise
 
@@ -113,7 +114,8 @@ def _optimised(chords: Chords, counts: Indices, timings: Timings) -> Layout:
     with timings.stage("optimum"):
         optimum = optimise(fine.mesh, iterations=ITERATIONS)
     if not optimum.valid:
-        raise NoValidGridError("cells of the blocks stay folded after optimisation")
+        where = most_folded(optimum.mesh)
+        raise NoValidGridError(f"cells of the blocks stay folded after optimisation, most {where}")
     return Layout(optimum.mesh, fine.blocks)
 
 

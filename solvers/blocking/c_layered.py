@@ -36,7 +36,7 @@ from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.energy.quads import optimise
 
 SKEW_DEG = 35.0
-"""Deviation from a right angle, of one corner in a hundred, beyond which another way is tried and compared."""
+"""Deviation from a right angle, of one corner in a hundred, beyond which other ways are tried too."""
 
 
 def bodies_with_layers(

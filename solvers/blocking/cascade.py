@@ -11,10 +11,10 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.domain.gap import wall_gaps
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.assembly import far_loop
-from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, ring_metric
 from meshonet.solvers.blocking.passage import Passage
 from meshonet.solvers.blocking.passage_map import complex_of, pairs_of
@@ -23,6 +23,11 @@ from meshonet.solvers.blocking.size_metric import SizeMetric
 
 THICKNESS, COLUMNS = 0.018, 140
 """Thickness of the layers and cells around the blade, by its length around, where there is room."""
+PLAIN_ROWS, PLAIN_GROWTH = 6.0, 1.1
+"""Rows in that thickness, and how they grow, where no height of first cells is asked for."""
+GAP_PART = 0.25
+"""Part of the narrowest gap between blades that layers fill at the most: the channel is not to be a slit."""
+_SAMPLES = 400
 ACROSS = 12.0
 """Cells in a pitch at the least, where nothing is near, before counts are made up to what was asked for."""
 SHORTEST = 0.08
@@ -38,7 +43,7 @@ class Cascade:
     blade : the passage on its left.
     pitch : vector from a blade to the next.
     inlet, outlet : lengths of the passage before and behind the blade, in axial chords.
-    settings : of the layers at the blade, if there are any.
+    settings : of the layers at the blade; by default a few rows of cells of equal size.
     name : of the blade.
     """
 
@@ -97,18 +102,28 @@ class Cascade:
         return Domain((self.blade, *beside), self.name)
 
     @cached_property
-    def ring(self) -> Ring | None:
+    def thickness(self) -> float:
+        """Thickness of the layers where there is room."""
+        arcs = np.linspace(0.0, self.blade.length, _SAMPLES, endpoint=False)
+        gap = float(wall_gaps(self.blades, self.blade, arcs).min())
+        return min(THICKNESS * self.blade.length, GAP_PART * gap)
+
+    @cached_property
+    def layers(self) -> LayerSettings:
+        """What the layers around the blade are like."""
+        return self.settings or LayerSettings(self.thickness / PLAIN_ROWS, PLAIN_GROWTH)
+
+    @cached_property
+    def ring(self) -> Ring:
         """The layers around the blade."""
-        if self.settings is None:
-            return None
-        length = self.blade.length
-        return march_ring(self.blades, self.blade, self.settings.first, THICKNESS * length, length / COLUMNS)
+        largest = self.blade.length / COLUMNS
+        return march_ring(self.blades, self.blade, self.layers.first, self.thickness, largest)
 
     @cached_property
     def ends(self) -> tuple[float, float]:
         """Lengths from the front to inlet and outlet."""
         chord, axial = self.chord, self._axial(self.blade)
-        around = axial if self.ring is None else self._axial(self.ring.front)
+        around = self._axial(self.ring.front)
         before = self.inlet * chord - float(axial.min() - around.min())
         behind = self.outlet * chord - float(around.max() - axial.max())
         for length, name, given in ((before, "inlet", self.inlet), (behind, "outlet", self.outlet)):
@@ -122,24 +137,18 @@ class Cascade:
     @cached_property
     def passage(self) -> Passage:
         """The passage around the blade or its layers."""
-        front = self.blade if self.ring is None else self.ring.front
-        return Passage.around(front, self.left, *self.ends, self.name)
+        return Passage.around(self.ring.front, self.left, *self.ends, self.name)
 
     @cached_property
     def rows_of_layers(self) -> int:
         """Rows of cells in the layers."""
-        if self.ring is None or self.settings is None:
-            return 0
         thickness = np.hypot(*np.diff(self.ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
-        return self.settings.rows(float(thickness.max()))
+        return self.layers.rows(float(thickness.max()))
 
     @cached_property
     def metric(self) -> SizeMetric:
         """Sizes of cells outside the layers, in the plane of the passage's map."""
-        if self.ring is None or self.settings is None:
-            sizes = feature_sizes(self.blades)
-        else:
-            sizes = ring_metric(self.ring, self.settings)
+        sizes = ring_metric(self.ring, self.layers)
         to = self.passage.map
         points = to.forward(sizes.points)
         turn = to.derivative(points)
@@ -150,8 +159,7 @@ class Cascade:
     def scaled(self, scale: float) -> SizeMetric:
         """Return sizes of cells `scale` times as long along the blade."""
         metric = self.metric
-        across = metric.across if self.ring is not None else scale * metric.across
-        return replace(metric, across=across, along=scale * metric.along, largest=metric.largest * scale**0.5)
+        return replace(metric, along=scale * metric.along, largest=metric.largest * scale**0.5)
 
 
 def _moved(blade: Loop, curve: Curve, shift: Floats) -> Loop:

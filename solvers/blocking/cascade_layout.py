@@ -23,7 +23,7 @@ from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.layer_rows import heights_inside, ring_rows
 from meshonet.solvers.blocking.layered import smallest_corner
-from meshonet.solvers.blocking.passage import BLADE, INLET, OUTLET, extended, laid_out, turned_round
+from meshonet.solvers.blocking.passage import BLADE, INLET, OUTLET, Passage, extended, laid_out, turned_round
 from meshonet.solvers.blocking.passage_template import cut_of, template
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
@@ -32,6 +32,10 @@ from meshonet.solvers.energy.quads import optimise
 
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
+CORNERS = ("at first", "later", "nowhere")
+"""When nodes are put at the corners of the blade, in the order of attempts."""
+LEAST = 4
+"""Cells along the side of a block that is optimised."""
 FIRST, ITERATIONS, PASSES = 150, 120, 2
 ROW_GROWTH = 1.1
 """Ratio of neighbouring cells on the way to inlet and outlet."""
@@ -51,9 +55,36 @@ def cascade_layout(
     timings = timings or Timings()
     with timings.stage("layers"):
         passage = cascade.passage
+    for attempt in CORNERS:
+        try:
+            coarse, times, metric = _outside(cascade, passage, attempt, cells, cell_size, timings)
+            break
+        except NoValidGridError:
+            if attempt == CORNERS[-1]:
+                raise
+    with timings.stage("refine"):
+        fine = multiplied(coarse, times)
+        flat = laid_out(fine, passage, cut_of(fine))
+    with timings.stage("layers"):
+        rows = _rows(cascade, flat.layout, metric)
+        whole = extended(flat, passage, cascade.blade, rows)
+        whole = respaced(whole, cascade.layers)
+    if smallest_corner(whole.mesh) <= 0.0:
+        raise NoValidGridError("cells of the passage are folded")
+    return turned_round(whole) if cascade.opposite else whole
+
+
+def _outside(
+    cascade: Cascade, passage: Passage, corners: str, cells: int | None, cell_size: float | None,
+    timings: Timings,
+) -> tuple[Layout, int, SizeMetric]:  # fmt: skip
+    """Return the coarse layout outside the layers, how much finer it is to be, and sizes of cells."""
+    if corners == "nowhere":
+        blade, *ends = passage.domain.loops
+        smooth = replace(blade, corners=(), names=blade.names[:1])
+        passage = replace(passage, domain=replace(passage.domain, loops=(smooth, *ends)))
     with timings.stage("first optimum"):
-        coarse = template(passage)
-        coarse = _optimised(coarse, FIRST, None)
+        coarse = _optimised(template(passage, at_corners=corners == "at first"), FIRST, None)
     with timings.stage("refine"):
         chords = Chords.of(coarse)
         counts, times, metric = _counts(cascade, chords, cells, cell_size)
@@ -61,17 +92,7 @@ def cascade_layout(
     with timings.stage("optimum"):
         for _ in range(PASSES):
             coarse = _optimised(coarse, ITERATIONS, metric)
-    with timings.stage("refine"):
-        fine = multiplied(coarse, times)
-        flat = laid_out(fine, passage, cut_of(fine))
-    with timings.stage("layers"):
-        rows = _rows(cascade, flat.layout, metric)
-        whole = extended(flat, passage, cascade.blade, rows)
-        if cascade.settings is not None:
-            whole = respaced(whole, cascade.settings)
-    if smallest_corner(whole.mesh) <= 0.0:
-        raise NoValidGridError("cells of the passage are folded")
-    return turned_round(whole) if cascade.opposite else whole
+    return coarse, times, metric
 
 
 def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> Layout:
@@ -84,10 +105,9 @@ def _optimised(layout: Layout, iterations: int, metric: SizeMetric | None) -> La
 
 def _rows(cascade: Cascade, layout: Layout, metric: SizeMetric) -> list[Rows]:
     """Return the layers, and the straight rows to inlet and outlet."""
-    mesh, passage, rows = layout.mesh, cascade.passage, []
-    if cascade.ring is not None and cascade.settings is not None:
-        inner = heights_inside(layout, BLADE)
-        rows.append(ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.settings, inner))
+    mesh, passage = layout.mesh, cascade.passage
+    inner = heights_inside(layout, BLADE)
+    rows = [ring_rows(mesh, BLADE, cascade.ring, cascade.rows_of_layers, cascade.layers, inner)]
     axis = np.array([passage.map.axis.real, passage.map.axis.imag])
     for number, length, way in _straight(cascade):
         if length > 0.0:
@@ -140,7 +160,8 @@ def _counts(
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
         times += 1
-    return np.maximum(chords.least, np.round(counts / times).astype(np.intp)), times, metric
+    least = np.maximum(chords.least, LEAST)
+    return np.maximum(least, np.round(counts / times).astype(np.intp)), times, metric
 
 
 def _attached_cells(cascade: Cascade, chords: Chords, counts: Indices, metric: SizeMetric) -> int:

@@ -10,6 +10,8 @@ Daniels, Silva, Shepherd, Cohen, "Quadrilateral mesh simplification", ACM Trans.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -27,6 +29,22 @@ FAILURES = 8
 ITERATIONS = (6, 12, 22)
 """Iterations of the functional before a trial is judged, and further ones before it is judged again."""
 
+MOST_WORK = 45_000_000
+"""Quads times iterations, from where on the mesh stays as it is: some seconds."""
+PER_TRIAL, PER_OPTIMUM = 3, 20
+"""What a trial costs before it is optimised, and an optimum beside its iterations, in iterations."""
+
+
+@dataclass
+class _Work:
+    """Quads times iterations that are left to spend."""
+
+    left: float = MOST_WORK
+
+    def spend(self, mesh: QuadMesh, iterations: int) -> None:
+        """Take off what so many iterations of a mesh cost."""
+        self.left -= len(mesh.quads) * iterations
+
 
 def simplify(
     mesh: QuadMesh,
@@ -40,25 +58,30 @@ def simplify(
     `price` is what a block costs, in degrees of mean deviation from 90; `sizes`, if any, are wanted of edges.
     """
     current = base_complex(mesh)
-    best = score(current, price, sizes.edges(mesh) if sizes else None)
+    best, work = score(current, price, sizes.edges(mesh) if sizes else None), _Work()
     while True:
-        better = _first_gain(current, best, price, iterations, sizes)
+        better = _first_gain(current, best, price, iterations, sizes, work)
         if better is None:
             return current
         current, best = better
 
 
 def _first_gain(
-    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...], sizes: SizeMetric | None
-) -> tuple[BaseComplex, float] | None:
-    """Return the first collapse, and its score, that lowers `best`; None after `FAILURES`."""
+    current: BaseComplex, best: float, price: float, iterations: tuple[int, ...], sizes: SizeMetric | None,
+    work: _Work,
+) -> tuple[BaseComplex, float] | None:  # fmt: skip
+    """Return the first collapse, and its score, that lowers `best`; None after `FAILURES` or `work`."""
     failures = 0
     for chord in np.argsort(widths(current), kind="stable").tolist():
+        if work.left < 0.0:
+            return None
+        work.spend(current.mesh, PER_TRIAL)
         trial = _collapsed(current, chord)
         if trial is None:
             continue
         mesh = trial.mesh
         for more in iterations:
+            work.spend(mesh, PER_OPTIMUM + more)
             optimum = optimise(mesh, iterations=more, targets=sizes.edges(mesh) if sizes else None)
             if not optimum.valid:
                 break

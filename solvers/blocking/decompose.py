@@ -15,13 +15,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from meshonet.geometry.domain.check import describe
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import SolverError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.solvers.blocking.base_complex import base_complex
 from meshonet.solvers.blocking.collapse import simplify
-from meshonet.solvers.blocking.errors import BlockingError
+from meshonet.solvers.blocking.errors import BlockingError, most_folded
 from meshonet.solvers.blocking.padding import loops_to_pad, pad
 from meshonet.solvers.blocking.quad_mesh import quad_mesh
 from meshonet.solvers.blocking.score import PRICE
@@ -33,6 +34,8 @@ ATTEMPTS = 5
 HELD_ITERATIONS, FIRST_ITERATIONS, BEFORE_PADDING = 10, 60, 25
 CELLS = 900
 """Cells of the quad mesh that blocks are found in and judged on."""
+MOST = 9_000
+"""Blocks, before any collapse, beyond which there is no answer in good time: of too many corners, say."""
 COUNT = 1500
 """About how many points the triangulation has."""
 
@@ -77,7 +80,7 @@ def decompose(
     timings : filled with what the stages took.
     sizes : of the edges of the quad mesh, in place of `cells`; by default they are all alike.
 
-    Raises BlockingError: no attempt came to a valid layout.
+    Raises BlockingError: no attempt came to a valid layout, or the domain has too many corners.
     """
     timings = timings or Timings()
     problem: SolverError | None = None
@@ -86,10 +89,26 @@ def decompose(
         finer = int(count * (1.0 + 0.3 * attempt)), int(cells * (1.0 + 0.5 * attempt))
         try:
             mesh = _quad_mesh(domain, *finer, attempt, timings, sizes)
+            if len(mesh.quads) > MOST and len(base_complex(mesh).blocks) > MOST:
+                break
             return _blocks(mesh, price, timings, sizes)
         except SolverError as error:
             problem = error
-    raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
+    else:
+        raise BlockingError(f"no blocks found in {attempts} attempts: {problem}") from problem
+    raise BlockingError(_too_many(domain))
+
+
+def _too_many(domain: Domain) -> str:
+    """Return what is wrong with a domain that takes too many blocks: most likely its corners."""
+    number = int(np.argmax([len(loop.corners) for loop in domain.loops]))
+    loop = domain.loops[number]
+    at = loop.curve.points[loop.corners[0] if loop.corners else 0]
+    return (
+        f"the domain takes more than {MOST} blocks: "
+        f"{describe(domain, number)} has {len(loop.corners)} corners, the first at "
+        f"({at[0]:.6g}, {at[1]:.6g}); smooth it, or name its corners"
+    )
 
 
 def _blocks(mesh: QuadMesh, price: float, timings: Timings, sizes: SizeMetric | None) -> Layout:
@@ -113,7 +132,7 @@ def _optimised(mesh: QuadMesh, iterations: int, sizes: SizeMetric | None) -> Qua
     held = optimise(mesh, iterations=HELD_ITERATIONS, held=wall, targets=targets)
     optimum = optimise(held.mesh if held.valid else mesh, iterations=iterations, targets=targets)
     if not optimum.valid or not np.isfinite(optimum.value):
-        raise BlockingError("the quad mesh stays folded")
+        raise BlockingError(f"the quad mesh stays folded {most_folded(optimum.mesh)}")
     return optimum.mesh
 
 

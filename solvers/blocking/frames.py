@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, middle
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.kernels._native import surface_comb, surface_prune
 from meshonet.solvers.blocking.cross_field import CrossField
@@ -94,5 +94,5 @@ def frame_sizes(field: CrossField) -> Floats:
     free[np.argmax(free)] = False
     size = np.zeros(surface.size)
     size[free] = Laplacian(surface, free).factor().solve(right[free])
-    size = np.clip(size - np.median(size[surface.used]), -_LARGEST, _LARGEST)
+    size = np.clip(size - middle(size[surface.used]), -_LARGEST, _LARGEST)
     return np.asarray(np.exp(size[surface.vertices].mean(axis=1)))

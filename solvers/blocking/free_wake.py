@@ -19,7 +19,7 @@ RELAXATION = 0.5
 """Chords over which the wake does so."""
 FREE = 0.15
 """Chords that the wake must stay away from other bodies."""
-_STEP = 1.0 / 150.0
+_NEAR = 5.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +65,13 @@ def free_wake(domain: Domain, number: int, outer: Loop) -> Wake | None:
 def _reach(begin: Floats, leaving: float, turn: float, chord: float, outer: Loop) -> Wake | None:
     """Return a wake that turns by `turn` on its way."""
     reach = float(np.hypot(*(outer.curve.points - begin).T).max()) * 1.5
-    s = np.linspace(0.0, reach, max(400, round(reach / (_STEP * chord)) + 1))
+    near = min(_NEAR * chord, reach)  # it is straight beyond
+    s = np.unique(np.append(np.linspace(0.0, near, 240), np.linspace(near, 1.01 * reach, 80)))
     middle = 0.5 * (s[1:] + s[:-1])
     angle = leaving + turn * -np.expm1(-middle / (RELAXATION * chord))
     step = np.diff(s) * np.exp(1j * angle)
     z = complex(*begin) + np.concatenate([[0.0], np.cumsum(step)])
-    places = np.unique(np.append(np.linspace(0.0, outer.length, 1200, endpoint=False), outer.corner_arcs))
+    places = np.unique(np.append(np.linspace(0.0, outer.length, 600, endpoint=False), outer.corner_arcs))
     at = outer.at(places)
     w = at[:, 0] + 1j * at[:, 1]
     v = np.roll(w, -1) - w

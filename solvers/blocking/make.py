@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from time import perf_counter
+
+import numpy as np
 
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
@@ -13,13 +16,15 @@ from meshonet.geometry.layout.to_grid import to_grid
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import fine_layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
-from meshonet.solvers.blocking.request import CELLS, BlockRequest
+from meshonet.solvers.blocking.request import CELLS, MOST_CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
 from meshonet.solvers.solution import Solution
 
 METHOD = "blocks"
 GROWTH = 1.2
 """Ratio of neighbouring layers where nobody asked for one."""
+CUT_OFF = 1e-3
+"""Part of the area that cells along walls may cut off before it is said."""
 LAYERED_CELLS = 20_000
 """Cells where nobody asked for a count and there are layers."""
 
@@ -44,9 +49,21 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     else:
         fine, about = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
-    note = request.note(shape.unit)
-    notes = (*domain.notes, *([note] if note else []), *about)
+    said = (request.note(shape.unit), *about, _cut_off(fine))
+    notes = (*domain.notes, *(note for note in said if note))
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
+
+
+def _cut_off(fine: Layout) -> str:
+    """Return a note where cells along walls cut off, or add, more than `CUT_OFF` of the area."""
+    (x, y), area = fine.mesh.nodes[fine.mesh.quads].transpose(2, 0, 1), fine.mesh.domain.area
+    covered = 0.5 * float((x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum())
+    off = abs(covered / area - 1.0)
+    if off <= CUT_OFF:
+        return ""
+    return (
+        f"cells along curved walls differ from the domain by {100 * off:.2g} % of its area: more cells help"
+    )
 
 
 def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
@@ -136,6 +153,10 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
     if request.res is not None:
         return None, domain.extent / request.res
     if request.cell_size is not None:
+        least = math.sqrt(domain.area / MOST_CELLS)
+        if request.cell_size < least:
+            problem = f"edges of {request.cell_size:g} are more than {MOST_CELLS} cells"
+            raise InputError(problem, f"use {least:.2g} or more", parameter="cell_size")
         return None, request.cell_size
     return request.cells or CELLS, None
 

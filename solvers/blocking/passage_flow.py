@@ -4,9 +4,9 @@ With ζ = π z / (p n), n along the axis and p the pitch, the complex potential 
 
     G = ζ + ∫ γ(s) log sinh(ζ - s) ds,   Im G = const along the blade,   ∫ γ ds = 0.
 
-The blade becomes a slit of length l that repeats every iπ. The slit's outside is the disc |u| < 1 by
+The blade becomes a slit from -h to h that repeats every iπ. The slits' outside is the strip |Im σ| < π / 2,
 
-    u + 1/u = (c + 1/c) tanh G,   c = tanh(l / 4);   -c and c are the ends of the passage.
+    σ = log(sinh(G + h) / sinh(G - h)) / 2,   inlet and outlet at -h and h.
 
 The vortex sheet γ is found with panels. Martensen, Arch. Rat. Mech. Anal. 3 (1959) 235-270.
 """
@@ -14,6 +14,7 @@ The vortex sheet γ is found with panels. Martensen, Arch. Rat. Mech. Anal. 3 (1
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,80 +28,72 @@ _LEAST = 1e-9  # of the slit: by how much the potential rises from point to poin
 
 @dataclass(frozen=True, eq=False)
 class PassageFlow:
-    """A blade as a slit, and as the unit circle.
+    """A blade as a slit, and as the edges of a strip.
 
     Parameters
     ----------
-    half : half the length of the slit.
-    circle : (n,) places on the unit circle of the blade's points, counter-clockwise.
+    half : half the length of the slit, h.
+    around : (n,) angles ν of the blade's points, whose places on the slit are h cos ν: they grow by 2π.
+    strip : (n,) places σ of the points; those at the slit's ends are infinite.
+    away : (n,) ζ - G at the points.
     """
 
     half: float
-    circle: Complexes
+    around: Floats
+    strip: Complexes
+    away: Complexes
 
     @classmethod
-    def around(cls, points: Complexes) -> PassageFlow:
+    def of(cls, points: Complexes) -> PassageFlow:
         """Return the flow around a clockwise polygon (n,) in the plane of ζ, which repeats every iπ."""
         sheet = _sheet(points)
-        step = np.roll(points, -1) - points
-        gain = 2.0 * np.pi * sheet * np.abs(step)
+        gain = 2.0 * np.pi * sheet * np.abs(np.roll(points, -1) - points)
         potential = np.concatenate([[0.0], np.cumsum(gain)[:-1]])
         first, last = int(np.argmin(potential)), int(np.argmax(potential))
-        half = 0.5 * (potential[last] - potential[first])
-        c = np.tanh(0.5 * half)
-        phi = potential - 0.5 * (potential[last] + potential[first])
+        half = 0.5 * float(potential[last] - potential[first])
+        phi = potential - potential[first] - half
         angle = np.empty(len(points))
-        for start, stop, turn, sign in ((first, last, 0.0, -1.0), (last, first, 0.0, 1.0)):
+        for start, stop, way in ((first, last, 1.0), (last, first, -1.0)):  # the sides above and below
             side = _range(start, stop, len(points))
-            rising = np.maximum.accumulate(phi[side] * -sign)
-            rising = rising + _LEAST * half * np.arange(len(side))
+            rising = np.maximum.accumulate(way * phi[side]) + _LEAST * half * np.arange(len(side))
             rising = np.interp(rising, rising[[0, -1]], [-half, half])
-            cosine = (0.5 * (c + 1.0 / c)) * np.tanh(-sign * rising)
-            angle[side] = turn + sign * np.arccos(np.clip(cosine, -1.0, 1.0))
-        return cls(float(half), np.exp(1j * angle))
+            phi[side] = way * rising
+            angle[side] = way * np.arccos(np.clip(way * rising / half, -1.0, 1.0))
+        with np.errstate(divide="ignore"):
+            along = 0.5 * np.log(np.sinh(half + phi) / np.sinh(half - phi))
+        angle[[first, last]] = np.pi, 0.0
+        edge = np.where(angle > 0.0, -0.5j, 0.5j) * np.pi
+        return cls(half, np.unwrap(angle), along + edge, points - phi)
 
-    @property
-    def end(self) -> float:
-        """Place c in the disc of the passage's end far behind the blades; -c is that before them."""
-        return float(np.tanh(0.5 * self.half))
+    def to_strip(self, places: Complexes) -> Complexes:
+        """Return the places σ of places G, those between the slits."""
+        ratio = np.sinh(places + self.half) / np.sinh(places - self.half)
+        return np.asarray(0.5 * np.log(ratio))
 
-    def distance(self, values: Complexes, radius: float, behind: bool) -> float:
-        """Return |Re G| of a circle around an end of the passage.
+    def to_places(self, places: Complexes) -> Complexes:
+        """Return the places ζ (...) of places G, those between the slits."""
+        away = self.inside(self.to_strip(places.ravel()))
+        return np.asarray(places + away.reshape(places.shape))
 
-        `radius` is that in the plane of the function whose `values` (n,) at the blade's points are given.
+    @cached_property
+    def far(self) -> tuple[float, float]:
+        """Re (ζ - G) far before and far behind the blades."""
+        before, behind = self.inside(self.half * np.array([-1.0, 1.0], dtype=np.complex128))
+        return float(before.real), float(behind.real)
+
+    def inside(self, places: Complexes) -> Complexes:
+        """Return ζ - G at places σ (m,), a function without singularities, from what it is on the blade.
+
+        Cauchy's integral in the disc of tanh σ/2 by the trapezoidal rule, over that of 1 (Helsing, Ojala,
+        J. Comput. Phys. 227 (2008) 2899-2921).
         """
-        c, small = self.end, 1e-3 * (1.0 - self.end)
-        at = (c if behind else -c) + small * np.array([-1.0, 1.0])
-        low, high = self.inside(values, at.astype(complex))
-        inner = radius * 2.0 * small / abs(high - low)
-        return float(-0.5 * np.log(inner * (1.0 / c**2 - 1.0) / (2.0 * (c + 1.0 / c))))
-
-    def disc(self, places: Complexes) -> Complexes:
-        """Return the places u of places G, those between the slits."""
-        c = self.end
-        m = 0.5 * (c + 1.0 / c) * np.tanh(places)
-        root = np.sqrt(m - 1.0) * np.sqrt(m + 1.0)
-        one = m - root
-        with np.errstate(divide="ignore", invalid="ignore"):
-            other = 1.0 / one
-        return np.asarray(np.where(np.abs(one) <= 1.0, one, other))
-
-    def inside(self, values: Complexes, places: Complexes) -> Complexes:
-        """Return at places u (m,) the analytic function whose `values` (n,) at the blade's points are given.
-
-        Cauchy's integral by the trapezoidal rule, over that of 1 (Helsing, Ojala, J. Comput. Phys. 227 (2008)
-        2899-2921).
-        """
-        weight = np.roll(self.circle, -1) - np.roll(self.circle, 1)
-        away = self.circle - places[:, None]
-        near = np.argmin(np.abs(away), axis=1)
-        rows = np.arange(len(places))
-        exact = np.abs(away[rows, near]) < 1e-14
-        away[rows[exact], near[exact]] = 1.0
-        kernel = weight / away
-        result = (kernel * values).sum(axis=1) / kernel.sum(axis=1)
-        result[exact] = values[near[exact]]
-        return np.asarray(result)
+        finite = np.isfinite(self.strip)
+        strip, away = self.strip[finite], self.away[finite]
+        before, after = np.roll(strip, 1), np.roll(strip, -1)
+        weight = np.sinh(0.5 * (after - before)) / np.cosh(0.5 * after) / np.cosh(0.5 * before)
+        weight *= np.cosh(0.5 * strip)
+        kernel = weight / np.sinh(0.5 * (strip - places[:, None]))
+        return np.asarray((kernel * away).sum(axis=1) / kernel.sum(axis=1))
 
 
 def _range(start: int, stop: int, count: int) -> Indices:

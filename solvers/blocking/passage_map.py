@@ -47,7 +47,7 @@ class PassageMap:
 
     def forward(self, points: Floats) -> Floats:
         """Return the places w (n, 2) of points z (n, 2)."""
-        return pairs_of(1.0 / np.tanh(self.zeta(points)))
+        return of_zeta(self.zeta(points))
 
     def back(self, places: Floats) -> Floats:
         """Return the points z (n, 2) of places w (n, 2), within half a pitch of the axis of the centre."""
@@ -78,6 +78,11 @@ class PassageMap:
         """Return how many pitches (n,) are to be added to points (n, 2) to have them nearest to others."""
         away = (complex_of(beside) - complex_of(points)) / self.pitch
         return np.asarray(np.round(away.real))
+
+
+def of_zeta(zeta: Complexes) -> Floats:
+    """Return the places w (n, 2) of places ζ (n,)."""
+    return pairs_of(1.0 / np.tanh(zeta))
 
 
 def inner_point(polygon: Floats) -> complex:

@@ -42,6 +42,8 @@ def as_blocks(shape: Shape, request: GridRequest) -> DomainShape | None:
         return None
     if not (request.asks_for_blocks or getattr(shape, "many", False)):
         return None
+    if not request.asks_for_blocks and request.method not in METHODS and getattr(shape, "one", None):
+        return None  # a method of single blocks, as by the name
     domain = _domain(shape, request)
     _check_use(request, smooths=smooths(domain, request))
     return domain

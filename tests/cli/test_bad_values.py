@@ -16,6 +16,7 @@ INPUTS = {
     "convert": ("grid.vts", "made.vts"),
     "plot": ("grid.vts", "-o", "made.png"),
     "models": (),
+    "layout": ("step.wkt", "-o", "made.json"),
 }
 """What each command does well with; train loads a library of its own first, and has tests of its own."""
 
@@ -40,6 +41,7 @@ def test_no_command_is_left_out() -> None:
 @pytest.mark.parametrize(("command", "option"), CASES)
 def test_nonsense_gets_a_line(meshonet: Meshonet, tmp_path: Path, command: str, option: str) -> None:
     meshonet("tfi", dataset(tmp_path / "duct.h5", "quad", duct()), "-o", "grid.vts", "-q")
+    Path("step.wkt").write_text("POLYGON ((0 0, 1 0, 1 1, 3 1, 3 2, 0 2, 0 0))")
     refused = 0
     for value in NONSENSE:
         before = {path.name for path in tmp_path.iterdir()}

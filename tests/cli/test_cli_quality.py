@@ -139,7 +139,7 @@ def test_the_plot_is_a_picture(meshonet: Meshonet, grid_vts: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--per-cell", "cells.h5"), "only a .vts file holds metrics; name it FILE.vts"),
+        (("--per-cell", "cells.h5"), "only .vts and .vtm files hold metrics; name it FILE.vts"),
         (("--plot", "grid.vts"), "vts is no picture; use .png, .svg or .pdf"),
         (("--compare", "missing.vts"), "missing.vts: no such file"),
         (("--pair", "name"), "--pair without --compare; give --compare as well, or drop --pair"),

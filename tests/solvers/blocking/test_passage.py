@@ -1,0 +1,130 @@
+"""Passages of cascades: periodic sides, names, counts, folds, over blades of several kinds."""
+
+import numpy as np
+import pytest
+
+from meshonet.geometry.curves.curve import Curve
+from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.quality.measure import count_folded
+from meshonet.solvers.blocking.cascade import Cascade
+from meshonet.solvers.blocking.cascade_layout import cascade_layout
+from meshonet.solvers.blocking.layer_rows import LayerSettings
+from meshonet.solvers.blocking.passage_flow import PassageFlow
+from meshonet.solvers.blocking.passage_map import PassageMap
+from meshonet.solvers.blocking.score import deviations
+
+CELLS = 4000
+
+
+def blade(stagger, camber=0.08, thickness=0.1, unit=1.0):
+    """A cambered section of four digits, clockwise from its sharp edge, turned by `stagger` degrees."""
+    x = 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, 70)))
+    half = 5.0 * thickness * (0.2969 * np.sqrt(x) - 0.126 * x - 0.3516 * x**2 + 0.2843 * x**3 - 0.1036 * x**4)
+    line = 4.0 * camber * x * (1.0 - x)
+    points = np.concatenate([np.stack([x, line - half], 1)[::-1], np.stack([x, line + half], 1)[1:-1]])
+    return closed(unit * turned(points, stagger))
+
+
+def closed(points):
+    curve = Curve(points, closed=True)
+    return Loop(curve, tuple(int(k) for k in curve.corner_index), ("blade",))
+
+
+def turned(points, degrees):
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    return points @ np.array([[c, s], [-s, c]])
+
+
+def periodic_nodes(grid):
+    """Nodes of both periodic sides, as sets sorted by place."""
+    sides = {}
+    for patch in grid.patches:
+        if patch.kind == "periodic":
+            nodes = grid.blocks[patch.block].nodes
+            line = {"south": nodes[:, 0], "north": nodes[:, -1], "west": nodes[0], "east": nodes[-1]}
+            sides.setdefault(patch.name, []).append(line[patch.side])
+    return {name: np.unique(np.concatenate(lines), axis=0) for name, lines in sides.items()}
+
+
+@pytest.mark.parametrize("stagger", [-60.0, -25.0, 0.0, 40.0, 60.0])
+@pytest.mark.parametrize("pitch", [0.7, 1.5])
+def test_periodic_sides_are_bitwise_a_pitch_apart_and_nothing_is_folded(stagger, pitch):
+    cascade = Cascade(blade(stagger), (0.0, pitch), settings=LayerSettings(1e-5))
+    layout = cascade_layout(cascade, cells=2 * CELLS)
+    grid = to_grid(layout)
+    sides = periodic_nodes(grid)
+    np.testing.assert_array_equal(sides["periodic1"] + np.array([0.0, pitch]), sides["periodic2"])
+    assert sum(count_folded(block.nodes) for block in grid.blocks) == 0
+    assert {patch.name for patch in grid.patches} == {"periodic1", "periodic2", "inlet", "outlet", "blade"}
+    assert layout.cells == pytest.approx(2 * CELLS, rel=0.2)
+    assert deviations(layout.mesh).mean() < 5.0
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1e3])
+def test_any_unit_makes_the_same_grid(unit):
+    one = cascade_layout(Cascade(blade(30.0), (0.0, 1.0)), cells=1000)
+    other = cascade_layout(Cascade(blade(30.0, unit=unit), (0.0, unit)), cells=1000)
+    assert one.cells == other.cells
+    np.testing.assert_allclose(other.mesh.nodes / unit, one.mesh.nodes, atol=5e-3)
+
+
+@pytest.mark.parametrize("pitch", [(0.0, -0.9), (0.3, 0.85), (-0.4, -0.8)])
+def test_the_pitch_may_lead_anywhere(pitch):
+    grid = to_grid(cascade_layout(Cascade(blade(20.0), pitch), cells=1500))
+    sides = periodic_nodes(grid)
+    moved = sides["periodic1"] + np.array(pitch)
+    np.testing.assert_array_equal(moved[np.lexsort(moved.T[::-1])], sides["periodic2"])
+    for connection in grid.connections:
+        if connection.transform is not None:
+            assert np.hypot(*connection.transform.translation[:2]) == pytest.approx(np.hypot(*pitch))
+
+
+def test_inlet_and_outlet_are_straight_and_as_far_away_as_asked_for():
+    section = blade(35.0)
+    grid = to_grid(cascade_layout(Cascade(section, (0.0, 1.0), inlet=0.6, outlet=1.7), cells=1500))
+    x = section.curve.points[:, 0]
+    for name, wanted in (("inlet", x.min() - 0.6 * np.ptp(x)), ("outlet", x.max() + 1.7 * np.ptp(x))):
+        for patch in grid.patches:
+            if patch.name == name:
+                nodes = grid.blocks[patch.block].nodes
+                side = {"south": nodes[:, 0], "north": nodes[:, -1], "west": nodes[0], "east": nodes[-1]}
+                np.testing.assert_allclose(side[patch.side][:, 0], wanted, atol=1e-9)
+
+
+def test_a_blade_with_a_base_has_nodes_on_its_wall():
+    section = turned(
+        np.array([[0.0, 0.0], [0.1, 0.08], [0.5, 0.12], [1.0, 0.02], [1.0, -0.02], [0.5, -0.02]]), 20
+    )
+    layout = cascade_layout(Cascade(Loop.of_polygon(section, names=("blade",)), (0.0, 0.9)), cells=2000)
+    mesh = layout.mesh
+    on = mesh.places.loop == 1
+    loop = mesh.domain.loops[1]
+    np.testing.assert_allclose(mesh.nodes[on], loop.at(mesh.places.arc[on]), atol=1e-9)
+    assert deviations(mesh).max() < 90.0
+
+
+def test_blades_that_cross_are_refused():
+    with pytest.raises(InputError, match="touch or cross"):
+        cascade_layout(Cascade(blade(0.0), (0.0, 0.05)))
+
+
+def test_an_inlet_too_short_for_blocks_is_refused_with_what_would_do():
+    with pytest.raises(InputError, match="no room for blocks"):
+        cascade_layout(Cascade(blade(0.0), (0.0, 1.0), inlet=0.01))
+
+
+def test_flow_past_a_flat_plate_along_it_is_the_plate_itself():
+    """A thin ellipse that lies along the axis disturbs nothing: its slit is as long as it is."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+    points = np.cos(angle) - 1e-3j * np.sin(angle)
+    assert PassageFlow.of(points).half == pytest.approx(1.0, rel=5e-3)
+
+
+def test_the_map_of_a_passage_has_its_period_and_its_inverse():
+    to = PassageMap(0.2 + 1.1j, 0.1 + 0.05j)
+    z = np.random.default_rng(1).uniform(-0.4, 0.4, (50, 2)) + np.array([1.0, 0.0])
+    np.testing.assert_allclose(to.forward(z), to.forward(z + np.array([0.2, 1.1])), atol=1e-12)
+    back = to.back(to.forward(z))
+    np.testing.assert_allclose(back + to.shifts(back, z)[:, None] * np.array([0.2, 1.1]), z, atol=1e-10)
