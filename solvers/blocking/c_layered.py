@@ -217,7 +217,7 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     for number in layout.layers:
         block = layout.blocks[number]
         held[block[:, : 2 * block.shape[1] // 3]] = True
-    layout = layered.unfolded(layout, held)
+    layout = _exact(layered.unfolded(layout, held), sheets.settings.first)
     corners = layered.corner_jacobians(layout.mesh)
     if corners.min() <= 0.0:
         x, y = layout.mesh.nodes[layout.mesh.quads[int(corners.argmin())]].mean(axis=0)
@@ -258,3 +258,14 @@ def _on_outer(layout: Layout) -> Layout:
     arc[on] = np.mod(arc[on], outer.length)
     nodes[on] = outer.at(arc[on])
     return replace(layout, mesh=mesh.with_nodes(nodes, arc))
+
+
+def _exact(layout: Layout, first: float) -> Layout:
+    """Return the layout with first cells exactly as high as asked for where layers are at walls."""
+    nodes = layout.mesh.nodes.copy()
+    for number in layout.layers:
+        wall, above = layout.blocks[number][:, :2].T
+        on = layout.mesh.places.loop[wall] > 0
+        step = nodes[above[on]] - nodes[wall[on]]
+        nodes[above[on]] = nodes[wall[on]] + step * (first / np.hypot(*step.T))[:, None]
+    return replace(layout, mesh=layout.mesh.with_nodes(nodes))
