@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 KERNELS := $(shell find kernels -name '*.py*' -o -name '*.pxi' -o -name '*.h' -o -name '*.c' ! -name _native.c)
 
-.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs wheel clean
+.PHONY: help demo test test-fast test-clients fuzz kills lint train train-airfoils train-quads train-holes paper paper-quick bench docs gallery wheel clean
 
 help:
 	@echo 'make demo    an 800x800 grid around a shipped airfoil: demo/grid.vts, demo/grid.png'
@@ -17,6 +17,7 @@ help:
 	@echo 'make paper   the MeshONet paper again: docs/paper (hours, resumable); make paper-quick: minutes, in build'
 	@echo 'make bench   the benchmarks, and their pages in docs/benchmarks'
 	@echo 'make docs    the generated pages and pictures of docs/'
+	@echo 'make gallery  docs/gallery.md: the blocks of thirty domains, with pictures'
 	@echo 'make wheel   dist/meshonet-*.whl for this platform, and the source distribution'
 
 # --- environments: a stamp stands for what is installed in $(VENV)
@@ -160,6 +161,9 @@ bench: $(VENV)/.developing
 
 docs: $(VENV)/.developing
 	$(BIN)/python docs/make_pages.py
+
+gallery: $(VENV)/.developing
+	$(BIN)/python docs/make_gallery.py
 
 # for an index, wheels of the usual platforms: docs/wheels.md
 wheel: $(BIN)/python

@@ -136,7 +136,7 @@ refused.
 - `.vts` compressed with LZ4: write it with zlib or LZMA.
 - Gmsh meshes other than 2.2 and 4.1, and binary DXF.
 
-Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/naca0012-su2`.
+Worked cases of flow solvers: `examples/naca0012-openfoam`, `examples/cylinder-openfoam`, `examples/naca0012-su2`.
 """
 
 FAMILIES_HEAD = """# The six test families

@@ -5,11 +5,13 @@ from __future__ import annotations
 import importlib.util
 import os
 import re
+import runpy
 import shlex
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -106,7 +108,7 @@ def inputs(all_inputs: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Airfoil files, a duct of four blocks, grids."""
+    """Airfoil files, a duct of four blocks, domains, grids."""
     tmp_path = tmp_path_factory.mktemp("pages")
     section = (ROOT / "examples" / "naca2412.dat").read_text()
     (tmp_path / "airfoil.dat").write_text(section)
@@ -116,9 +118,20 @@ def all_inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     sides = ["0 0\n1 0.1\n2 0", "2 0\n2 1", "0 1\n1 1.2\n2 1", "0 0\n0 1"]
     (tmp_path / "duct.csv").write_text("\n\n".join(sides) + "\n")
     shutil.copy(ROOT / "examples" / "grid-convergence" / "ellipse.csv", tmp_path)
+    for name, loop in domains(tmp_path).items():
+        (tmp_path / name).write_text("\n".join(f"{x:.8f} {y:.8f}" for x, y in loop) + "\n")
     for name in ("grid.vts", "predicted.h5", "solved.h5"):
         run(f"meshonet tfi ellipse.csv --res 41x21 -o {name}", tmp_path)
     return tmp_path
+
+
+def domains(folder: Path) -> dict[str, Any]:
+    """Write the domains of examples/domains into a folder; return points of two airfoils by file."""
+    path = ROOT / "examples" / "domains" / "domains.py"
+    module = runpy.run_path(str(path))
+    module["write_all"](folder)
+    _, main, flap = module["DOMAINS"]["two-elements"]()
+    return {"main.dat": main, "flap.dat": flap}
 
 
 def run(line: str, folder: Path) -> None:

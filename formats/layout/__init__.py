@@ -13,7 +13,8 @@
 A place on a loop is the number of a corner and, behind the point, the part of the way to the next one; on a
 loop without corners it is the part of its length from the first point. Loops have the domain on their left,
 the outer one first; ``straight`` is true for polygons, else a list of the intervals that are, and ``kinks``
-are the points where a smooth curve may bend. Points and places of edges are those of the nodes between the
+are the points where a smooth curve may bend. A loop that is no wall but the front of layers, which a grid has
+around the wall, has ``"front": true``. Points and places of edges are those of the nodes between the
 ends; points of a face are the nodes inside, j fastest. The sides of a face run along i or j; an edge that is
 run through backwards has the number -1 - k, as arcs have in TopoJSON (https://github.com/topojson). Vertices
 and edges on a periodic side name their ``partner``, and the layout has ``periodic``: the arc lengths of both

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,9 @@ def read_layout(source: Source) -> Layout:
     loops = tuple(_loop(values) for values in file.rows("loops"))
     periodic = _periodic(file) if "periodic" in data else None
     domain = Domain(loops, printable(file.text("name")), periodic=periodic)
-    return _Nodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
+    layout = _Nodes(domain, file.rows("vertices"), file.rows("edges"), file.rows("faces")).layout()
+    fronts = [k for k, values in enumerate(file.rows("loops")) if values.data.get("front") is True]
+    return replace(layout, fronts=tuple(fronts))
 
 
 def layout_of(text: str) -> Layout:

@@ -46,7 +46,10 @@ def as_dict(layout: Layout) -> dict[str, Any]:
     drawn = _Drawn(layout)
     facts: dict[str, Any] = {
         "format": NAME, "version": VERSION, "name": domain.name, "cells": layout.cells,
-        "loops": [_loop(loop) for loop in domain.loops],
+        "loops": [
+            _loop(loop) | ({"front": True} if k in layout.fronts else {})
+            for k, loop in enumerate(domain.loops)
+        ],
         "vertices": [drawn.vertex(int(node)) for node in layout.vertices],
         "edges": drawn.edges, "faces": drawn.faces,
     }  # fmt: skip

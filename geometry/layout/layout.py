@@ -32,11 +32,13 @@ class Layout:
     blocks : lattices of node numbers, right-handed; each quad of the mesh is in one of them.
     layers : by number of a block, how many rows of cells from its south side are layers at a wall whose
         heights are given, so that no optimisation moves them.
+    fronts : numbers of the loops that are no walls but the fronts of layers around them, which come later.
     """
 
     mesh: QuadMesh
     blocks: tuple[Indices, ...]
     layers: Mapping[int, int] = field(default_factory=dict)
+    fronts: tuple[int, ...] = ()
 
     @cached_property
     def vertices(self) -> Indices:

@@ -15,7 +15,8 @@ def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **pa
     Parameters
     ----------
     shape, assemble : as of `grid`.
-    parameters : ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``.
+    parameters : ``cells`` or ``cell_size``, ``far_field``, ``layout``, ``pitch``, ``inlet``, ``outlet``;
+        with ``first_cell``, or ``y_plus`` and ``reynolds``, and ``walls`` it is the layout outside of layers.
 
     Raises InputError: a shape or parameter that cannot be used; SolverError: no blocks are found.
 

@@ -44,7 +44,7 @@ def infer(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
     domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
-    answer: Answer = "valid", device: DeviceName = None, jobs: o.Jobs = 1,
+    answer: Answer = "valid", device: DeviceName = None, refine: o.Refine = 0, jobs: o.Jobs = 1,
 ) -> int:  # fmt: skip
     """Make the grid that measures best: conformal, marched or variational.
 
@@ -56,7 +56,14 @@ def infer(
 
     settings = {"model": model, "polish": o.polish_steps(polish), "answer": answer, "device": device}
     request = request_of(
-        "best", sampling, checks, first, settings=settings, blocks=blocks, **domain.parameters(walls)
+        "best",
+        sampling,
+        checks,
+        first,
+        settings=settings,
+        refine=refine,
+        blocks=blocks,
+        **domain.parameters(walls),
     )
     session = printing.session()
     return write_grids(boundary, output, request, checks, files, session, assemble=domain.assemble, jobs=jobs)

@@ -9,6 +9,7 @@ from meshonet_cli import options as o
 EXAMPLES = (
     "meshonet layout plate.geojson -o plate.json",
     "meshonet layout main.dat flap.dat --assemble --far-field 20 -o wing.json",
+    "meshonet layout main.dat flap.dat --assemble --first-cell 1e-5 -o layers.json",
     "meshonet infer plate.geojson --layout plate.json --cells 10000 -o plate.cgns",
     "meshonet plot plate.json -o blocks.png",
 )
@@ -33,15 +34,21 @@ def layout(
     far_field: Annotated[float | None, _sampling(
         "--far-field", metavar="R", help="Distance of the far field, in chords of all bodies. [default: 15]",
     )] = None,
+    first_cell: o.FirstCell = None, y_plus: o.YPlus = None, reynolds: o.Reynolds = None,
+    walls: o.Walls = None,
     from_format: o.From = None,
     skip_existing: o.SkipExisting = False,
     jobs: o.Jobs = 1,
 ) -> int:
-    """Split domains into blocks and write these."""
+    """Split domains into blocks and write these.
+
+    With a first cell, they are those outside of the layers, which a grid has around them in addition.
+    """
     from meshonet_cli.layout_batch import write_layouts
 
+    first = {"first_cell": first_cell, "y_plus": y_plus, "reynolds": reynolds}
     return write_layouts(
-        domain, output, blocks.parameters(), far_field, printing.session(), assemble=blocks.assemble,
-        from_format=from_format, skip_existing=skip_existing, jobs=jobs,
+        domain, output, blocks.parameters(walls) | first, far_field, printing.session(),
+        assemble=blocks.assemble, from_format=from_format, skip_existing=skip_existing, jobs=jobs,
     )
 # fmt: on

@@ -51,11 +51,6 @@ Coarse = Annotated[str, _option(
     "more than 512 nodes a side with winslow (N is then 257) and of more than 257 with variational (129), "
     "where the quality measures the same; not with --tol, --max-cycles or --initial.",
 )]
-Refine = Annotated[int, _option(
-    "--refine", metavar="K", min=0, max=8,
-    help="Solve at --res, halve all cells and solve again, K times. The result is the finest grid of a "
-    "family; convert --coarsen makes the others from it.",
-)]
 Initial = Annotated[str | None, _option("--initial", metavar="GRID", help="Grid to start from.")]
 RepairMargin = Annotated[int | None, o.option_of(o.CHECKS)(
     "--repair-margin", metavar="CELLS", min=2, max=24,
@@ -75,7 +70,7 @@ def solve_pde(
     sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
     printing: o.PrintOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None,
     method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
-    refine: Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
+    refine: o.Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
     wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None, jobs: o.Jobs = 1,
 ) -> int:  # fmt: skip
     """Make grids by elliptic equations, a variational method, or marching."""

@@ -18,26 +18,29 @@ Slide = Annotated[bool | None, _option(
     help="Move the nodes of south and north of a four-sided domain along these walls to where grid lines "
     "leave at right angles. [default: with --first-cell, when this command samples the nodes]",
 )]
+FirstCell = Annotated[float | None, _option(
+    "--first-cell", "--wall-spacing", metavar="H",
+    help="Height of the first cell at every wall node: around a body in chords, in a four-sided domain "
+    "off south and north, and in one of many blocks around holes, in its own unit. Around bodies, solve-pde "
+    "and infer then march the grid from the wall.",
+)]
+YPlus = Annotated[float | None, _option(
+    "--y-plus", metavar="Y", help="The same as a y+, estimated for a turbulent flat plate; needs --reynolds.",
+)]
+Reynolds = Annotated[float | None, _option(
+    "--reynolds", metavar="RE",
+    help="Reynolds number of the chord; of a four-sided domain, of the extent of its south side; of many "
+    "blocks, of the extent of all holes.",
+)]
 
 
 @dataclass(frozen=True)
 class LayerOptions:
     """First cells at walls."""
 
-    first_cell: Annotated[float | None, _option(
-        "--first-cell", "--wall-spacing", metavar="H",
-        help="Height of the first cell at every wall node: around a body in chords, in a four-sided domain "
-        "off south and north in its own unit. Around bodies, solve-pde and infer then march the grid "
-        "from the wall.",
-    )] = None
-    y_plus: Annotated[float | None, _option(
-        "--y-plus", metavar="Y",
-        help="The same as a y+, estimated for a turbulent flat plate; needs --reynolds.",
-    )] = None
-    reynolds: Annotated[float | None, _option(
-        "--reynolds", metavar="RE",
-        help="Reynolds number of the chord; of a four-sided domain, of the extent of its south side.",
-    )] = None
+    first_cell: FirstCell = None
+    y_plus: YPlus = None
+    reynolds: Reynolds = None
     chord_fraction: Annotated[float, _option(
         "--chord-fraction", metavar="X", show_default=True,
         help="Where along the chord --y-plus is estimated, 0 to 1.",

@@ -17,7 +17,8 @@ BlocksName = Annotated[Literal["auto", "single"], _option(
 )]
 Walls = Annotated[str | None, _option(
     "--walls", metavar="NAME,NAME",
-    help="Parts of the boundary at which --first-cell or --y-plus make layers. [default: around every hole]",
+    help="Holes, and outer loops without convex corners, that --first-cell or --y-plus make layers along; "
+    "whole loops, by the names of all their parts. [default: every hole]",
 )]
 
 
@@ -31,14 +32,17 @@ class DomainOptions:
         "parts are called by their files.",
     )] = False
     cells: Annotated[int | None, _option(
-        "--cells", metavar="N", help="About so many cells in all blocks. [default: 2500]",
+        "--cells", metavar="N", help="About so many cells in all blocks. [default: 2500, with layers 20000]",
     )] = None
     cell_size: Annotated[float | None, _option(
-        "--cell-size", metavar="H", help="Length of edges away from walls, in the domain's unit.",
+        "--cell-size", metavar="H",
+        help="Length of edges away from walls, in the domain's unit; they are shorter near layers, and "
+        "longer on the way to a distant far field.",
     )] = None
     layout: Annotated[str | None, _option(
         "--layout", metavar="LAYOUT.json",
-        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it.",
+        help="Take the blocks of a layout (see meshonet layout), of this domain or of one like it; for "
+        "layers, of a layout with a first cell.",
     )] = None
     pitch: Annotated[str | None, _option(
         "--pitch", metavar="DX,DY",

@@ -1,9 +1,18 @@
 """Options of methods, and their values."""
 
 import re
-from typing import Literal
+from typing import Annotated, Literal
 
-from meshonet_cli.options.groups import bad_value
+from meshonet_cli.options.groups import METHOD, bad_value, option_of
+
+# fmt: off
+Refine = Annotated[int, option_of(METHOD)(
+    "--refine", metavar="K", min=0, max=8,
+    help="Solve at --res, halve all cells and solve again, K times. The result is the finest grid of a "
+    "family; convert --coarsen makes the others from it. Of many blocks, --cells, --cell-size and --res say "
+    "what the coarsest grid has, --first-cell and --growth what the finest has.",
+)]
+# fmt: on
 
 
 def polish_steps(text: str) -> Literal["auto", "off"] | int:

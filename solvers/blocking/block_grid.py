@@ -76,10 +76,12 @@ def fine_layout(
     *,
     cells: int | None = None,
     cell_size: float | None = None,
+    halved: int = 0,
     timings: Timings | None = None,
 ) -> Layout:
     """Return a layout with as many cells as asked for, its nodes optimised all together.
 
+    Then all cells are halved so often: every second, fourth, ... node makes the coarser grids of a family.
     Raises NoValidGridError: it stays folded.
     """
     timings = timings or Timings()
@@ -88,6 +90,9 @@ def fine_layout(
     halvings = 0
     while wanted / 4**halvings > OPTIMISED:
         halvings += 1
+    own = 0  # halvings that are optimised themselves
+    while own < halved and wanted * 4 ** (own + 1) <= OPTIMISED:
+        own += 1
     chords = Chords.of(layout)
     least = chords.least
     fine: Layout | None = None
@@ -98,19 +103,21 @@ def fine_layout(
             counts = chords.counts_for_cells(int(wanted / 4**halvings), least)
         if fine is not None and chords.cells(counts) > MORE * wanted / 4**halvings:
             break
-        fine = _optimised(chords, counts, timings)
-        more = _more_along_walls(Chords.of(fine), 4.0**halvings)
+        fine = _optimised(chords, counts, 2**own, timings)
+        more = _more_along_walls(Chords.of(fine), 4.0 ** (halvings - own), 2**own)
         if (more <= counts).all():
             break
         least = np.maximum(least, more)
     assert fine is not None  # noqa: S101 - the first round makes it
     with timings.stage("refine"):
-        return multiplied(fine, 2**halvings) if halvings else fine
+        times = 2 ** (halvings + halved - own)
+        return multiplied(fine, times) if times > 1 else fine
 
 
-def _optimised(chords: Chords, counts: Indices, timings: Timings) -> Layout:
+def _optimised(chords: Chords, counts: Indices, times: int, timings: Timings) -> Layout:
     with timings.stage("refine"):
         fine = refine(chords.layout, counts, chords)
+        fine = multiplied(fine, times) if times > 1 else fine
     with timings.stage("optimum"):
         optimum = optimise(fine.mesh, iterations=ITERATIONS)
     if not optimum.valid:
@@ -119,8 +126,10 @@ def _optimised(chords: Chords, counts: Indices, timings: Timings) -> Layout:
     return Layout(optimum.mesh, fine.blocks)
 
 
-def _more_along_walls(fine: Chords, finer: float) -> Indices:
+def _more_along_walls(fine: Chords, finer: float, times: int) -> Indices:
     """Return counts (chords,) of which cells cut less off along walls, if that is over `CUT_OFF` of the area.
+
+    They are those of a layout `times` as coarse each way.
 
     It goes with the square of the counts; chords that cut off more than their part, by the length of walls,
     get up to `STEP` times as many. `finer` is how many times less is cut off after refinement.
@@ -129,6 +138,6 @@ def _more_along_walls(fine: Chords, finer: float) -> Indices:
     walls = np.bincount(fine.chord, np.where(fine.wall, fine.lengths, 0.0), fine.count)
     allowed = CUT_OFF * fine.layout.mesh.domain.area * walls / walls.sum()
     if lost.sum() <= CUT_OFF * fine.layout.mesh.domain.area:
-        return fine.counts
+        return fine.counts // times
     over = np.sqrt(np.maximum(lost, 1e-300) / np.maximum(allowed, 1e-300))
-    return np.ceil(fine.counts * np.clip(over, 1.0, STEP)).astype(np.intp)
+    return np.ceil(fine.counts // times * np.clip(over, 1.0, STEP)).astype(np.intp)

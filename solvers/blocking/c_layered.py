@@ -25,12 +25,12 @@ from meshonet.solvers.blocking.c_attach import attach_sheets, front_nodes
 from meshonet.solvers.blocking.c_domain import Sheets
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
-from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_growth import evened
 from meshonet.solvers.blocking.even_loops import evened_loops
 from meshonet.solvers.blocking.even_rows import evened_rows, guarded
-from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
+from meshonet.solvers.blocking.outside import found_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.energy.quads import optimise
@@ -80,9 +80,7 @@ def c_layered(
         sheets = Sheets.along(domain, loops, settings)
     if sheets is None:
         return None
-    plain = replace(sheets.rest, loops=tuple(layered.smoothed(loop) for loop in sheets.rest.loops))
-    layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=layered.PRICE)
-    layout = replace(layout, mesh=replace(layout.mesh, domain=sheets.rest))
+    layout = found_outside(sheets.rest, (), timings)
     best: Layout | None = None
     problem = NoValidGridError("cells stay folded")
     for even in (True, False):
@@ -115,7 +113,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
     """Return the fine layout outside sheets and rings, its nodes alike on both sides of wakes."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = layered.wanted_counts(sheets, chords, cells, 0.0)
+        counts, _, times, metric = layered.wanted_counts(sheets, chords, cells, 0.0)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh

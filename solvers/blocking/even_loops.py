@@ -52,7 +52,8 @@ def _evened_arcs(mesh: QuadMesh, order: Indices, measure: Measure, limit: float)
     for turn in range(TURNS):
         table = measure if turn % 2 == 0 else (measure[0], measure[0])
         index, whole = np.interp(arcs, *table), float(table[1][-1])
-        steps = _evened_steps(np.diff(index, append=index[0] + whole), corners, limit)
+        ahead = np.mod(np.diff(index, append=index[0]), whole)  # the first ones may have passed the start
+        steps = _evened_steps(ahead, corners, limit)
         around = np.concatenate([[0.0], np.cumsum(np.roll(steps, -begin)[:-1])])
         at = np.mod(index[begin] + np.roll(around, begin), whole)
         arcs = np.interp(at, table[1], table[0])

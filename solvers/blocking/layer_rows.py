@@ -28,16 +28,19 @@ class LayerSettings:
     first : height of the first cells, in the domain's unit.
     growth : largest ratio of neighbouring cells, on average along a column.
     constant : cells of that height.
+    multiple : the number of layers is a multiple of it, so that coarser grids are nested.
     """
 
     first: float
     growth: float = 1.2
     constant: int = 1
+    multiple: int = 1
 
     def rows(self, thickness: float) -> int:
         """Return how many layers fill a thickness."""
         rest = max(thickness - (self.constant - 1) * self.first, self.first)
-        return self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
+        rows = self.constant - 1 + max(2, cells_for_growth(self.first, rest, self.growth))
+        return -(-rows // self.multiple) * self.multiple
 
 
 def ring_metric(ring: Ring, settings: LayerSettings) -> SizeMetric:

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,19 +19,19 @@ from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
-from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import QuadMesh
 from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
-from meshonet.solvers.blocking.decompose import Timings, decompose
+from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_loops import Measure, evened_loops
 from meshonet.solvers.blocking.even_rows import evened_rows, guarded
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_metric, ring_rows
 from meshonet.solvers.blocking.near_field import NearField
+from meshonet.solvers.blocking.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.respace import respaced
 from meshonet.solvers.blocking.rings import Ring, march_ring
@@ -43,7 +44,7 @@ THICKNESS = 0.018
 """Thickness of a ring where there is room, in lengths of its loop."""
 MOST_OPTIMISED = 4000
 """Cells that are optimised at the most; finer grids are splines through these."""
-ITERATIONS = 120
+ITERATIONS, STRIDING = 120, 60
 FEW_ITERATIONS = 10
 NEAR_FOLDS = 5
 """Cells around folded ones that are optimised with them."""
@@ -55,8 +56,6 @@ EVEN = float(np.log(1.2))
 """Logarithm of the ratio by which neighbouring cells along fronts may differ."""
 MARGIN = 1.1
 """By how much cells may differ in the end, in logarithms, over the growth of layers."""
-PRICE = 0.02
-"""Degrees of mean deviation that a block costs: few blocks leave cells of layers no way to change in size."""
 _BISECTIONS = 12
 _PARTS = (0.2, 0.5, 0.8)  # of edges, where sizes are looked at
 
@@ -86,10 +85,9 @@ class Rings:
             loop = domain.loops[number]
             thickness, largest = THICKNESS * loop.length, loop.length / COLUMNS
             rings[number] = march_ring(domain, loop, settings.first, thickness, largest)
-        near = NearField.of(domain)
-        outer = near.circle if near else domain.loops[0]
-        rest: list[Loop] = [outer if 0 not in rings else rings[0].front]
-        rest += [rings[k].front if k in rings else domain.loops[k] for k in range(1, len(domain.loops))]
+        near = None if 0 in rings else NearField.of(domain)
+        left = [near.circle if near else domain.loops[0], *domain.loops[1:]]
+        rest = [rings[k].front if k in rings else loop for k, loop in enumerate(left)]
         return cls(domain, rings, near, Domain(tuple(rest), domain.name), settings)
 
     @cached_property
@@ -98,8 +96,11 @@ class Rings:
             return feature_sizes(self.rest)
         return SizeMetric.joined([ring_metric(ring, self.settings) for ring in self.rings.values()])
 
-    def metric(self, scale: float) -> SizeMetric:
-        """Return the sizes of cells outside the rings; `scale` is that of their columns."""
+    def metric(self, scale: float, size: float = 0.0) -> SizeMetric:
+        """Return the sizes of cells outside the rings: at most `size`, or `scale` times their columns."""
+        if size:
+            along = self._metric.along * max(size / self._metric.along.max(), 1.0) ** 0.5
+            return replace(self._metric, along=np.minimum(along, size), largest=size)
         largest = self.rest.extent / 12.0 * scale**0.5
         return replace(self._metric, along=scale * self._metric.along, largest=largest)
 
@@ -124,28 +125,28 @@ class Rings:
             along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
         total = sum(int(along[number]) * self.rows(ring) for number, ring in self.rings.items())
         if self.near is not None:
-            around = max(int(along[0]), 1)
-            total += int(along[0]) * self.near.cells(2.0 * np.pi * self.near.radius / around)
+            first = 2.0 * np.pi * self.near.radius / max(int(along[0]), 1)
+            total += int(along[0]) * self.near.cells(first, multiple=self.settings.multiple)
         return total
 
 
 def layered(
-    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int = 0,
-    cell_size: float = 0.0,    layout: Layout | None = None, timings: Timings | None = None,
+    domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int = 0, cell_size: float = 0.0,
+    layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
     """Return a fine layout of about so many cells, with layers at some loops of a domain.
 
-    Without `cells`, the longest cells along its fronts are about `cell_size` long.
-    `layout` is one of the rest of the domain, outside its rings, to be taken instead of one that is found.
+    Without `cells`, none away from walls is longer than `cell_size`. `layout` is to be taken instead of one
+    that is found: of a domain like it outside layers like these, or of the whole of it.
     Raises InputError, BlockingError; NoValidGridError: cells stay folded.
     """
     timings = timings or Timings()
     with timings.stage("layers"):
         rings = Rings.around(domain, loops, settings)
     if layout is None:
-        plain = replace(rings.rest, loops=tuple(smoothed(loop) for loop in rings.rest.loops))
-        layout = decompose(plain, timings=timings, sizes=feature_sizes(plain), price=PRICE)
-        layout = replace(layout, mesh=replace(layout.mesh, domain=rings.rest))
+        layout = found_outside(rings.rest, rings.rings, timings)
+    else:
+        layout = taken_outside(layout, rings.rest, rings.rings)
     for even in (True, False):  # nodes that are moved to make cells grow evenly may fold them
         try:
             return _whole(rings, layout, (cells, cell_size), timings, even)
@@ -165,26 +166,34 @@ def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Tim
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, times, metric = wanted_counts(rings, chords, *size)
+        counts, stride, times, metric = wanted_counts(rings, chords, *size)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
-        mesh = coarse.mesh
-        on = np.zeros(len(mesh.nodes), dtype=bool)
-        for turn in range(FREE + even):
-            optimum = optimise(
-                mesh, iterations=ITERATIONS, targets=metric.edges(mesh), held=on if turn == FREE else None
-            )
-            if not optimum.valid:
-                raise NoValidGridError("cells outside the layers stay folded")
-            mesh = optimum.mesh
-            if even and turn == FREE - 1:
-                mesh = evened_loops(replace(coarse, mesh=mesh), rings.measures, times * EVEN).mesh
-                on = np.isin(mesh.places.loop, list(rings.measures))
+        if stride > 1:
+            with suppress(NoValidGridError):  # so few cells may stay folded, and more not
+                coarse = _optimised(coarse, metric, STRIDING)
+            coarse = multiplied(coarse, stride)
+        for _ in range(FREE):
+            coarse = _optimised(coarse, metric, ITERATIONS)
+        if even:
+            coarse = evened_loops(coarse, rings.measures, times * EVEN)
+            on = np.isin(coarse.mesh.places.loop, list(rings.measures))
+            coarse = _optimised(coarse, metric, ITERATIONS, on)
     with timings.stage("refine"):
-        fine = multiplied(Layout(mesh, coarse.blocks), times)
+        fine = multiplied(coarse, times)
         fine = unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
         moved = evened_loops(fine, rings.measures, EVEN) if even else fine
         return moved if smallest_corner(moved.mesh) > 0.0 else fine
+
+
+def _optimised(
+    layout: Layout, metric: SizeMetric, iterations: int, held: NDArray[np.bool_] | None = None
+) -> Layout:
+    """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
+    optimum = optimise(layout.mesh, iterations=iterations, targets=metric.edges(layout.mesh), held=held)
+    if not optimum.valid:
+        raise NoValidGridError("cells outside the layers stay folded")
+    return replace(layout, mesh=optimum.mesh)
 
 
 def unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
@@ -202,23 +211,29 @@ def unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
 
 
 def wanted_counts(
-    rings: Rings, chords: Chords, cells: int, cell_size: float
-) -> tuple[Indices, int, SizeMetric]:
-    """Return coarse counts (chords,), by how much they are multiplied, and the sizes that they follow."""
+    rings: Rings, chords: Chords, cells: int, size: float
+) -> tuple[Indices, int, int, SizeMetric]:
+    """Return coarse counts (chords,), and the sizes that they follow.
+
+    Between these by how much counts are multiplied before cells are optimised, and after.
+    """
+    multiple = rings.settings.multiple
     low, high = np.log(0.1), np.log(8.0)
-    if not cells:
-        low = high = float(np.log(cell_size / rings.metric(1.0).along.max()))
     wanted = _Wanted(chords, rings.metric(1.0))
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)
-        metric = rings.metric(float(np.exp(middle)))
-        counts = wanted.counts(metric)
+        metric = rings.metric(float(np.exp(middle)), 0.0 if cells else size)
+        counts = wanted.counts(metric, multiple)
         total = chords.cells(counts) + rings.attached_cells(chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
         times += 1
-    return np.maximum(chords.least, np.round(counts / times).astype(np.intp)), times, metric
+    while times % multiple and multiple % times:  # either divides the other
+        times -= 1
+    stride = max(multiple // times, 1)
+    counts = np.round(counts / (times * stride)).astype(np.intp)
+    return np.maximum(chords.least, counts), stride, times, metric
 
 
 class _Wanted:
@@ -233,14 +248,14 @@ class _Wanted:
         self.near = [metric.near(start + part * step, step) for part in _PARTS]
         self.first = np.cumsum([0, *(len(edge) - 1 for edge in chords.edges)])[:-1]
 
-    def counts(self, metric: SizeMetric) -> Indices:
-        """Return counts (chords,): the mean, by length, of the logarithms of what edges want."""
+    def counts(self, metric: SizeMetric, multiple: int = 1) -> Indices:
+        """Return counts (chords,), multiples near what edges want: its geometric mean, by length."""
         parts = [self.length / near.length(metric.across, metric.along, metric.largest) for near in self.near]
         chords = self.chords
         wanted = np.add.reduceat(np.mean(parts, axis=0), self.first)
         weight = np.bincount(chords.chord, wanted, chords.count)
         mean = np.bincount(chords.chord, wanted * np.log(np.maximum(wanted, 1e-9)), chords.count) / weight
-        return np.maximum(chords.least, np.round(np.exp(mean)).astype(np.intp))
+        return multiple * np.maximum(chords.least, np.round(np.exp(mean) / multiple).astype(np.intp))
 
 
 def _joined(rings: Rings, outside: Layout) -> Layout:
@@ -252,7 +267,8 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
         for number, ring in rings.rings.items()
     ]
     if rings.near is not None:
-        rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0)))
+        multiple = rings.settings.multiple
+        rows.append(rings.near.rows(outside.mesh, heights_inside(outside, 0), multiple=multiple))
     whole = attach(outside, rings.domain, rows)
     respaced_nodes = respaced(whole, rings.settings).mesh.nodes
     nodes = guarded(whole.mesh.nodes, respaced_nodes - whole.mesh.nodes, whole.mesh, RESPACED_SINE)
@@ -268,12 +284,6 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
         x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)
         raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
     return whole
-
-
-def smoothed(loop: Loop) -> Loop:
-    """Return a loop without the corners at which the field is not to turn: nodes are put there later."""
-    corners = tuple(k for k, cells in zip(loop.corners, loop.corner_cells, strict=True) if cells != 2)
-    return loop if corners == loop.corners else Loop(loop.curve, corners, loop.names[:1])
 
 
 def smallest_corner(mesh: QuadMesh) -> float:

@@ -7,16 +7,18 @@ from time import perf_counter
 
 import numpy as np
 
+from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.domain.check import check_domain
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.layout.around_body import around_body
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.to_grid import to_grid
+from meshonet.geometry.quality.measure import count_folded
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.solvers.blocking.block_grid import fine_layout
 from meshonet.solvers.blocking.decompose import Timings, decompose
-from meshonet.solvers.blocking.request import CELLS, MOST_CELLS, BlockRequest
+from meshonet.solvers.blocking.request import CELLS, LAYERED_CELLS, MOST_CELLS, BlockRequest
 from meshonet.solvers.blocking.reuse import carried_over
 from meshonet.solvers.solution import Solution
 
@@ -25,8 +27,6 @@ GROWTH = 1.2
 """Ratio of neighbouring layers where nobody asked for one."""
 CUT_OFF = 1e-3
 """Part of the area that cells along walls may cut off before it is said."""
-LAYERED_CELLS = 20_000
-"""Cells where nobody asked for a count and there are layers."""
 
 
 def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
@@ -45,11 +45,11 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
         fine = _passage(domain, request, height, timings)
     elif height is None:
         layout = layout or decompose(domain, timings=timings)
-        fine = fine_layout(layout, cells=cells, cell_size=size, timings=timings)
+        fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
         fine, about = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
-    said = (request.note(shape.unit), *about, _cut_off(fine))
+    said = (request.note(shape.unit), *about, _cut_off(fine), *_folded_coarser(grid, request.refine))
     notes = (*domain.notes, *(note for note in said if note))
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
 
@@ -74,17 +74,30 @@ def find_layout(shape: DomainShape, request: BlockRequest) -> Layout:
     domain = _checked(shape.domain, request)
     if request.pitch is not None:
         raise InputError("the blocks of a cascade are always the same", "make the grid", parameter="pitch")
-    layout = _given(shape, domain, request) or decompose(domain)
-    if request.cells is None and request.cell_size is None and request.res is None:
+    layout = _given(shape, domain, request)
+    height = request.height(shape.unit)
+    if height is not None:
+        return _outside_layers(domain, request, height, layout)
+    layout = layout or decompose(domain)
+    if not (request.cells or request.cell_size or request.res or request.refine):
         return layout
     cells, size = _wanted(domain, request)
-    return fine_layout(layout, cells=cells, cell_size=size)
+    return fine_layout(layout, cells=cells, cell_size=size, halved=request.refine)
 
 
 def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout | None:
-    """Return the layout that was asked for, or that the input has."""
-    if request.layout is None:
-        return shape.layout
+    """Return the layout that was asked for, or that the input has; layers are looked at later.
+
+    Raises InputError: without layers, one that leaves room for them; another kind of domain.
+    """
+    if shape.layout is not None and shape.layout.fronts:
+        problem = "is a layout of what layers leave of a domain"
+        raise InputError(problem, "give the domain, and this with {layout}")
+    if request.layout is None or request.layers:
+        return request.layout or shape.layout
+    if request.layout.fronts:
+        problem = "the layout leaves room for layers"
+        raise InputError(problem, "give {first_cell} or {y_plus}", parameter="layout")
     return carried_over(request.layout, domain)
 
 
@@ -96,24 +109,57 @@ def _with_layers(
     from meshonet.solvers.blocking.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layered import layered
 
+    numbers = _layered_loops(domain, request)
+    size = _wanted(domain, request)[1]
+    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
+    cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
+    size = (size or 0.0) / request.multiple
+    if layout is None and cells and request.multiple == 1:
+        return bodies_with_layers(domain, numbers, settings, cells=cells, timings=timings)
+    fine = layered(domain, numbers, settings, cells=cells, cell_size=size, layout=layout, timings=timings)
+    return fine, ()
+
+
+def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:
+    """Return the blocks of what the layers leave of a domain."""
+    from meshonet.solvers.blocking.layer_rows import LayerSettings
+    from meshonet.solvers.blocking.layered import Rings
+    from meshonet.solvers.blocking.outside import found_outside, taken_outside
+
+    for name in ("cells", "cell_size", "res", "refine"):
+        if getattr(request, name):
+            problem = f"{{{name}}} for a layout with layers"
+            raise InputError(problem, f"drop {{{name}}}: the grid has cells, which follow from the layers")
+    rings = Rings.around(domain, _layered_loops(domain, request), LayerSettings(height))
+    if layout is None:
+        return found_outside(rings.rest, rings.rings)
+    return taken_outside(layout, rings.rest, rings.rings)
+
+
+def _layered_loops(domain: Domain, request: BlockRequest) -> list[int]:
+    """Return the numbers of the loops that layers are around.
+
+    Raises InputError: there are none; only a part of a loop was named, or one with convex corners.
+    """
     numbers = [
         k for k, loop in enumerate(domain.loops) if (request.walls and set(loop.names) & set(request.walls))
     ] or list(range(1, len(domain.loops)))
     if not numbers:
-        remedy = "name the walls that layers are to be at with {walls}"
+        remedy = "drop it: layers go around holes, or along an outer loop that {walls} names"
         raise InputError("a first cell in a domain without holes", remedy)
-    for number in numbers if request.walls else ():
-        others = sorted(set(domain.loops[number].names) - set(request.walls))
-        if others:
+    for number in numbers:
+        loop = domain.loops[number]
+        others = list(dict.fromkeys(name for name in loop.names if name not in request.walls))
+        if request.walls and others:
             problem = f"layers at a part of a loop, which is {', '.join(others)} too"
-            raise InputError(problem, "name all of its parts", parameter="walls")
-    settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1)
-    if request.cell_size is not None or request.res is not None:
-        raise InputError("a size of cells beside layers", "give {cells}: sizes follow from the layers")
-    cells = request.cells or LAYERED_CELLS
-    if layout is not None:
-        return layered(domain, numbers, settings, cells=cells, layout=layout, timings=timings), ()
-    return bodies_with_layers(domain, numbers, settings, cells=cells, timings=timings)
+            raise InputError(problem, "layers go along whole loops: name all of its parts", parameter="walls")
+        if (loop.corner_cells == 1).any():
+            x, y = loop.at(loop.corner_arcs[loop.corner_cells == 1][:1])[0]
+            problem = (
+                f"layers at {', '.join(dict.fromkeys(loop.names))} would cross in corner ({x:.6g}, {y:.6g})"
+            )
+            raise InputError(problem, "name walls without convex corners", parameter="walls")
+    return numbers
 
 
 def _passage(domain: Domain, request: BlockRequest, height: float | None, timings: Timings) -> Layout:
@@ -159,6 +205,16 @@ def _wanted(domain: Domain, request: BlockRequest) -> tuple[int | None, float | 
             raise InputError(problem, f"use {least:.2g} or more", parameter="cell_size")
         return None, request.cell_size
     return request.cells or CELLS, None
+
+
+def _folded_coarser(grid: Grid, halvings: int) -> list[str]:
+    """Return a note for each coarser grid of a family that has folded cells."""
+    notes = []
+    for times in (2**k for k in range(1, halvings + 1)):
+        folded = sum(count_folded(block.nodes[::times, ::times]) for block in grid.blocks)
+        if folded:
+            notes.append(f"every {times}th node makes a grid of which {folded} cells are folded")
+    return notes
 
 
 def _stages(timings: Timings, spent: float) -> dict[str, float]:

@@ -64,16 +64,17 @@ class NearField:
         circle = Loop(curve, (), outer.names[:1])
         return cls(circle, centre, NEAR * reach, outer, angles, radii, arcs)
 
-    def cells(self, first: float, growth: float = MOST_GROWTH) -> int:
-        """Return the cells of a row from a first one to the outer loop."""
+    def cells(self, first: float, growth: float = MOST_GROWTH, multiple: int = 1) -> int:
+        """Return the cells of a row from a first one to the outer loop, a multiple of a number."""
         distance = float(self.radii.mean()) - self.radius
-        return max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
+        cells = max(2, math.ceil(math.log1p(distance / first * (growth - 1.0)) / math.log(growth)))
+        return -(-cells // multiple) * multiple
 
-    def rows(self, mesh: QuadMesh, heights: Floats, growth: float = MOST_GROWTH) -> Rows:
+    def rows(self, mesh: QuadMesh, heights: Floats, growth: float = MOST_GROWTH, multiple: int = 1) -> Rows:
         """Return straight rows from the nodes of the circle, loop 0 of `mesh`, to the outer loop.
 
         `heights` (k,) are those of the cells inside the circle; the rows begin with them and grow by at most
-        `growth`.
+        `growth`; there are a multiple of `multiple` of them.
         """
         order = loop_nodes(mesh, 0)
         start = mesh.nodes[order]
@@ -87,7 +88,7 @@ class NearField:
         wanted = evened(heights[None], np.log(_EVEN), closed=True)[0] * growth**0.5
         mean = float(np.exp(np.log(wanted).mean()))
         wanted = np.clip(wanted, mean / _UNLIKE, _UNLIKE * mean)
-        cells = self.cells(mean, growth)
+        cells = self.cells(mean, growth, multiple)
         whole = np.stack([_shares(first, cells) for first in (mean / length).tolist()])
         # each row begins with its own cell and becomes like the others: their angles stay right
         own = np.clip(1.0 - np.arange(cells) / (_OWN * cells), 0.0, 1.0) ** 2

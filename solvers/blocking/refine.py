@@ -64,7 +64,8 @@ class _Refined:
         if self.chords.wall[k]:
             number = int(self.old.places.loop[old[0]])
             loop = self.old.domain.loops[number]
-            arcs, corners = _wall_arcs(loop, self.chords.arcs(k), len(new))
+            before = self.chords.arcs(k)
+            arcs, corners = _wall_arcs(loop, before, len(new))
             self.places.loop[inner] = number
             self.places.arc[inner] = np.mod(arcs[1:-1], loop.length)
             self.places.cells[inner] = corners[1:-1]
@@ -74,8 +75,11 @@ class _Refined:
             spline = spline_matrix(len(old), len(new), bool(ring))
             self.nodes[inner] = (spline @ self.old.nodes[old])[1:-1]
         whole, rest = divmod(len(new) - 1, len(old) - 1)
-        if not rest:  # nodes that stay keep their coordinates bitwise
-            self.nodes[new[::whole]] = self.old.nodes[old]
+        if not rest:  # nodes that stay keep their coordinates bitwise, unless one was put at a corner
+            stay = np.ones(len(old), dtype=bool)
+            if self.chords.wall[k]:
+                stay = np.abs(arcs[::whole] - before) <= 1e-9 * loop.length
+            self.nodes[new[::whole][stay]] = self.old.nodes[old[stay]]
         return new
 
     def _set_partners(self) -> None:

@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 CELLS = 2500
 """Cells where nobody asked for a count or a size."""
+LAYERED_CELLS = 20_000
+"""Cells where nobody asked for a count and there are layers."""
 MOST_CELLS = 20_000_000
+MOST_HALVINGS = 8
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,8 @@ class BlockRequest:
 
     Parameters
     ----------
-    cells : about how many cells in all; without it, `cell_size` and `res` there are `CELLS`.
+    cells : about how many cells in all; without it, `cell_size` and `res` there are `CELLS`, with layers
+        `LAYERED_CELLS`.
     cell_size : target length of edges away from walls, in the domain's unit.
     res : cells along the longest extent of the domain.
     first_cell : height of the first cell at walls, in the domain's unit.
@@ -35,6 +39,8 @@ class BlockRequest:
     pitch : vector from one blade of a cascade to the next: the domain is the passage around it.
     inlet, outlet : lengths of the passage before and behind the blade, in its axial chords; None is 1.
     layout : blocks to take, of this domain or of one like it.
+    refine : how often all cells are halved. `cells`, `cell_size` and `res` say what the coarsest grid of the
+        family has, `first_cell` and `growth` what the finest has, which is the one that is made.
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
     """
@@ -53,6 +59,7 @@ class BlockRequest:
     inlet: float | None = None
     outlet: float | None = None
     layout: Layout | None = None
+    refine: int = 0
 
     def __post_init__(self) -> None:
         sizes = [name for name in ("cells", "cell_size", "res") if getattr(self, name) is not None]
@@ -61,6 +68,14 @@ class BlockRequest:
             raise InputError(both, "give one of them")
         if self.cells is not None and not 1 <= self.cells <= MOST_CELLS:
             raise InputError(f"{self.cells} cells", f"use 1 to {MOST_CELLS}", parameter="cells")
+        if not 0 <= self.refine <= MOST_HALVINGS:
+            remedy = f"use 0 to {MOST_HALVINGS}"
+            raise InputError(f"cells halved {self.refine} times", remedy, parameter="refine")
+        if self.refine and (self.cells or 1) * 4**self.refine > MOST_CELLS:
+            made = (
+                f"{self.cells} cells halved {self.refine} times are {(self.cells or 1) * 4**self.refine:.3g}"
+            )
+            raise InputError(made, f"use fewer: {MOST_CELLS} are the most", parameter="refine")
         for name in ("cell_size", "inlet", "outlet"):
             value = getattr(self, name)
             if value is not None and not 0 < value < math.inf:
@@ -77,6 +92,11 @@ class BlockRequest:
             if getattr(self, name) is not None and self.pitch is None:
                 remedy = f"give {{pitch}} as well, or drop {{{name}}}"
                 raise InputError(f"{{{name}}} without {{pitch}}", remedy)
+
+    @property
+    def multiple(self) -> int:
+        """What divides all counts of cells: 2 to the power of `refine`."""
+        return 1 << self.refine
 
     @property
     def layers(self) -> bool:

@@ -42,7 +42,7 @@ def carried_over(layout: Layout, domain: Domain) -> Layout:
     on_loops = places.loop >= 0
     nodes[~on_loops] = _moved_along(mesh, nodes, on_loops)
     carried = QuadMesh(domain, nodes, mesh.quads, replace(places, loop=loop, arc=arc))
-    return replace(layout, mesh=carried)
+    return replace(layout, mesh=carried, fronts=tuple(sorted(pairs[k] for k in layout.fronts)))
 
 
 def _pairs(old: tuple[Loop, ...], new: tuple[Loop, ...]) -> dict[int, int]:

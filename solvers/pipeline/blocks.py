@@ -26,10 +26,10 @@ SMOOTHERS = ("auto", "variational")
 METHODS = ("best", *SMOOTHERS)
 """Methods under whose names blocks are made: their nodes come from one optimum of the variational energy."""
 _OF_ONE = ("spacing", "le_spacing", "te_spacing", "wake", "wake_nodes")
-_OF_SMOOTHING = ("slide", "refine", "max_cycles")
+_OF_SMOOTHING = ("slide", "max_cycles")
 _OF_GRIDS = (
     "spacing_south", "spacing_north", "spacing_west", "spacing_east", "slide", "wall_angle", "initial",
-    "refine", "repair_margin",
+    "repair_margin",
 )  # fmt: skip
 
 
@@ -161,7 +161,7 @@ def _check_use(request: GridRequest, *, smooths: bool = False) -> None:
     plain, given = Sampling(), request.sampling
     useless = [name for name in _OF_ONE if getattr(given, name) != getattr(plain, name)]
     useless += [name for name in _OF_GRIDS if getattr(request, name)]
-    useless += list(request.chosen)
+    useless += [name for name in request.chosen if name != "refine"]
     for name in useless:
         if smooths and name in _OF_SMOOTHING:
             continue

@@ -123,6 +123,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
     "infer": GRIDS | BLOCKS | {
         "--model": (f"{BODY} {MADE}", "OPTION airfoil-o", "nodes"),
         "--polish": (f"{BODY} {MADE}", "OPTION 1", "nodes"),
+        "--refine": (f"step.wkt --cells 400 {MADE}", "OPTION 1", "nodes"),
         "--device": (f"{BODY} {MADE}", "OPTION cpu", "nodes" if TORCH else "code"),
         "--answer": (f"duct.h5 --model m.safetensors {MADE}", "OPTION raw", "nodes"),
         "--repair": (f"wave.h5 --model m.safetensors --answer pasted {MADE}", "OPTION", "code"),
@@ -171,6 +172,10 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--skip-existing": ("step.wkt -o there.json -q", "OPTION", "layout"),
         "--jobs": ("step.wkt hole.wkt -o {stem}.json -q", "OPTION 2", "workers"),
         "--far-field": ("naca:0012 -o made.json -q", "OPTION 7", "bytes"),
+        "--first-cell": ("hole.wkt -o made.json -q", "OPTION .002", "bytes"),
+        "--y-plus": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 1", "bytes"),
+        "--reynolds": ("hole.wkt --y-plus 2 --reynolds 1e4 -o made.json -q", "OPTION 2e4", "bytes"),
+        "--walls": ("hole.wkt --first-cell .002 -o made.json -q", "OPTION bolt", "error"),
         "--assemble": ("naca:0012 tail.csv -o {name}.json -q", "OPTION", "files"),
         **{
             name: (base.replace(MADE, "-o made.json -q"), more, differs.replace("nodes", "bytes"))

@@ -1,4 +1,4 @@
-"""The worked case of OpenFOAM gives the forces that finer grids and other codes give at Re 1000."""
+"""The worked cases of OpenFOAM give the forces that finer grids and other codes give."""
 
 from __future__ import annotations
 
@@ -33,3 +33,23 @@ def test_the_forces_on_naca_0012_are_right(
     assert done.returncode == 0, done.stderr
     words = done.stdout.split()
     assert float(words[words.index(name) + 1]) == pytest.approx(value, rel=part)
+
+
+@pytest.mark.client("simpleFoam")
+def test_drag_and_lift_of_the_cylinder_in_a_channel_are_the_published_ones(tmp_path: Path) -> None:
+    """Schaefer and Turek's benchmark 2D-1, values of FEATFLOW, on blocks of at most 25,000 cells."""
+    folder = shutil.copytree(ROOT / "examples" / "cylinder-openfoam", tmp_path / "example")
+    script = tmp_path / "meshonet"
+    script.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m meshonet_cli "$@"\n')
+    script.chmod(0o755)
+    done = subprocess.run(
+        ["make", "-s", "CELLS=20000", f"MESHONET={script}", f"PYTHON={sys.executable}"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=500,
+    )
+    assert done.returncode == 0, done.stderr
+    words = done.stdout.split()
+    assert float(words[words.index("Cd") + 1]) == pytest.approx(5.57953523384, rel=0.01)
+    assert float(words[words.index("Cl") + 1]) == pytest.approx(0.010618948146, rel=0.05)
