@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -19,13 +21,22 @@ def wall_gaps(domain: Domain, loop: Loop, arcs: Floats) -> Floats:
 
     A wall is in front within `IN_FRONT` of the inward normal, the other side of the same loop too.
     """
-    total = sum(each.length for each in domain.loops)
-    walls = np.concatenate(
-        [each.sample(max(32, round(_SAMPLES * each.length / total))) for each in domain.loops]
-    )
-    points, along = loop.at(arcs), loop.tangent(arcs)
-    gaps = np.empty(len(arcs))
-    for start in range(0, len(arcs), _ROWS):
+    return gaps_in_front(wall_points(domain.loops), loop.at(arcs), loop.tangent(arcs))
+
+
+def wall_points(loops: Sequence[Loop]) -> Floats:
+    """Return points (m, 2) on loops, `_SAMPLES` in all and some on every loop."""
+    total = sum(each.length for each in loops)
+    return np.concatenate([each.sample(max(32, round(_SAMPLES * each.length / total))) for each in loops])
+
+
+def gaps_in_front(walls: Floats, points: Floats, along: Floats) -> Floats:
+    """Return the distance (n,) from points (n, 2) to the nearest of `walls` (m, 2) in front, to their left.
+
+    `along` (n, 2) are unit directions; in front is within `IN_FRONT` of their normals.
+    """
+    gaps = np.empty(len(points))
+    for start in range(0, len(points), _ROWS):
         rows = slice(start, start + _ROWS)
         dx = walls[:, 0] - points[rows, :1]
         dy = walls[:, 1] - points[rows, 1:]

@@ -101,10 +101,19 @@ MESHONET_INLINE void smooth_areas(const March *m, ptrdiff_t n, double count, dou
         memcpy(m->volume, from, (size_t)n * sizeof *from);
 }
 
-/* Unit edges, their lengths, and the areas of the cells between this level and the next, whose step is `widening` to
-   the power of `part` longer. */
+/* Areas of cells whose step is `widening` to the power of `part` longer. */
+MESHONET_INLINE void widen(const March *m, ptrdiff_t n, const double *widening, double part)
+{
+    if (widening == NULL || part <= 0.0)
+        return;
+    for (ptrdiff_t i = 0; i < n; i++)
+        if (widening[i] != 1.0)
+            m->volume[i] *= pow(widening[i], part);
+}
+
+/* Unit edges, their lengths, and the areas of the cells between this level and the next. */
 MESHONET_INLINE void measure_level(const March *m, const double *restrict x, const double *restrict y, ptrdiff_t n,
-                                   double step, const double *widening, double part, int closed)
+                                   double step, int closed)
 {
     double *restrict ex = m->ex, *restrict ey = m->ey, *restrict length = m->length;
     for (ptrdiff_t i = 0; i < n - 1; i++)
@@ -120,10 +129,6 @@ MESHONET_INLINE void measure_level(const March *m, const double *restrict x, con
     wrap(ex, n, closed), wrap(ey, n, closed), wrap(length, n, closed);
     for (ptrdiff_t i = 0; i < n; i++)
         m->volume[i] = 0.5 * step * (length[i] + length[i - 1]);
-    if (part > 0.0)
-        for (ptrdiff_t i = 0; i < n; i++)
-            if (widening[i] != 1.0)
-                m->volume[i] *= pow(widening[i], part);
 }
 
 MESHONET_INLINE double least(double a, double b)
@@ -275,7 +280,7 @@ MESHONET_INLINE void solve_open(const March *m, const double *restrict x, const 
 
 MESHONET_CLONES
 void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
-                      const MarchEnds *ends, const MarchSettings *settings, double *scratch)
+                      const double *ratios, const MarchEnds *ends, const MarchSettings *settings, double *scratch)
 {
     const March m = parts(scratch, n);
     double height = 0.0;
@@ -283,8 +288,9 @@ void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const
         const ptrdiff_t risen = level + 1 < settings->rise ? level + 1 : settings->rise;
         const double growth = sqrt((double)risen / (double)levels);
         const double opened = 1.0 - (double)level / (OPENED * (double)levels);
-        const double part = widening == NULL ? 0.0 : ends ? opened : (double)level;
-        measure_level(&m, x, y, n, steps[level], widening, part, ends == NULL);
+        measure_level(&m, x, y, n, steps[level], ends == NULL);
+        widen(&m, n, widening, opened);
+        widen(&m, n, ratios, (double)level);
         const double calm = fmin((double)level / (CALM * (double)levels), 1.0);
         smooth_areas(&m, n, calm * (double)settings->sweeps, settings->volume, ends == NULL);
         height += steps[level];

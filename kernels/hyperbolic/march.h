@@ -21,7 +21,7 @@ typedef struct {
 size_t hyperbolic_scratch(ptrdiff_t n);
 
 /* March levels 1 .. levels of the planes x and y (levels + 1, n) from level 0; see march.c.
-   `ends` is NULL for closed levels. `widening` (n) multiplies the steps of open levels, less and less from the wall
-   on; of closed ones it is what the ratio of one step to the one before is multiplied by, or NULL. */
+   `ends` is NULL for closed levels. `widening` (n) multiplies the steps, less and less from the wall on, `ratios` (n)
+   the ratio of one step to the one before; either may be NULL. */
 void hyperbolic_march(double *x, double *y, ptrdiff_t n, ptrdiff_t levels, const double *steps, const double *widening,
-                      const MarchEnds *ends, const MarchSettings *settings, double *scratch);
+                      const double *ratios, const MarchEnds *ends, const MarchSettings *settings, double *scratch);

@@ -59,7 +59,7 @@ def attach(layout: Layout, domain: Domain, rows: Sequence[Rows]) -> Layout:
         places.append(_places(each, domain))
         position = np.full(len(mesh.nodes), -1, dtype=np.intp)
         position[order] = np.arange(len(order))
-        for block in _beside(layout.blocks, position, len(order)):
+        for block in beside(layout.blocks, position, len(order)):
             if each.layers:
                 layers[len(blocks)] = away
             blocks.append(table[block][:, ::-1] if each.layers else table[block[::-1]])
@@ -95,7 +95,7 @@ def _places(rows: Rows, domain: Domain) -> Places:
     return places
 
 
-def _beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
+def beside(blocks: Sequence[Indices], position: Indices, count: int) -> list[Indices]:
     """Return positions (n,) along the loop, ascending by one, of every side of a block that lies on it."""
     found = []
     for block in blocks:

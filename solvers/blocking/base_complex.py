@@ -76,10 +76,10 @@ class BaseComplex:
         return np.asarray(np.add.reduceat(along, first).reshape(-1, 4))
 
 
-def base_complex(mesh: QuadMesh) -> BaseComplex:
+def base_complex(mesh: QuadMesh, lines: NDArray[np.bool_] | None = None) -> BaseComplex:
     """Return the blocks of a quad mesh.
 
-    Lines run through periodic sides to their partners; blocks end there.
+    Lines run through periodic sides to their partners; blocks end there, and at edges on more `lines` (e,).
 
     Raises BlockingError: the mesh is not manifold, or what its lines bound are no lattices.
     """
@@ -87,6 +87,8 @@ def base_complex(mesh: QuadMesh) -> BaseComplex:
     quads, named = (np.ascontiguousarray(of.quads, dtype=np.intp) for of in (closed, mesh))
     bounds = np.zeros(len(closed.edges), dtype=bool)
     bounds[closed.edge_of[mesh.twin < 0]] = True
+    if lines is not None and closed is mesh:
+        bounds |= lines
     found = None
     if closed.manifold:
         found = split_quads(quads, named, closed.edge_of, closed.twin, closed.irregular, bounds)

@@ -65,7 +65,7 @@ def ring_rows(
     """Return the layers under the nodes of a front, `inner` (k,) the heights of the cells beyond it."""
     order = loop_nodes(mesh, loop)
     columns, starts = ring.columns(mesh.places.arc[order])
-    part = _arc_shares(columns)
+    part = arc_shares(columns)
     columns += part[..., None] * (mesh.nodes[order] - columns[:, -1])[:, None]
 
     def law(length: Floats) -> Floats:
@@ -99,7 +99,7 @@ def _smooth(values: Floats, window: int = 4) -> Floats:
     return np.exp(np.convolve(np.log(values)[around], kernel, "valid"))
 
 
-def _arc_shares(lines: Floats) -> Floats:
+def arc_shares(lines: Floats) -> Floats:
     """Return how far (k, m) along their length the nodes of lines (k, m, 2) are, 0 to 1."""
     length = np.hypot(*np.diff(lines, axis=1).transpose(2, 0, 1))
     total = np.cumsum(length, axis=1)

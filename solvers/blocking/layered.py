@@ -117,6 +117,18 @@ class Rings:
         thickness = np.hypot(*np.diff(ring.levels, axis=1).transpose(2, 0, 1)).sum(axis=1)
         return self.settings.rows(float(thickness.max()))
 
+    def attached_cells(self, chords: Chords, counts: Indices) -> int:
+        """Return the cells of rings and of the rows to the far field, for counts (chords,)."""
+        along = np.zeros(len(self.rest.loops), dtype=np.intp)
+        places = chords.layout.mesh.places
+        for edge in np.flatnonzero(chords.wall):
+            along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
+        total = sum(int(along[number]) * self.rows(ring) for number, ring in self.rings.items())
+        if self.near is not None:
+            first = 2.0 * np.pi * self.near.radius / max(int(along[0]), 1)
+            total += int(along[0]) * self.near.cells(first, multiple=self.settings.multiple)
+        return total
+
 
 def layered(
     domain: Domain, loops: list[int], settings: LayerSettings, *, cells: int = 0, cell_size: float = 0.0,
@@ -154,7 +166,7 @@ def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Tim
     """Return the fine layout outside the rings, optimised."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, stride, times, metric = _counts(rings, chords, *size)
+        counts, stride, times, metric = wanted_counts(rings, chords, *size)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         if stride > 1:
@@ -169,7 +181,7 @@ def _outside(rings: Rings, layout: Layout, size: tuple[int, float], timings: Tim
             coarse = _optimised(coarse, metric, ITERATIONS, on)
     with timings.stage("refine"):
         fine = multiplied(coarse, times)
-        fine = _unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
+        fine = unfolded(fine, np.isin(fine.mesh.places.loop, list(rings.measures)))
         moved = evened_loops(fine, rings.measures, EVEN) if even else fine
         return moved if smallest_corner(moved.mesh) > 0.0 else fine
 
@@ -184,7 +196,7 @@ def _optimised(
     return replace(layout, mesh=optimum.mesh)
 
 
-def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
+def unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
     """Return the layout with nodes near folded cells, but for `held` (n,) ones, moved to unfold them."""
     mesh = layout.mesh
     bad = corner_jacobians(mesh) <= 0.0
@@ -198,7 +210,9 @@ def _unfolded(layout: Layout, held: NDArray[np.bool_]) -> Layout:
     return replace(layout, mesh=optimum.mesh) if optimum.valid else layout
 
 
-def _counts(rings: Rings, chords: Chords, cells: int, size: float) -> tuple[Indices, int, int, SizeMetric]:
+def wanted_counts(
+    rings: Rings, chords: Chords, cells: int, size: float
+) -> tuple[Indices, int, int, SizeMetric]:
     """Return coarse counts (chords,), and the sizes that they follow.
 
     Between these by how much counts are multiplied before cells are optimised, and after.
@@ -210,7 +224,7 @@ def _counts(rings: Rings, chords: Chords, cells: int, size: float) -> tuple[Indi
         middle = 0.5 * (low + high)
         metric = rings.metric(float(np.exp(middle)), 0.0 if cells else size)
         counts = wanted.counts(metric, multiple)
-        total = chords.cells(counts) + _attached_cells(rings, chords, counts)
+        total = chords.cells(counts) + rings.attached_cells(chords, counts)
         low, high = (middle, high) if total > cells else (low, middle)
     times = 1
     while chords.cells(counts) / times**2 > MOST_OPTIMISED:
@@ -220,20 +234,6 @@ def _counts(rings: Rings, chords: Chords, cells: int, size: float) -> tuple[Indi
     stride = max(multiple // times, 1)
     counts = np.round(counts / (times * stride)).astype(np.intp)
     return np.maximum(chords.least, counts), stride, times, metric
-
-
-def _attached_cells(rings: Rings, chords: Chords, counts: Indices) -> int:
-    """Return the cells of rings and of the rows to the far field."""
-    along = np.zeros(len(rings.rest.loops), dtype=np.intp)
-    places = chords.layout.mesh.places
-    for edge in np.flatnonzero(chords.wall):
-        along[places.loop[chords.edges[edge][0]]] += counts[chords.chord[edge]]
-    total = sum(int(along[number]) * rings.rows(ring) for number, ring in rings.rings.items())
-    if rings.near is not None:
-        total += int(along[0]) * rings.near.cells(
-            2.0 * np.pi * rings.near.radius / max(int(along[0]), 1), multiple=rings.settings.multiple
-        )
-    return total
 
 
 class _Wanted:
@@ -278,7 +278,7 @@ def _joined(rings: Rings, outside: Layout) -> Layout:
     for number in whole.layers:
         block = whole.blocks[number]
         held[block[:, : 2 * block.shape[1] // 3]] = True
-    whole = _unfolded(whole, held)
+    whole = unfolded(whole, held)
     corners = corner_jacobians(whole.mesh)
     if corners.min() <= 0.0:
         x, y = whole.mesh.nodes[whole.mesh.quads[int(corners.argmin())]].mean(axis=0)

@@ -40,15 +40,16 @@ def make_blocks(shape: DomainShape, request: BlockRequest) -> Solution:
     layout = _given(shape, domain, request)
     cells, size = _wanted(domain, request)
     height = request.height(shape.unit)
+    about: tuple[str, ...] = ()
     if request.pitch is not None:
         fine = _passage(domain, request, height, timings)
     elif height is None:
         layout = layout or decompose(domain, timings=timings)
         fine = fine_layout(layout, cells=cells, cell_size=size, halved=request.refine, timings=timings)
     else:
-        fine = _with_layers(domain, request, height, layout, timings)
+        fine, about = _with_layers(domain, request, height, layout, timings)
     grid = to_grid(around_body(fine)).with_provenance(method=METHOD, cells=fine.cells)
-    said = (request.note(shape.unit), _cut_off(fine), *_folded_coarser(grid, request.refine))
+    said = (request.note(shape.unit), *about, _cut_off(fine), *_folded_coarser(grid, request.refine))
     notes = (*domain.notes, *(note for note in said if note))
     return Solution(grid, METHOD, seconds=_stages(timings, perf_counter() - begun), notes=notes)
 
@@ -102,8 +103,9 @@ def _given(shape: DomainShape, domain: Domain, request: BlockRequest) -> Layout 
 
 def _with_layers(
     domain: Domain, request: BlockRequest, height: float, layout: Layout | None, timings: Timings
-) -> Layout:
-    """Return a fine layout with layers at the walls that were named, or around all holes."""
+) -> tuple[Layout, tuple[str, ...]]:
+    """Return a fine layout with layers at the walls that were named, or around all holes, and notes."""
+    from meshonet.solvers.blocking.c_layered import bodies_with_layers
     from meshonet.solvers.blocking.layer_rows import LayerSettings
     from meshonet.solvers.blocking.layered import layered
 
@@ -112,7 +114,10 @@ def _with_layers(
     settings = LayerSettings(height, request.growth or GROWTH, request.constant_layers or 1, request.multiple)
     cells = 0 if size else (request.cells or LAYERED_CELLS) * request.multiple**2
     size = (size or 0.0) / request.multiple
-    return layered(domain, numbers, settings, cells=cells, cell_size=size, layout=layout, timings=timings)
+    if layout is None and cells and request.multiple == 1:
+        return bodies_with_layers(domain, numbers, settings, cells=cells, timings=timings)
+    fine = layered(domain, numbers, settings, cells=cells, cell_size=size, layout=layout, timings=timings)
+    return fine, ()
 
 
 def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout: Layout | None) -> Layout:

@@ -1,7 +1,8 @@
 """Cells that grow evenly from a wall through its layers and the ring of blocks around them.
 
-A front has two blocks at each of its nodes, so the blocks around it form a ring with as many cells across it
-everywhere, whatever the room. Nodes are placed anew along the lines from the wall to the outer side of that
+A front that has two blocks at each of its nodes has a ring of blocks around it, with as many cells across it
+everywhere, whatever the room. At others, layers are placed anew up to the front.
+Nodes are placed anew along the lines from the wall to the outer side of that
 ring: the first cell stays what it is, the last one becomes about as large as the one beyond.
 """
 
@@ -32,13 +33,18 @@ def respaced(layout: Layout, settings: LayerSettings) -> Layout:
     for strip in strips:
         lines = layout.mesh.nodes[strip]
         last, cells = beyond[strip[:, -1]], strip.shape[1] - 1
+        opening = np.hypot(*(lines[:, 1] - lines[:, 0]).T) / settings.first  # 1 at walls, more along wakes
+        opening = np.where(opening > 1.0 + 1e-6, opening, 1.0)
 
-        def law(length: Floats, last: Floats = last, cells: int = cells) -> Floats:
-            return layer_arcs(length, settings.first, last, cells, settings.constant, settings.growth)
+        def law(length: Floats, last: Floats = last, cells: int = cells, scale: Floats = opening) -> Floats:
+            arcs = layer_arcs(
+                length / scale, settings.first, last / scale, cells, settings.constant, settings.growth
+            )
+            return np.asarray(scale[:, None] * arcs)
 
         moved = spaced(lines, law)
         step = moved[:, 1] - moved[:, 0]
-        moved[:, 1] = moved[:, 0] + step * (settings.first / np.hypot(*step.T))[:, None]
+        moved[:, 1] = moved[:, 0] + step * (opening * settings.first / np.hypot(*step.T))[:, None]
         nodes[strip[:, 1:-1]] = moved[:, 1:-1]
     return replace(layout, mesh=layout.mesh.with_nodes(nodes))
 
@@ -50,15 +56,28 @@ def _strips(layout: Layout) -> list[Indices]:
         if number not in layout.layers:
             for turned in (block, block[::-1, ::-1], block.T[:, ::-1], block.T[::-1]):
                 ends[int(turned[0, 0]), int(turned[1, 0]), int(turned[-1, 0])] = turned
-    strips = []
+    strips, alone = [], _without_ring(layout)
     for number in layout.layers:
         block = layout.blocks[number]
         front = block[:, -1]
         outer = ends.get((int(front[0]), int(front[1]), int(front[-1])))
-        if outer is None or not np.array_equal(outer[:, 0], front):
+        if outer is None or number in alone or not np.array_equal(outer[:, 0], front):
             outer = front[:, None]
         strips.append(np.concatenate([block, outer[:, 1:]], axis=1))
     return strips
+
+
+def _without_ring(layout: Layout) -> set[int]:
+    """Return the numbers of blocks of layers on whose front, or farther along it, lie irregular nodes."""
+    mesh = layout.mesh
+    ends = {number: set(layout.blocks[number][[0, -1], -1].tolist()) for number in layout.layers}
+    irregular = set(np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist())
+    alone = {number for number, nodes in ends.items() if nodes & irregular}
+    reached = set().union(*(ends[number] for number in alone))
+    while more := {number for number, nodes in ends.items() if nodes & reached} - alone:
+        alone |= more
+        reached |= set().union(*(ends[number] for number in more))
+    return alone
 
 
 def _beyond(layout: Layout, strips: list[Indices]) -> Floats:

@@ -188,7 +188,7 @@ def _march(start: Floats, cells: int, first: float, ratios: Floats, settings: Ma
         AREA_SMOOTHING, settings.sweeps, round(RISING * cells),
     )  # fmt: skip
     steps = np.asarray(first * most ** np.arange(cells), dtype=np.float64)
-    hyperbolic_march(levels[0], levels[1], steps, *knobs, None, ratios / most)
+    hyperbolic_march(levels[0], levels[1], steps, *knobs, ratios=ratios / most)
     return np.ascontiguousarray(levels.transpose(2, 1, 0))
 
 
