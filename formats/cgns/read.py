@@ -22,7 +22,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
-_FACTS = ("topology", "name", "parts", "provenance", "block", "connections")
+_FACTS = ("topology", "name", "parts", "kinds", "provenance", "block", "connections")
 _MOST_NODES = 1 << 40
 
 

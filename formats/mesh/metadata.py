@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, get_args
 
 from meshonet.formats.mesh.connection_text import connections_from, connections_text
 from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
@@ -13,7 +13,7 @@ from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import check_connections
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
 
 Facts: TypeAlias = Mapping[str, Sequence[str]]
@@ -23,17 +23,21 @@ Facts: TypeAlias = Mapping[str, Sequence[str]]
 def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]]:
     """Return the topology, name, parts and provenance of `grid` as lists of texts by name.
 
-    `grid_with` makes a grid from them. A part reads ``side start stop name``. What is empty is left out. Of a
+    `grid_with` makes a grid from them. A part reads ``side start stop name``; kinds are those of parts, where
+    names do not say them. What is empty is left out. Of a
     grid of blocks they are those of one `block`, the first of which has the connections and the provenance;
     with the grid's `number` in its file, by which its blocks know each other, `grid_of_blocks` makes a grid.
     """
     several = grid.topology == "blocks"
     first = block == 0
     provenance = json.dumps(dict(grid.provenance), default=plain) if grid.provenance and first else ""
+    patches = [patch for patch in grid.patches if patch.block == block]
+    by_name = all(patch.kind == kind_of(patch.name) for patch in patches)
     facts: dict[str, list[str]] = {
         "topology": [grid.topology],
         "name": [grid.name],
-        "parts": [f"{p.side} {p.start} {p.stop} {p.name}" for p in grid.patches if p.block == block],
+        "parts": [f"{p.side} {p.start} {p.stop} {p.name}" for p in patches],
+        "kinds": [] if by_name else [patch.kind for patch in patches],
         "provenance": [provenance],
         "block": [f"{number} {block}" if several else ""],
         "connections": [connections_text(grid.connections) if several and first else ""],
@@ -59,7 +63,7 @@ def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Gr
     facts = rows[0][2]
     name = printable(facts["name"][0]) if facts.get("name") else name
     connections = connections_from(facts["connections"][0]) if facts.get("connections") else ()
-    patches = (replace(_part(text), block=k) for k, _, own in rows for text in own.get("parts", ()))
+    patches = (replace(patch, block=k) for k, _, own in rows for patch in _parts(own))
     made = tuple(Block(usable(nodes)) for _, nodes, _ in rows)
     check_connections(connections, [block.counts for block in made])
     made = with_equal_nodes(made, connections)
@@ -80,7 +84,7 @@ def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
     name = printable(facts["name"][0]) if facts.get("name") else name
     if not facts.get("topology"):
         return recovered(nodes, name)
-    parts = tuple(_part(text) for text in facts.get("parts", ()))
+    parts = tuple(_parts(facts))
     if number_of_grid(facts) is not None:  # a block taken out of a grid of several
         return Grid.from_nodes(usable(nodes), "quad", parts, name)
     topology = known_topology(facts["topology"][0])
@@ -98,6 +102,15 @@ def _provenance(facts: Facts) -> dict[str, Any]:
 def plain(value: object) -> object:
     """Turn numpy's numbers and arrays into what JSON can say, and anything else into its text."""
     return value.tolist() if hasattr(value, "tolist") else str(value)
+
+
+def _parts(facts: Facts) -> list[Patch]:
+    """Return the patches of a block, of the kinds that the facts say or else the names."""
+    patches = [_part(text) for text in facts.get("parts", ())]
+    kinds: list[Any] = list(facts.get("kinds", ()))
+    if len(kinds) != len(patches) or not {*kinds} <= {*get_args(Kind)}:
+        return patches
+    return [replace(patch, kind=kind) for patch, kind in zip(patches, kinds, strict=True)]
 
 
 def _part(text: str) -> Patch:

@@ -190,7 +190,10 @@ def _optimised(
     layout: Layout, metric: SizeMetric, iterations: int, held: NDArray[np.bool_] | None = None
 ) -> Layout:
     """Return a layout with its nodes optimised for some sizes; `held` (n,) stay."""
-    optimum = optimise(layout.mesh, iterations=iterations, targets=metric.edges(layout.mesh), held=held)
+    mesh = layout.mesh
+    optimum = optimise(
+        mesh, iterations=iterations, targets=metric.edges(mesh), aspects=metric.aspects(mesh), held=held
+    )
     if not optimum.valid:
         raise NoValidGridError("cells outside the layers stay folded")
     return replace(layout, mesh=optimum.mesh)
