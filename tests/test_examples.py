@@ -1,5 +1,6 @@
 """The worked examples of every ``--help`` do what they say."""
 
+import json
 import os
 import re
 import shutil
@@ -39,7 +40,14 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (made / "airfoils").mkdir()
     for name in ("airfoil.dat", "airfoils/one.dat", "airfoils/two.dat"):
         (made / name).write_text(f"section\n{rows}\n")
+    for name, (scale, dx, dy) in {"main.dat": (1.0, 0.0, 0.0), "flap.dat": (0.3, 1.05, -0.1)}.items():
+        placed = "\n".join(f"{scale * px + dx:.6f} {scale * py + dy:.6f}" for px, py in points)
+        (made / name).write_text(f"section\n{placed}\n")
+    outer, hole = [[0, 0], [3, 0], [3, 2], [0, 2], [0, 0]], [[1, 1], [1, 1.4], [1.4, 1.4], [1.4, 1], [1, 1]]
+    plate = {"type": "Polygon", "coordinates": [outer, hole]}
+    (made / "plate.geojson").write_text(json.dumps(plate))
     (made / "duct.csv").write_text("0,0\n1,0.2\n2,0\n2,1\n0,1\n")
+    assert shell("meshonet layout plate.geojson -o plate.json", made).returncode == 0
     for name in ("grid.vts", "other.vts"):
         assert shell(f"meshonet tfi airfoil.dat --res 120x60 -o {name}", made).returncode == 0
     (made / "grids").mkdir()

@@ -51,11 +51,11 @@ def test_four_levels_of_blocks_are_nested_and_valid(meshonet: Meshonet, inputs: 
 
 def test_four_levels_of_two_bodies_with_layers_are_nested_and_valid(meshonet: Meshonet, inputs: None) -> None:
     bodies = ("naca:0012", "rod.csv", "--assemble", "--far-field", 20, "--first-cell", FIRST)
-    done = meshonet("solve-pde", *bodies, "--cells", 600, "--refine", 3, "-o", "0.h5")
+    done = meshonet("solve-pde", *bodies, "--cells", 1500, "--refine", 3, "-o", "0.h5")
     assert done.code == 0, done.err
     family_is_nested(meshonet)
     np.testing.assert_allclose(first_cells(grid_of("0.h5")), FIRST, rtol=1e-6)
-    assert cells(grid_of("3.h5")) == pytest.approx(600, rel=0.25)
+    assert cells(grid_of("3.h5")) == pytest.approx(1500, rel=0.25)
 
 
 def family_is_nested(meshonet: Meshonet) -> None:

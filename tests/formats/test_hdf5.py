@@ -316,8 +316,6 @@ def test_grids_of_several_blocks_come_back_with_connections_and_patches(turned: 
             np.testing.assert_array_equal(found.nodes, block.nodes)
         assert (one.patches, one.connections, one.name) == (other.patches, other.connections, other.name)
         assert (one.provenance, one.origin) == (other.provenance, other.origin)
-    with pytest.raises(InputError, match="holds grids of 2 blocks, not boundaries; give a grid of one"):
-        list(read_shapes(open_source(str(tmp_path / "g.h5"))))
 
 
 def test_a_block_in_space_comes_back_with_its_periodic_connection(tmp_path: Path) -> None:
