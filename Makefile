@@ -48,7 +48,7 @@ demo: $(VENV)/.installed
 
 # --- checks
 test: $(VENV)/.developing
-	$(BIN)/python -m pytest $(TESTS)
+	$(BIN)/python -m pytest -n 2 $(TESTS)
 
 # the core of it, in less than a minute on two cores
 FAST := tests/geometry tests/test_api.py tests/test_architecture.py tests/solvers/test_tfi.py tests/solvers/test_multigrid.py \
