@@ -68,7 +68,8 @@ def domains(files: Path | None, random: int, folder: Path) -> dict[str, list[Pat
     written = write_all(folder, range(random))
     named = [path for path in written if not path.stem.startswith("random-")]
     groups = {"drawn by engineers": named, "random": written[len(named) :]}
-    return ({"files": sorted(files.glob("*.geojson"))} if files else {}) | groups
+    all_groups = ({"files": sorted(files.glob("*.geojson"))} if files else {}) | groups
+    return {name: paths for name, paths in all_groups.items() if paths}
 
 
 def own_environment(keep: Path) -> dict[str, str]:
