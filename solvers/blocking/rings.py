@@ -40,6 +40,8 @@ MARCH_GROWTH = 1.2
 THINNER = 0.6
 """What the thickness is multiplied by when the march has folded with every setting."""
 TRIES = 4
+FEWEST_CELLS = 4.0
+"""Thickness of a ring in first cells, at the least."""
 _FINER = 8
 
 
@@ -135,14 +137,18 @@ def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, large
     gaps = wall_gaps(domain, loop, arcs)
     room = GAP_PART * gaps
     place = _place(loop, arcs, int(np.argmin(room)))
+    if room.min() < FEWEST_CELLS * first:
+        raise InputError(
+            f"a gap of {gaps.min():.3g} leaves no room for layers of {first:.3g}",
+            "use thinner first cells, or none there",
+            place=place,
+        )
+    thickness = max(thickness, FEWEST_CELLS * first)  # of thick first cells
+    folded = np.zeros(len(arcs))
     for _ in range(TRIES):
         wanted = graded(np.minimum(thickness, room), arcs, loop.length, SLOPE)
-        if wanted.min() < 4.0 * first:
-            raise InputError(
-                f"a gap of {gaps.min():.3g} leaves no room for layers of {first:.3g}",
-                "use thinner first cells, or none there",
-                place=place,
-            )
+        if wanted.min() < 0.99 * FEWEST_CELLS * first:
+            break
         levels, folded = _marched(loop.at(arcs), wanted, first)
         if levels is not None and not folded.any():
             return _ring(loop, arcs, levels)
