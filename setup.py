@@ -71,7 +71,7 @@ setup(
             include_dirs=FOLDERS,
             extra_compile_args=GLUE,
             extra_link_args=LINK,
-            libraries=[] if WINDOWS else ["m"],
+            libraries=[] if WINDOWS else ["m", "pthread"],
             depends=[*KERNELS, *HEADERS],
         ),
         language_level=3,

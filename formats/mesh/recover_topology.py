@@ -10,6 +10,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.shapes.spatial_shape import SpatialShape, in_space
 
 _SEAM = 1e-6
 
@@ -17,8 +18,12 @@ _SEAM = 1e-6
 def boundary_of(grid: Grid) -> Shape:
     """Return the four outer edges of `grid`, with its topology, parts and name; of many blocks, their domain.
 
+    A grid in space is a shape as it is.
+
     Raises InputError: the edges are no boundary, e.g. two neighbouring nodes are the same point.
     """
+    if in_space(grid):
+        return SpatialShape(grid)
     if grid.topology == "blocks":
         from meshonet.geometry.shapes.given_blocks import given_blocks
 

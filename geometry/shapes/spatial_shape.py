@@ -1,0 +1,41 @@
+"""What a file in space holds: blocks of volume, or patches of surface, before a method makes a volume of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.spacing.sampling import Sampling
+
+
+@dataclass(frozen=True, eq=False)
+class SpatialShape:
+    """A grid whose nodes have three coordinates: blocks (ni, nj, nk, 3), or surface patches (ni, nj, 3).
+
+    Marching takes patches as a wall; six patches that enclose a volume, or the outer faces of a block, are
+    the boundary of what the other methods fill; several blocks are smoothed across their connections.
+    """
+
+    grid: Grid
+
+    @property
+    def name(self) -> str:
+        """What the input called it."""
+        return self.grid.name
+
+    @property
+    def is_surface(self) -> bool:
+        """Whether all its blocks are surface patches."""
+        return all(len(block.counts) == 2 for block in self.grid.blocks)
+
+    def boundary(self, sampling: Sampling) -> Boundary:
+        """Raise InputError: a shape in space has no four edges."""
+        problem = "its nodes have three coordinates and the boundary of a plane grid is asked for"
+        raise InputError(problem, "use a command that makes volumes: tfi, solve-pde or infer")
+
+
+def in_space(grid: Grid) -> bool:
+    """Say whether the nodes of a grid have three coordinates."""
+    return any(block.nodes.shape[-1] == 3 for block in grid.blocks)

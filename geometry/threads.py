@@ -1,0 +1,37 @@
+"""How many threads kernels work with on one grid. Results are the same to the bit for any number.
+
+The number is one of the whole process, as that of a BLAS is; `limited_to` sets it for a while.
+"""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+MOST = 64
+"""Threads that a kernel starts at the most (``TEAM_MOST`` of ``team.h``)."""
+
+_limit: int | None = None
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def thread_count() -> int:
+    """Return the number of threads to work with: as many as there are cores, unless limited."""
+    return min(cores() if _limit is None else _limit, MOST)
+
+
+@contextmanager
+def limited_to(threads: int | None) -> Iterator[None]:
+    """Have kernels work with so many threads inside; None leaves the number as it is."""
+    global _limit  # noqa: PLW0603
+    before = _limit
+    _limit = before if threads is None else max(threads, 1)
+    try:
+        yield
+    finally:
+        _limit = before

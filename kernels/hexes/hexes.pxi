@@ -1,0 +1,1 @@
+# Meshes of cells of six faces over one table of nodes.

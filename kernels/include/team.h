@@ -1,0 +1,103 @@
+/* Threads that work on the same arrays together. `team_run` calls `work(data, member)` once on each of them and
+   returns when all are done; between, `team_wait` lets nobody pass before all have come.
+
+   Results must be the same to the bit for any number of threads: what is computed must not depend on where a share
+   begins, so shares are whole rows, or whole chunks of a fixed size, and sums are taken over these, then added in
+   order by one thread. On Windows a team is one thread. */
+#pragma once
+
+#include <stddef.h>
+
+#ifndef _WIN32
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#endif
+
+#define TEAM_MOST 64
+
+typedef struct Team Team;
+typedef struct {
+    int rank, size; /* this thread, and how many there are */
+    Team *team;
+} Member;
+typedef void (*TeamWork)(void *data, Member member);
+
+#ifdef _WIN32
+struct Team {
+    int size;
+};
+static inline void team_wait(Member member) { (void)member; }
+static inline void team_run(int threads, TeamWork work, void *data)
+{
+    Team team = {1};
+    (void)threads;
+    work(data, (Member){0, 1, &team});
+}
+#else
+struct Team {
+    int size;
+    atomic_int come, round;
+    TeamWork work;
+    void *data;
+};
+
+static inline void team_wait(Member member)
+{
+    Team *team = member.team;
+    if (team->size < 2)
+        return;
+    int round = atomic_load(&team->round);
+    if (atomic_fetch_add(&team->come, 1) + 1 == team->size) {
+        atomic_store(&team->come, 0);
+        atomic_store(&team->round, round + 1);
+        return;
+    }
+    for (int spins = 0; atomic_load_explicit(&team->round, memory_order_acquire) == round; spins++)
+        if (spins > 4096)
+            sched_yield();
+}
+
+typedef struct {
+    Team *team;
+    int rank;
+} TeamEntry;
+
+static void *team_enter(void *entry)
+{
+    TeamEntry *own = entry;
+    while (atomic_load_explicit(&own->team->round, memory_order_acquire) < 0) /* how many are we? */
+        sched_yield();
+    own->team->work(own->team->data, (Member){own->rank, own->team->size, own->team});
+    return NULL;
+}
+
+/* Runs `work` on `threads` threads, this one among them; on fewer where no more can be started. */
+static inline void team_run(int threads, TeamWork work, void *data)
+{
+    pthread_t others[TEAM_MOST];
+    TeamEntry entries[TEAM_MOST];
+    Team team = {.work = work, .data = data};
+    int started = 1;
+    atomic_init(&team.come, 0);
+    atomic_init(&team.round, -1);
+    for (; started < threads && started < TEAM_MOST; started++) {
+        entries[started] = (TeamEntry){&team, started};
+        if (pthread_create(&others[started], NULL, team_enter, &entries[started]))
+            break;
+    }
+    team.size = started;
+    atomic_store(&team.round, 0);
+    entries[0] = (TeamEntry){&team, 0};
+    team_enter(&entries[0]);
+    for (int k = 1; k < started; k++)
+        pthread_join(others[k], NULL);
+}
+#endif
+
+/* First and last (excluded) of `count` things that are this thread's. */
+static inline void team_share(ptrdiff_t count, Member member, ptrdiff_t *first, ptrdiff_t *last)
+{
+    *first = count * member.rank / member.size;
+    *last = count * (member.rank + 1) / member.size;
+}

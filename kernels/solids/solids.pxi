@@ -1,0 +1,1 @@
+# Quality of cells of six faces.

@@ -1,0 +1,1 @@
+# Surfaces of many patches, and volumes marched from them.

@@ -1,0 +1,1 @@
+# Grids from six faces: transfinite, elliptic, variational.
