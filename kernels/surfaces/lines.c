@@ -160,7 +160,7 @@ static void run(void *data, Member member)
         eight_lines(work->lines, &room, k * WIDE);
 }
 
-int redistribute_lines(const Lines *lines, int threads)
+int respace_lines(const Lines *lines, int threads)
 {
     Work work = {lines, NULL, rows_needed(lines->levels) * WIDE};
     work.room = malloc(work.each * (size_t)(threads < TEAM_MOST ? threads : TEAM_MOST) * sizeof(double));

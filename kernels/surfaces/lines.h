@@ -13,4 +13,4 @@ typedef struct {
 
 /* Move nodes along their lines so that first cells are exact and steps follow the law more closely. Returns 0, or -1
    without memory. */
-int redistribute_lines(const Lines *lines, int threads);
+int respace_lines(const Lines *lines, int threads);
