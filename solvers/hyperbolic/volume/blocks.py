@@ -1,4 +1,4 @@
-"""The grid of a volume marched from a surface: a block a patch, bottom on the wall, named sides, connections."""
+"""The grid of a volume marched from a surface: a block a patch, its sides named or connected."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class _Outer(NamedTuple):
 
 
 def volume_grid(surface: Surface, lines: Floats, in_plane: Indices) -> Grid:
-    """Return the grid of `lines` (3, n, levels), of which `in_plane` (k,) open edges bound a plane of symmetry."""
+    """Return the grid of `lines` (3, n, levels); `in_plane` says which (k,) open edges lie in planes."""
     blocks = tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
     top = lines.shape[2] - 1
     runs, outer = _runs(surface, in_plane)

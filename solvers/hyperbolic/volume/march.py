@@ -1,4 +1,4 @@
-"""Volumes marched from surfaces of many patches, for boundary layers; the height of first cells is met exactly.
+"""Volumes marched from surfaces of many patches; the height of first cells is met exactly.
 
 ::
 
@@ -6,8 +6,8 @@
                          ^                                                         |
                          +--------------- other smoothing, smaller steps ----------+
 
-The equations stand in ``kernels/surfaces/step.c``; `meshonet.solvers.hyperbolic.volume.settings` has what is tried
-while cells are folded.
+The equations stand in ``kernels/surfaces/step.c``, what is tried while cells are folded in
+`meshonet.solvers.hyperbolic.volume.settings`.
 """
 
 from __future__ import annotations
@@ -35,6 +35,8 @@ from meshonet.solvers.hyperbolic.volume.symmetry import (
 )
 from meshonet.solvers.solution import Solution
 
+__all__ = ["VolumeMarch", "march_surface"]
+
 FADE = 12.0  # cells over which what first cells needed fades away along a line
 SWEEPS = 10  # of the smoothing of steps along lines
 _WORST = 10
@@ -57,28 +59,20 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
     cells are as high as asked, along every line.
 
-    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; what differs from it is in ``kernels/surfaces/step.c``.
+    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
-    Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay folded,
-    by their corners or a Bezier coefficient of their Jacobian.
+    Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
+    folded, by their corners or a Bezier coefficient of their Jacobian.
     """
     begun = time.perf_counter()
     planes, inside = symmetry_planes(surface, settings.symmetry)
     nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
-    best: _Volume | None = None
-    tries = 0
-    for tries, smoothing in enumerate(ATTEMPTS, start=1):
-        graph = march_graph(surface, planes, inside, smoothing.splay)
-        volume = _marched(surface, graph, nodes, steps, smoothing)
-        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
-            best = volume
-        if volume.made == len(steps) and not volume.folded:
-            break
-    else:
-        raise _refusal(surface, best, len(steps))
+    volume, tries = _best(surface, planes, inside, nodes, steps)
+    if volume.made < len(steps) or volume.folded:
+        raise _refusal(surface, volume, len(steps))
     _keep_planes(volume.lines, surface, planes, inside)
-    grid = volume_grid(surface, volume.lines, inside.any(axis=0))
+    grid = volume_grid(surface, volume.lines, np.any(inside, axis=0))
     notes = [*surface.notes, planes_note(planes, settings.symmetry), free_edges_note(surface, inside)]
     if tries > 1:
         notes.append(f"{tries} marches were made: others left folded cells")
@@ -89,6 +83,21 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
         notes=tuple(note for note in notes if note),
         first_cells={"bottom": settings.first_cell},
     )
+
+
+def _best(
+    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats
+) -> tuple[_Volume, int]:
+    """Return the first volume without folded cells, or that which comes closest, and how many were tried."""
+    best: _Volume | None = None
+    for tries, smoothing in enumerate(ATTEMPTS, start=1):
+        graph = march_graph(surface, planes, inside, smoothing.splay)
+        volume = _marched(surface, graph, nodes, steps, smoothing)
+        if volume.made == len(steps) and not volume.folded:
+            return volume, tries
+        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
+            best = volume
+    return best or volume, len(ATTEMPTS)
 
 
 def _marched(
@@ -121,13 +130,14 @@ def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], ins
         lines[plane.axis, edges[flags]] = plane.value
 
 
-def _refusal(surface: Surface, volume: _Volume | None, cells: int) -> NoValidGridError:
-    assert volume is not None
+def _refusal(surface: Surface, volume: _Volume, cells: int) -> NoValidGridError:
     if volume.made < cells:
         problem = f"the march stops after {volume.made} of {cells} cells from the wall"
     else:
         problem = f"{volume.folded} of {cells * len(volume.corner)} cells are folded"
-    remedy = f"after {len(ATTEMPTS)} tries with other smoothing; give a nearer {{far_field}}, or smoother patches"
+    remedy = (
+        f"after {len(ATTEMPTS)} tries with other smoothing; give a nearer {{far_field}}, or smoother patches"
+    )
     return NoValidGridError(f"{problem} {remedy}", _worst(surface, volume))
 
 
