@@ -68,7 +68,7 @@ def outer_patches(
 
 
 def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
-    """Yield owner and nodes of rectangles that cover the cells (n,) or (n, m) with an owner, joined ones not."""
+    """Yield owner and nodes of rectangles that cover the cells (n,) or (n, m), but for joined ones."""
     cells = owners.reshape(len(owners), -1)
     left = cells != JOINED
     while left.any():

@@ -130,5 +130,5 @@ def test_heights_that_do_not_increase_are_refused(heights: tuple[float, ...]) ->
 
 
 def test_only_planar_blocks_are_extruded() -> None:
-    with pytest.raises(InputError, match="block 0 of .* is not in the plane"):
+    with pytest.raises(InputError, match=r"block 0 of .* is not in the plane"):
         extruded(extruded(duct(), HEIGHTS), HEIGHTS)
