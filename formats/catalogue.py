@@ -3,7 +3,7 @@
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
 
-_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many", "what it is", "options")
+_HEAD = ("format", "endings", "reads", "writes", "names", "extruded", "in space", "blocks", "many", "what it is", "options")
 
 
 def rows() -> list[dict[str, str]]:
@@ -42,6 +42,7 @@ def _row(record: Format) -> tuple[str, ...]:
         ),
         "yes" if record.names_patches else "",
         "yes" if record.extrudes else "",
+        ", ".join(record.space),
         record.blocks,
         "yes" if record.many else "",
         record.description,

@@ -1,0 +1,94 @@
+"""Parts of the faces of blocks in the indices of a file, as parts of the sides of the blocks they became.
+
+A file counts the nodes of a block by three indices. The block that was read may have an index less, and may
+have the first one reversed (`meshonet.formats.mesh.slices`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+from meshonet.formats.mesh.slices import Lattice
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES, Range
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.patches import Kind, Patch
+
+Triple: TypeAlias = tuple[int, int, int]
+_SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.items()}
+
+
+class Window(NamedTuple):
+    """A block, and the first and last node of a part of one of its faces, counted from 0 by the file's indices.
+
+    The last node may come before the first one, as files have it where two windows are joined.
+    """
+
+    block: int
+    first: Triple
+    last: Triple
+
+
+class Part(NamedTuple):
+    """A part of a side: its range, and of each direction of the side the index of the file and which way it ran."""
+
+    side: Side
+    range: Range
+    axes: tuple[int, ...]
+    ways: tuple[int, ...]
+
+
+def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
+    """Return the part of a side that a window is, None where it is none: an edge, or all of a plane block.
+
+    Raises ValueError: there is no such block, or it does not reach so far.
+    """
+    if not 0 <= window.block < len(lattices):
+        raise ValueError(f"there is no block {window.block + 1}")
+    lattice = lattices[window.block]
+    fixed: list[tuple[int, int]] = []
+    along: list[tuple[int, int, int]] = []
+    for direction, axis in enumerate(lattice.axes):
+        count = lattice.nodes.shape[direction]
+        first, last = window.first[axis], window.last[axis]
+        if not 0 <= min(first, last) <= max(first, last) < count:
+            raise ValueError(f"block {window.block + 1} has no node {max(first, last) + 1}")
+        if lattice.reversed and direction == 0:
+            first, last = count - 1 - first, count - 1 - last
+        if first != last:
+            along.append((axis, first, last))
+        elif first in (0, count - 1):
+            fixed.append((direction, 0 if first == 0 else -1))
+    if len(fixed) != 1 or len(along) != len(lattice.axes) - 1:
+        return None
+    span = tuple((min(first, last), max(first, last)) for _, first, last in along)
+    ways = tuple(1 if first < last else -1 for _, first, last in along)
+    return Part(_SIDES[fixed[0]], span, tuple(axis for axis, _, _ in along), ways)
+
+
+def patch_of(window: Window, name: str, kind: Kind, lattices: Sequence[Lattice]) -> Patch | None:
+    """Return the patch that a window is; None and raises as `part_of`."""
+    part = part_of(window, lattices)
+    if part is None:
+        return None
+    (start, stop), *across = part.range
+    return Patch(name, part.side, start, stop, across[0] if across else None, window.block, kind)
+
+
+def connection_of(
+    own: Window, donor: Window, partner: Sequence[int], lattices: Sequence[Lattice]
+) -> Connection | None:
+    """Return the connection of two windows; `partner` has the donor's index for each of the own block's.
+
+    None and raises as `part_of`; also raises ValueError for indices that do not lie on each other.
+    """
+    here, there = part_of(own, lattices), part_of(donor, lattices)
+    if here is None or there is None:
+        return None
+    orientation = []
+    for axis, way in zip(here.axes, here.ways, strict=True):
+        place = there.axes.index(partner[axis])
+        orientation.append((place + 1) * way * there.ways[place])
+    ends = own.block, here.side, here.range, donor.block, there.side, there.range
+    return Connection(*ends, tuple(orientation))
