@@ -3,7 +3,10 @@
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
 
-_HEAD = ("format", "endings", "reads", "writes", "names", "extruded", "in space", "blocks", "many", "what it is", "options")
+_HEAD = (
+    "format", "endings", "reads", "writes", "names", "extruded", "in space", "blocks", "many", "what it is",
+    "options",
+)  # fmt: skip
 
 
 def rows() -> list[dict[str, str]]:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from meshonet.formats.mesh.axis_order import nodes_of
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.handedness import signed_volume
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 _SAME = 1e-6
 """Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""
@@ -53,8 +53,8 @@ class _Slice(NamedTuple):
     size: float
 
 
-def lattices(blocks: Sequence[Sequence[Floats]]) -> list[Lattice]:
-    """Return the nodes of all blocks of a file by the rule above.
+def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[Lattice]:
+    """Return the nodes of all blocks of a file by the rule above; `places` are what errors call them.
 
     The coordinates x, y[, z] of a block are (n1, n2, n3) each, of any unit, number type and memory order;
     they are copied once.
@@ -62,10 +62,13 @@ def lattices(blocks: Sequence[Sequence[Floats]]) -> list[Lattice]:
     Raises InputError: a block without cells.
     """
     with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
-        slices = [_slice_of(coordinates) for coordinates in blocks]
+        slices = []
+        for coordinates, place in zip(blocks, places or [""] * len(blocks), strict=True):
+            with in_place(place):
+                slices.append(_slice_of(coordinates))
         if _in_one_plane(slices):
             return [_plane(block, each) for block, each in zip(blocks, slices, strict=True) if each]
-    return [_in_space(block) for block in blocks]
+        return [_in_space(block) for block in blocks]
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:

@@ -20,7 +20,7 @@ _SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.ite
 
 
 class Window(NamedTuple):
-    """A block, and the first and last node of a part of one of its faces, counted from 0 by the file's indices.
+    """A part of a face of a block: its first and last node, counted from 0 by the three indices of the file.
 
     The last node may come before the first one, as files have it where two windows are joined.
     """
@@ -30,8 +30,28 @@ class Window(NamedTuple):
     last: Triple
 
 
+class Face(NamedTuple):
+    """A part of a face that is called something."""
+
+    window: Window
+    name: str
+    kind: Kind
+
+
+class Pair(NamedTuple):
+    """Two parts of faces that are joined, and what the file calls that.
+
+    `partner` has the index of the donor that lies along each index of the own block.
+    """
+
+    own: Window
+    donor: Window
+    partner: Triple
+    name: str = ""
+
+
 class Part(NamedTuple):
-    """A part of a side: its range, and of each direction of the side the index of the file and which way it ran."""
+    """A part of a side: for each of its directions also the index of the file, and 1 or -1 for the way it ran."""
 
     side: Side
     range: Range
@@ -67,28 +87,27 @@ def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
     return Part(_SIDES[fixed[0]], span, tuple(axis for axis, _, _ in along), ways)
 
 
-def patch_of(window: Window, name: str, kind: Kind, lattices: Sequence[Lattice]) -> Patch | None:
-    """Return the patch that a window is; None and raises as `part_of`."""
-    part = part_of(window, lattices)
+def patch_of(face: Face, lattices: Sequence[Lattice]) -> Patch | None:
+    """Return the patch that a face is; None and raises as `part_of`."""
+    part = part_of(face.window, lattices)
     if part is None:
         return None
     (start, stop), *across = part.range
-    return Patch(name, part.side, start, stop, across[0] if across else None, window.block, kind)
+    place = across[0] if across else None, face.window.block
+    return Patch(face.name, part.side, start, stop, *place, face.kind)
 
 
-def connection_of(
-    own: Window, donor: Window, partner: Sequence[int], lattices: Sequence[Lattice]
-) -> Connection | None:
-    """Return the connection of two windows; `partner` has the donor's index for each of the own block's.
+def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
+    """Return the connection that a pair is, without a motion; None and raises as `part_of`.
 
-    None and raises as `part_of`; also raises ValueError for indices that do not lie on each other.
+    Also raises ValueError: indices that do not lie on each other.
     """
-    here, there = part_of(own, lattices), part_of(donor, lattices)
+    here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
     if here is None or there is None:
         return None
     orientation = []
     for axis, way in zip(here.axes, here.ways, strict=True):
-        place = there.axes.index(partner[axis])
+        place = there.axes.index(pair.partner[axis])
         orientation.append((place + 1) * way * there.ways[place])
-    ends = own.block, here.side, here.range, donor.block, there.side, there.range
+    ends = pair.own.block, here.side, here.range, pair.donor.block, there.side, there.range
     return Connection(*ends, tuple(orientation))

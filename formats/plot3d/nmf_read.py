@@ -1,4 +1,4 @@
-"""Reading neutral map files (`meshonet.formats.plot3d.nmf`): what faces of blocks are, and where blocks join."""
+"""Reading neutral map files (`meshonet.formats.plot3d.nmf`): what faces of blocks are, and what joins them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from meshonet.formats.mesh.windows import Window
+from meshonet.formats.mesh.windows import Face, Pair, Window
 from meshonet.formats.plot3d.nmf import FACES, PART
 from meshonet.formats.source import printable
 from meshonet.geometry.blocks.patches import Kind, kind_of
@@ -19,23 +19,6 @@ _KINDS: tuple[tuple[str, Kind], ...] = (
 _NOTHING = ("unprocessed", "collapsed", "pole", "patched", "overset")
 _MOST_BYTES = 1 << 26
 _REMEDY = "write the map again, or take it away"
-
-
-class Face(NamedTuple):
-    """A part of a face that is called something."""
-
-    window: Window
-    name: str
-    kind: Kind
-
-
-class Pair(NamedTuple):
-    """Two parts of faces that are joined; `partner` has the donor's index for each of the own block's."""
-
-    own: Window
-    donor: Window
-    partner: tuple[int, int, int]
-    periodic: bool
 
 
 class Map(NamedTuple):
@@ -104,15 +87,15 @@ def _row(known: Map, line: str, names: list[str], dims: Sequence[tuple[int, int,
         return
     own, donor = windows
     periodic = title.lower().startswith("periodic")
-    fallback = [title.lower()] * 2 if periodic else []
-    known.faces += [Face(w, name, kind_of(name)) for w, name in zip(windows, names or fallback, strict=False)]
+    names = names or ([title.lower()] if periodic else [])
+    known.faces.extend(Face(w, name, kind_of(name)) for w, name in zip(windows, names, strict=False))
     first, second = ((_fixed(numbers[at]) + 1) % 3 for at in (1, 7))
     swapped = any(word.strip(".").lower() in ("true", "t") for word in words[13:14])
     partner = [0, 0, 0]
     partner[_fixed(numbers[1])] = _fixed(numbers[7])
     for step in (0, 1):
         partner[(first + step) % 3] = (second + (step ^ swapped)) % 3
-    known.pairs.append(Pair(own, donor, (partner[0], partner[1], partner[2]), periodic))
+    known.pairs.append(Pair(own, donor, (partner[0], partner[1], partner[2])))
 
 
 def _window(numbers: Sequence[int], dims: Sequence[tuple[int, int, int]]) -> Window:

@@ -18,7 +18,7 @@ _MOST_REPEATED = 4
 """Numbers a byte of file, repeats expanded; constant planes and iblank stay far below."""
 
 
-def candidates(data: bytes | memoryview, wanted: Options = frozenset()) -> list[Candidate]:
+def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
     """Return every layout that has as many numbers as the file; planes only if they are `wanted`.
 
     Raises InputError: a word that is no number; no layout fits.
