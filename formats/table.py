@@ -127,7 +127,7 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-        "openfoam:write_grids", extrudes=True, names_patches=True, fills_folder=True, blocks="merged",
+        "openfoam.write:write_grids", choices=(("ascii", "binary"),), extrudes=True, names_patches=True, fills_folder=True, blocks="merged",
     ),
     _format(
         "geo", ".geo", "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",

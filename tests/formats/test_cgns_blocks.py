@@ -122,8 +122,8 @@ def test_a_file_of_others_comes_in_with_interfaces_and_names(
     assert {p.name for p in found.patches} >= {p.name.replace(" ", "_") for p in grid.patches}
     merged, wanted = unstructured(found), unstructured(grid)
     assert len(merged.points) == len(wanted.points)
-    assert {n: len(e) for n, e in merged.edges.items()} == {
-        n.replace(" ", "_"): len(e) for n, e in wanted.edges.items()
+    assert {n: len(e) for n, e in merged.faces.items()} == {
+        n.replace(" ", "_"): len(e) for n, e in wanted.faces.items()
     }
     if make not in (passage, sector):
         assert sorted_joints(found.connections) == sorted_joints(grid.connections)
@@ -217,8 +217,8 @@ def test_left_handed_and_turned_zones_are_joined(tmp_path: Path) -> None:
     assert len(grid.connections) == 1
     mesh = unstructured(grid)
     assert len(mesh.points) == 28
-    assert mesh.points[mesh.edges["low"]][..., 1].max() == 0
-    assert mesh.points[mesh.edges["out"]][..., 0].min() == 6
+    assert mesh.points[mesh.faces["low"]][..., 1].max() == 0
+    assert mesh.points[mesh.faces["out"]][..., 0].min() == 6
     kinds = {patch.name: patch.kind for patch in grid.patches}
     assert (kinds["low"], kinds["out"]) == ("wall", "outlet")
 
@@ -349,8 +349,8 @@ def test_what_gmsh_writes_of_transfinite_surfaces_is_one_grid(ending: str, tmp_p
     gmsh.write(str(tmp_path / f"g.{ending}"))
     (grid,) = read_any(str(tmp_path / f"g.{ending}"))
     mesh = unstructured(grid)
-    assert (len(grid.blocks), len(grid.connections), len(mesh.points), len(mesh.quads)) == (3, 2, 74, 56)
-    sizes = {name: len(edges) for name, edges in mesh.edges.items()}
+    assert (len(grid.blocks), len(grid.connections), len(mesh.points), len(mesh.cells)) == (3, 2, 74, 56)
+    sizes = {name: len(edges) for name, edges in mesh.faces.items()}
     assert sizes == ({"wall": 9, "outlet": 5, "outer": 20} if ending == "cgns" else {"outer": 34})
 
 
