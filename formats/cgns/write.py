@@ -52,7 +52,9 @@ def write_grids(path: Path, grids: Iterable[Grid]) -> None:
             names = _zone_names(grid, {"DataClass", *zones, *families})
             zones |= set(names)
             told = plane_of_extruded(grid) or grid
-            nodes = [_write_zone(base, names[k], grid, k, facts_of(told, k, number)) for k in range(len(names))]
+            nodes = [
+                _write_zone(base, names[k], grid, k, facts_of(told, k, number)) for k in range(len(names))
+            ]
             write_connections(nodes, names, grid)
             for family, kind in _write_conditions(nodes, grid, zones).items():
                 families.setdefault(family, kind)
