@@ -3,10 +3,7 @@
 from meshonet.formats.format import Format
 from meshonet.formats.registry import formats
 
-_HEAD = (
-    "format", "endings", "reads", "writes", "names", "extruded", "in space", "blocks", "many", "what it is",
-    "options",
-)  # fmt: skip
+_HEAD = ("format", "endings", "reads", "writes", "names", "3D", "blocks", "many", "what it is", "options")
 
 
 def rows() -> list[dict[str, str]]:
@@ -44,7 +41,6 @@ def _row(record: Format) -> tuple[str, ...]:
             record.write_layouts is not None,
         ),
         "yes" if record.names_patches else "",
-        "yes" if record.extrudes else "",
         ", ".join(record.space),
         record.blocks,
         "yes" if record.many else "",

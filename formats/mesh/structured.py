@@ -1,4 +1,4 @@
-"""The structured blocks of a file of others, with what it says of their faces, as grids in the plane or in space."""
+"""Structured blocks of a file, with what it says of their faces, as grids in the plane or in space."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from meshonet.formats.mesh.gather import Joint, Piece, Stretch, grids_of
 from meshonet.formats.mesh.gather_space import grids_in_space
+from meshonet.formats.mesh.metadata import Facts, grid_with, nodes_by_facts
 from meshonet.formats.mesh.recover_topology import usable
 from meshonet.formats.mesh.slices import Lattice, lattices
 from meshonet.formats.mesh.windows import Face, Pair, Part, connection_of, part_of, patch_of
@@ -58,6 +59,20 @@ def grids_of_file(
         return
     connections = (connection_of(pair, read) for pair in pairs)
     yield from grids_in_space(pieces, [each for each in connections if each], name)
+
+
+def grid_of_block(coordinates: Sequence[Floats], facts: Facts, name: str) -> Grid:
+    """Return the grid of a file of one block, by its facts where it has any.
+
+    Raises InputError: as `grids_of_file`; facts that do not fit.
+    """
+    if facts.get("topology"):
+        return grid_with(nodes_by_facts(coordinates, facts), facts, name)
+    (lattice,) = lattices([coordinates])
+    if lattice.nodes.shape[-1] == 2:
+        return grid_with(lattice.nodes, facts, name)
+    (grid,) = grids_in_space([Piece(usable(lattice.nodes))], (), name)
+    return grid
 
 
 def _joints(pairs: Sequence[Pair], read: Sequence[Lattice]) -> Iterator[Joint]:
