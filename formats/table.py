@@ -13,6 +13,7 @@ from meshonet.geometry.errors import InputError
 
 _DRAW = "meshonet.formats.figure.figure:write_grids"
 _BOTH: Any = ("volumes", "surfaces")
+_VOLUMES: Any = ("volumes",)
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 _MESHIO = {
@@ -113,21 +114,22 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
-        "vtk.vtu:write_grids", extrudes=True, blocks="merged", space=_BOTH,
+        "vtk.vtu:write_grids", blocks="merged", space=_BOTH,
     ),
     _format(
         "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",
         "gmsh.read:read_shapes gmsh.msh:write_grids", sniff=partial(holds, (b"$MeshFormat",)),
-        extrudes=True, names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")), blocks="merged",
+        names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")), blocks="merged", space=_BOTH,
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
         "cgns.read:read_grids cgns.write:write_grids", blocks="kept",
-        sniff=is_cgns, extrudes=True, names_patches=True, many=True,
+        sniff=is_cgns, names_patches=True, many=True, space=_BOTH,
     ),
     _format(
-        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-        "openfoam.write:write_grids", choices=(("ascii", "binary"),), extrudes=True, names_patches=True, fills_folder=True, blocks="merged",
+        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file",
+        "openfoam.write:write_grids", choices=(("ascii", "binary"),), names_patches=True, fills_folder=True,
+        blocks="merged", space=_VOLUMES,
     ),
     _format(
         "geo", ".geo", "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
@@ -140,7 +142,7 @@ _FORMATS: tuple[Format, ...] = (
     _format(
         "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
         "su2:read_shapes su2:write_grids", sniff=partial(holds, (b"NDIME", b"=")),
-        extrudes=True, names_patches=True, blocks="merged",
+        names_patches=True, blocks="merged", space=_VOLUMES,
     ),
     _format(
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",

@@ -17,9 +17,7 @@ from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
 
 
-def grids_in_space(
-    pieces: Sequence[Piece], joined: Sequence[Connection], name: str
-) -> Iterator[Grid]:
+def grids_in_space(pieces: Sequence[Piece], joined: Sequence[Connection], name: str) -> Iterator[Grid]:
     """Yield the grids that the pieces of a file called `name` make, in the order of their first blocks.
 
     Nodes of pieces are (ni, nj, nk, 3), right-handed, or (ni, nj, 3), and not checked here. `joined` are the connections that the file states, without transforms. Several grids are called by their

@@ -101,9 +101,7 @@ def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
     return len(motions) - 1, False
 
 
-def _parts(
-    connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]
-) -> tuple[Part, Part]:
+def _parts(connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]) -> tuple[Part, Part]:
     """Return the faces of both sides of a connection, those of the donor the other way round, and the cells."""
     faces = [faces_of(nodes, connection.side) for nodes in both_sides(connection, numbers)]
     behind = [rows.ravel(order="F") for rows in both_sides(cellwise(connection), cells)]

@@ -17,7 +17,9 @@ from meshonet.geometry.arrays import Floats
 _ARCH = '    arch        "LSB;label=32;scalar=64";\n'
 
 
-def head(kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False) -> str:
+def head(
+    kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False
+) -> str:
     """Return the header of a file of the class `kind`."""
     remark = f'    note        "{note}";\n' if note else ""
     form = f"binary;\n{_ARCH}" if binary else "ascii;\n"

@@ -21,11 +21,17 @@ from meshonet.formats.registry import read_grids as read_any
 from meshonet.formats.source import open_source
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 Make = Callable[[], Grid]
 FACTS = ("topology", "parts", "name", "provenance", "block", "connections")
+
+
+def thick(grid: Grid, heights: tuple[float, ...]) -> Grid:
+    """Return a grid repeated in z where there are heights."""
+    return extruded(grid, heights) if heights else grid
 
 
 def back(path: Path) -> list[Grid]:
@@ -45,7 +51,7 @@ def without(path: Path, *names: str) -> None:
 @pytest.mark.parametrize("make", MANY)
 def test_a_grid_comes_back_to_the_last_bit(make: Make, heights: tuple[float, ...], tmp_path: Path) -> None:
     grid = make()
-    write_grids(tmp_path / "g.cgns", [channel(), grid, ring(), grid], heights)
+    write_grids(tmp_path / "g.cgns", [thick(each, heights) for each in (channel(), grid, ring(), grid)])
     one, two, three, four = back(tmp_path / "g.cgns")
     assert (one.topology, three.topology) == ("quad", "o")
     for found in (two, four):
@@ -63,7 +69,7 @@ def test_a_grid_comes_back_to_the_last_bit(make: Make, heights: tuple[float, ...
 def test_cgnscheck_has_neither_errors_nor_warnings(
     make: Make, heights: tuple[float, ...], tmp_path: Path
 ) -> None:
-    write_grids(tmp_path / "g.cgns", [make()], heights)
+    write_grids(tmp_path / "g.cgns", [thick(make(), heights)])
     done = subprocess.run(
         ["cgnscheck", "-v", str(tmp_path / "g.cgns")], capture_output=True, text=True, timeout=60
     )
@@ -115,7 +121,7 @@ def test_a_file_of_others_comes_in_with_interfaces_and_names(
     make: Make, heights: tuple[float, ...], tmp_path: Path
 ) -> None:
     grid = make()
-    write_grids(tmp_path / "g.cgns", [grid], heights)
+    write_grids(tmp_path / "g.cgns", [thick(grid, heights)])
     without(tmp_path / "g.cgns", *FACTS)
     (found,) = back(tmp_path / "g.cgns")
     assert len(found.connections) == len(grid.connections)

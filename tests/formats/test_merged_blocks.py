@@ -162,7 +162,11 @@ def test_gmsh_knows_groups_and_partners(
     import gmsh
 
     grid = make()
-    write_msh(tmp_path / "g.msh", [extruded(grid, heights) if heights else grid], options=frozenset(words.split(",")))
+    write_msh(
+        tmp_path / "g.msh",
+        [extruded(grid, heights) if heights else grid],
+        options=frozenset(words.split(",")),
+    )
     gmsh.open(str(tmp_path / "g.msh"))
     dim = 3 if heights else 2
     groups = {
