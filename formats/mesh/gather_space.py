@@ -15,7 +15,6 @@ from meshonet.geometry.blocks.connection import Connection, Motion, check_connec
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections, order
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch
 
 
 def grids_in_space(pieces: Sequence[Piece], joined: Sequence[Connection], name: str) -> Iterator[Grid]:
