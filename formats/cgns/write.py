@@ -1,7 +1,7 @@
 """CGNS structured zones in HDF5, ``.cgns``: boundary conditions, families, connected sides joined one to one.
 
-Written so that libraries from 3.4 on read it: a zone for every block, of two or three directions. Grids in the
-plane, on surfaces and of volumes stand in bases of their own. Topology, name, parts and provenance
+Written so that libraries from 3.4 on read it: a zone for every block, of two or three directions. Grids in
+the plane, on surfaces and of volumes stand in bases of their own. Topology, name, parts and provenance
 are Descriptor_t nodes of the zone, which others pass over.
 https://cgns.org/standard/SIDS/SIDS.html
 """

@@ -1,4 +1,4 @@
-"""The files of a ``polyMesh``: lists of points, faces and labels, as text or binary, under OpenFOAM's headers.
+"""The files of a ``polyMesh``: lists of points, faces and labels under OpenFOAM's headers, text or binary.
 
 Binary ones are those of a little-endian machine with labels of 32 bits and scalars of 64, which every build
 reads by what the header says. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/

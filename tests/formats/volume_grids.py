@@ -1,4 +1,4 @@
-"""Volumes of one and of many blocks, made by hand, their blocks turned so that no two have the same directions."""
+"""Volumes of one and of many blocks, made by hand, blocks of the pipe turned in all ways."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from dataclasses import replace
 from itertools import combinations, product
 
 import numpy as np
+from block_grids import butterfly, o_ring
 from format_shapes import c_grid
-from many_blocks import butterfly, o_ring, passage, sector, step
+from many_blocks import passage, sector, step
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
@@ -33,7 +35,7 @@ def box(name: str = "box Ω") -> Grid:
 
 def pipe() -> Grid:
     """A bend of a quarter of a circle, its section a butterfly, its blocks turned in all ways."""
-    straight = extruded(butterfly(), np.linspace(0.0, 1.0, 6))
+    straight = extruded(butterfly(), np.linspace(0.0, 1.0, 6).tolist())
     lattices = [_cycled(_bent(block.nodes, 3.0), k) for k, block in enumerate(straight.blocks)]
     return joined(lattices, _of_pipe, "pipe")
 
@@ -46,7 +48,7 @@ def _bent(nodes: Floats, radius: float) -> Floats:
 
 
 def _of_pipe(face: Floats) -> str:
-    x, y, z = np.moveaxis(face.reshape(-1, 3), -1, 0)
+    x, _, z = np.moveaxis(face.reshape(-1, 3), -1, 0)
     if np.allclose(z, 0):
         return "inlet"
     return "outlet" if np.allclose(x, 3) else "wall"
@@ -63,7 +65,7 @@ def joined(lattices: list[Floats], namer: Callable[[Floats], str], name: str) ->
     """The grid of nodes (ni, nj, nk, 3) each, whole sides connected where nodes are the same."""
     blocks = tuple(Block(nodes) for nodes in lattices)
     free = list(product(range(len(blocks)), PLACES))
-    connections, taken = [], set()
+    connections, taken = [], set[tuple[int, str]]()
     for (a, first), (b, second) in combinations(free, 2):
         own, donor = blocks[a].face(first), blocks[b].face(second)
         for order, one, two in product(((1, 2), (2, 1)), (1, -1), (1, -1)):
@@ -138,8 +140,6 @@ def _laid_over(grid: Grid) -> Grid:
             motions[each.transform] = Motion(tuple(moved.tolist()), rows)
         motion = each.transform and motions[each.transform]
         connections.append(replace(each, transform=motion))
-    from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
-
     return replace(grid, blocks=with_equal_nodes(blocks, connections), connections=tuple(connections))
 
 
