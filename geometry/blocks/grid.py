@@ -17,12 +17,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -52,8 +52,6 @@ class Origin:
     split: str = ""
 
 
-Form: TypeAlias = Literal["plane", "surface", "volume"]
-
 UNKNOWN = Origin()
 """Of a sample that no dataset holds."""
 
@@ -79,7 +77,7 @@ class Grid(Connected):
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
         counts = [block.counts for block in self.blocks]
-        _check_alike(self.blocks)
+        check_alike(self.blocks)
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
         for connection in self.connections:
@@ -124,7 +122,7 @@ class Grid(Connected):
 
     @property
     def form(self) -> Form:
-        """``plane`` for blocks (ni, nj, 2), ``surface`` for patches (ni, nj, 3), ``volume`` for (ni, nj, nk, 3)."""
+        """``plane`` of blocks (ni, nj, 2), ``surface`` of (ni, nj, 3), ``volume`` of (ni, nj, nk, 3)."""
         return form_of(self.blocks[0].nodes)
 
     @cached_property
@@ -165,14 +163,14 @@ class Grid(Connected):
         return self.blocks[block].face(side)
 
     def outer_patches(self) -> list[Patch]:
-        """Return the outer boundary of planar blocks, each of its edges in one patch (`outer_patches`)."""
+        """Return the outer boundary, each edge or quadrilateral of it in one patch (`outer_patches`)."""
         named: list[list[Patch]] = [[] for _ in self.blocks]
-        inside: list[list[tuple[Side, int, int]]] = [[] for _ in self.blocks]
+        inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for patch in self.patches:
             named[patch.block].append(patch)
         for each in self.connections:
-            for number in {each.block, each.donor}:
-                inside[number] += each.stretches(number)
+            inside[each.block].append((each.side, each.range))
+            inside[each.donor].append((each.donor_side, each.donor_range))
         outer: list[Patch] = []
         for number, block in enumerate(self.blocks):
             outer += outer_patches(named[number], block.counts, inside[number], number)
@@ -220,19 +218,3 @@ class Grid(Connected):
             raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
         planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
         return StructuredGrid(*planes)
-
-
-def form_of(nodes: Floats) -> Form:
-    """Return what the nodes of a block make: (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3)."""
-    if nodes.ndim == 4:
-        return "volume"
-    return "plane" if nodes.shape[-1] == 2 else "surface"
-
-
-def _check_alike(blocks: tuple[Block, ...]) -> None:
-    first = form_of(blocks[0].nodes)
-    for number, block in enumerate(blocks):
-        if form_of(block.nodes) != first:
-            names = {"plane": "a plane block", "surface": "a surface patch", "volume": "a volume"}
-            mixed = f"block 0 is {names[first]} and block {number} {names[form_of(block.nodes)]}"
-            raise InputError(mixed, "keep them in grids of their own")

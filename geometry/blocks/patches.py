@@ -2,11 +2,13 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import groupby
 from typing import Literal, TypeAlias
+
+import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Side, Topology
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts
+from meshonet.geometry.blocks.rectangles import rectangles
 from meshonet.geometry.errors import InputError
 
 Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
@@ -117,29 +119,32 @@ def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -
 def outer_patches(
     patches: Sequence[Patch],
     counts: tuple[int, ...],
-    inside: Iterable[tuple[Side, int, int]],
+    inside: Iterable[tuple[Side, Range]],
     block: int = 0,
 ) -> list[Patch]:
-    """Return the outer boundary of planar block number `block`, each of its edges in one patch.
+    """Return the outer boundary of block number `block`, each of its edges or quadrilaterals in one patch.
 
-    Where patches overlap the later one counts; edges without one are called by their side. `counts` are the
-    nodes along xi and eta, `inside` the side, first and last node of stretches that are connected.
+    Where patches overlap the later one counts; what has none is called by its side. `counts` are the nodes
+    along each direction, `inside` side and nodes of the parts that are connected. Of a block of three
+    directions a patch that is left of another in part comes as several rectangles.
     """
     outer: list[Patch] = []
     inside = list(inside)
-    for side in SIDES:
-        unnamed = Patch(side, side, 0, 1, block=block)
-        owners: list[Patch | None] = [unnamed] * (face_counts(counts, side)[0] - 1)
-        for patch in patches:
-            if patch.side == side and patch.block == block:
-                owners[patch.start : patch.stop] = [patch] * (patch.stop - patch.start)
-        for connected, start, stop in inside:
-            if connected == side:
-                owners[start:stop] = [None] * (stop - start)
-        stop = 0
-        for _, cells in groupby(owners, key=id):
-            owner, *others = cells
-            start, stop = stop, stop + 1 + len(others)
-            if owner is not None:
-                outer.append(replace(owner, start=start, stop=stop))
+    for side in SIDES if len(counts) == 2 else tuple(PLACES):
+        nodes = face_counts(counts, side)
+        unnamed = Patch(side, side, 0, nodes[0] - 1, block=block)
+        owners = [patch for patch in patches if patch.side == side and patch.block == block]
+        owner = np.zeros([count - 1 for count in nodes], dtype=np.intp)
+        for number, patch in enumerate(owners, start=1):
+            owner[_cells(patch.range(nodes))] = number
+        for span in (span for connected, span in inside if connected == side):
+            owner[_cells(span)] = -1
+        for number, spans in rectangles(owner):
+            named = owners[number - 1] if number else unnamed
+            across = spans[1] if len(spans) == 2 else None
+            outer.append(replace(named, start=spans[0][0], stop=spans[0][1], across=across))
     return outer
+
+
+def _cells(span: Range) -> tuple[slice, ...]:
+    return tuple(slice(start, stop) for start, stop in span)
