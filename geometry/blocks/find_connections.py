@@ -22,7 +22,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block, Range, check_alike
+from meshonet.geometry.blocks.block import PLACES, Block, Range
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.rounding import rounding
 from meshonet.geometry.errors import InputError
@@ -46,7 +46,7 @@ Part: TypeAlias = tuple[int, Side, Range]
 def find_connections(
     blocks: Sequence[Block], tolerance: float = TOLERANCE, *, without: Iterable[Stretch | Part] = ()
 ) -> tuple[Connection, ...]:
-    """Return the connections of right-handed `blocks` of one kind, sorted by block and side.
+    """Return the connections of right-handed `blocks`, sorted by block and side.
 
     Nodes are the same when they are no farther apart than `tolerance` edges, or than the digits tell that
     their coordinates were rounded to (`meshonet.geometry.blocks.rounding`). Nodes of a connection need not be
@@ -54,12 +54,11 @@ def find_connections(
     that are known to be no interface. Where more than two sides lie on each other, a block is joined to
     itself first, then one to the next.
 
-    Raises InputError: blocks in the plane, patches and volumes mixed.
+    Raises InputError: blocks in the plane and in space mixed.
     """
     if blocks and blocks[0].nodes.shape[-1] == 3:
         from meshonet.geometry.blocks.meeting_sides import meeting_sides
 
-        check_alike(blocks)
         parts = [each if len(each) == 3 else (*each[:2], (each[2:],)) for each in without]
         return tuple(sorted(meeting_sides(blocks, tolerance, parts), key=order))
     edges = _edges(blocks, [each for each in without if len(each) == 4])

@@ -31,13 +31,8 @@ from meshonet.geometry.blocks.connection import (
     topology_of,
     wake_cells,
 )
-from meshonet.geometry.blocks.patches import (
-    Patch,
-    check_patches,
-    default_patches,
-    outer_patches,
-    sides_of,
-)
+from meshonet.geometry.blocks.outer_patches import outer_patches
+from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -76,8 +71,8 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
-        counts = [block.counts for block in self.blocks]
         check_alike(self.blocks)
+        counts = [block.counts for block in self.blocks]
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
         for connection in self.connections:
@@ -103,7 +98,7 @@ class Grid(Connected):
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
         if form_of(block.nodes) == "volume":
-            named = tuple(patches) or sides_of(block.counts)
+            named = tuple(patches) or tuple(outer_patches((), block.counts, ()))
             return cls((block,), named, (), name, provenance or {}, origin)
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
@@ -163,18 +158,23 @@ class Grid(Connected):
         return self.blocks[block].face(side)
 
     def outer_patches(self) -> list[Patch]:
-        """Return the outer boundary, each edge or quadrilateral of it in one patch (`outer_patches`)."""
+        """Return the outer boundary, each cell at it in one patch (`outer_patches`)."""
         named: list[list[Patch]] = [[] for _ in self.blocks]
-        inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
         for patch in self.patches:
             named[patch.block].append(patch)
-        for each in self.connections:
-            inside[each.block].append((each.side, each.range))
-            inside[each.donor].append((each.donor_side, each.donor_range))
+        inside = self.joined_ranges()
         outer: list[Patch] = []
         for number, block in enumerate(self.blocks):
             outer += outer_patches(named[number], block.counts, inside[number], number)
         return outer
+
+    def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
+        """Return for every block the sides and ranges of nodes that are connected."""
+        inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
+        for each in self.connections:
+            inside[each.block].append((each.side, each.range))
+            inside[each.donor].append((each.donor_side, each.donor_range))
+        return inside
 
     def walls(self) -> list[Patch]:
         """Return patches named as walls; without these, a body's or south's and north's unnamed stretches.

@@ -16,17 +16,18 @@ side that is a line, or an edge that is a point, joins nothing.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import permutations, product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block, Range
+from meshonet.geometry.blocks.block import PLACES, Block, Range, form_of
 from meshonet.geometry.blocks.connection import Connection
-from meshonet.geometry.blocks.rectangles import rectangles
+from meshonet.geometry.blocks.outer_patches import JOINED, rectangles
 from meshonet.geometry.blocks.rounding import rounding
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
 _DIRECTION = np.array([0.5403023, 0.6710117, 0.5076571])
@@ -40,7 +41,28 @@ _FLAT = 1e-12
 def meeting_sides(
     blocks: Sequence[Block], tolerance: float, without: Iterable[tuple[int, Side, Range]]
 ) -> list[Connection]:
-    """Return the connections of volumes, or of surface patches, as `find_connections` does."""
+    """Return the connections of volumes with volumes and of surface patches, as `find_connections` does.
+
+    Raises InputError: a block in the plane.
+    """
+    known = list(without)
+    joined: list[Connection] = []
+    for form in ("volume", "surface"):
+        numbers = [number for number, block in enumerate(blocks) if form_of(block.nodes) == form]
+        own = [(numbers.index(part[0]), *part[1:]) for part in known if part[0] in numbers]
+        for each in _meeting([blocks[number] for number in numbers], tolerance, own) if numbers else ():
+            joined.append(replace(each, block=numbers[each.block], donor=numbers[each.donor]))
+    for number, block in enumerate(blocks):
+        if form_of(block.nodes) == "plane":
+            raise InputError(
+                f"block {number} has no z, others have", "give all of them two coordinates, or three"
+            )
+    return joined
+
+
+def _meeting(
+    blocks: Sequence[Block], tolerance: float, without: Sequence[tuple[int, Side, Range]]
+) -> list[Connection]:
     cells = _cells(blocks, without)
     own, donor = _near(cells, tolerance)
     groups = list(_groups(cells, own, donor, tolerance))
@@ -82,8 +104,7 @@ class _Cells:
         return np.minimum(np.maximum(tolerance * length, self.slack), _MOST * length)
 
 
-def _cells(blocks: Sequence[Block], without: Iterable[tuple[int, Side, Range]]) -> _Cells:
-    known = list(without)
+def _cells(blocks: Sequence[Block], known: Sequence[tuple[int, Side, Range]]) -> _Cells:
     corners, numbers, sides, places, inwards = [], [], [], [], []
     for number, block in enumerate(blocks):
         for turn, side in enumerate(tuple(PLACES)[: 2 * len(block.counts)]):
@@ -202,7 +223,7 @@ def _rectangles(cells: _Cells, group: _Group, open_: NDArray[np.bool_]) -> Itera
     low = place.min(axis=0)
     number = np.full(np.ptp(place, axis=0) + 1, -1)
     number[tuple((place[open_] - low).T)] = np.flatnonzero(open_)
-    for _, spans in rectangles(np.minimum(number, 0)):
+    for _, spans in rectangles(np.where(number < 0, JOINED, 0)):
         yield number[tuple(slice(*span) for span in spans)].ravel()
 
 

@@ -1,14 +1,11 @@
 """Named stretches of a boundary: what flow solvers call patches, markers or boundary conditions."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
-
-import numpy as np
 
 from meshonet.geometry.arrays import SIDES, Side, Topology
 from meshonet.geometry.blocks.block import PLACES, Range, face_counts
-from meshonet.geometry.blocks.rectangles import rectangles
 from meshonet.geometry.errors import InputError
 
 Kind: TypeAlias = Literal["wall", "farfield", "inlet", "outlet", "symmetry", "periodic", "interface", "other"]
@@ -88,12 +85,6 @@ def default_patches(topology: Topology, ni: int, nj: int, wake: int = 0) -> tupl
     )
 
 
-def sides_of(counts: tuple[int, ...], block: int = 0) -> tuple[Patch, ...]:
-    """Return the sides of a block with `counts` nodes along its directions as patches of their names."""
-    sides = tuple(PLACES)[: 2 * len(counts)]
-    return tuple(Patch(side, side, 0, face_counts(counts, side)[0] - 1, block=block) for side in sides)
-
-
 def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -> None:
     """Raise InputError for a patch without a name, of an unknown block or side, or that leaves its side.
 
@@ -114,37 +105,3 @@ def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -
                 raise InputError(
                     f"{what} runs from node {start} to {stop} of a side with {count} nodes", remedy
                 )
-
-
-def outer_patches(
-    patches: Sequence[Patch],
-    counts: tuple[int, ...],
-    inside: Iterable[tuple[Side, Range]],
-    block: int = 0,
-) -> list[Patch]:
-    """Return the outer boundary of block number `block`, each of its edges or quadrilaterals in one patch.
-
-    Where patches overlap the later one counts; what has none is called by its side. `counts` are the nodes
-    along each direction, `inside` side and nodes of the parts that are connected. Of a block of three
-    directions a patch that is left of another in part comes as several rectangles.
-    """
-    outer: list[Patch] = []
-    inside = list(inside)
-    for side in SIDES if len(counts) == 2 else tuple(PLACES):
-        nodes = face_counts(counts, side)
-        unnamed = Patch(side, side, 0, nodes[0] - 1, block=block)
-        owners = [patch for patch in patches if patch.side == side and patch.block == block]
-        owner = np.zeros([count - 1 for count in nodes], dtype=np.intp)
-        for number, patch in enumerate(owners, start=1):
-            owner[_cells(patch.range(nodes))] = number
-        for span in (span for connected, span in inside if connected == side):
-            owner[_cells(span)] = -1
-        for number, spans in rectangles(owner):
-            named = owners[number - 1] if number else unnamed
-            across = spans[1] if len(spans) == 2 else None
-            outer.append(replace(named, start=spans[0][0], stop=spans[0][1], across=across))
-    return outer
-
-
-def _cells(span: Range) -> tuple[slice, ...]:
-    return tuple(slice(start, stop) for start, stop in span)
