@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block, Range
+from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -71,6 +71,7 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
+        check_alike(self.blocks)
         counts = [block.counts for block in self.blocks]
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
@@ -96,6 +97,9 @@ class Grid(Connected):
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
+        if form_of(block.nodes) == "volume":
+            named = tuple(patches) or tuple(outer_patches((), block.counts, ()))
+            return cls((block,), named, (), name, provenance or {}, origin)
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
             open_at = f"column ni-1 differs from column 0 at j={j}"
@@ -107,9 +111,14 @@ class Grid(Connected):
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
         """``quad``, ``o`` or ``c`` for a single planar block connected in that way, else ``blocks``."""
-        if self.blocks[0].nodes.shape[-1] == 3:
+        if self.form != "plane":
             return "blocks"
         return topology_of([block.counts for block in self.blocks], self.connections)
+
+    @property
+    def form(self) -> Form:
+        """``plane`` of blocks (ni, nj, 2), ``surface`` of (ni, nj, 3), ``volume`` of (ni, nj, nk, 3)."""
+        return form_of(self.blocks[0].nodes)
 
     @cached_property
     def nodes(self) -> Floats:
