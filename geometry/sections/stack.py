@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Literal, TypeAlias, get_args
 
@@ -54,6 +54,17 @@ class Stack:
             if not after.z > before.z:
                 problem = f"z is {after.z:g} behind {before.z:g}"
                 raise InputError(problem, "give sections in order of z", place=f"sections[{k + 1}].z")
+
+    def with_tip(self, tip: Tip | None) -> Stack:
+        """Return the same stack with another tip; None leaves it as it is.
+
+        Raises InputError: no wing, or a tip that is not known.
+        """
+        if tip is None:
+            return self
+        if self.kind != "wing":
+            raise InputError(f"a {self.kind} has no tip", "leave {tip} out", parameter="tip")
+        return replace(self, tip=tip)
 
     @property
     def z(self) -> Floats:

@@ -73,7 +73,8 @@ def wing_surface(stack: Stack, settings: WingSurface | None = None) -> tuple[Gri
         edge = ((0, n - 1),)
         connections.append(Connection(0, "north", edge, 1, "south", edge, (1,)))
         connections += cap.connections(n, 1, 2)
-    grid = Grid(tuple(blocks), tuple(patches), tuple(connections), name=stack.name)
+    zones = {"zones": ("wing", "tip", "tip")[: len(blocks)]}
+    grid = Grid(tuple(blocks), tuple(patches), tuple(connections), stack.name, zones)
     return grid, tuple(dict.fromkeys(note for note in notes if note))
 
 

@@ -1,4 +1,4 @@
-"""The inside of a circle in five blocks: a core, and a ring of four around it.
+r"""The inside of a circle in five blocks: a core, and a ring of four around it.
 
 ::
 
@@ -6,7 +6,7 @@
        .' \         / '.        from straight ones towards arcs, so that no corner is far from a right angle:
       /    +-------+    \       120 degrees, which three blocks that meet in a point cannot stay below.
       |    |  core |    |
-      \    +-------+    /       Ring blocks count i along the wall, counter-clockwise, j away from it.
+      \    +-------+    /       Ring blocks count i along the wall, counter-clockwise, and j away from it.
        '. /         \ .'
          '-----------'
 """

@@ -78,11 +78,13 @@ def sweep(section: Grid, path: Path, settings: Sweep | None = None) -> Grid:
     looked = np.linspace(0.0, path.length, max(_LOOKED_AT, len(s)))
     outline = np.concatenate([section.face(p.block, p.side)[p.start : p.stop + 1] for p in section.patches])
     _check_bends(outline, path, looked, _axes(path, looked, settings), settings)
-    axes, points = _axes(path, s, settings), path.at(s).points
-    size = _sizes(path, s, settings)
+    size = _sizes(path, s, settings)[:, None]
+    x, y = (size * axis for axis in _axes(path, s, settings))
+    points = path.at(s).points
     if path.closed:
-        axes, points = tuple(np.concatenate([a[:-1], a[:1]]) for a in axes), np.concatenate([points[:-1], points[:1]])
-    nodes = [_carried(block.nodes, points, size[:, None] * axes[0], size[:, None] * axes[1]) for block in section.blocks]
+        for each in (x, y, points):
+            each[-1] = each[0]
+    nodes = [_carried(block.nodes, points, x, y) for block in section.blocks]
     return thickened(section, nodes, None if path.closed else (("inlet", "inlet"), ("outlet", "outlet")))
 
 
