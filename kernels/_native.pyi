@@ -153,6 +153,10 @@ INTEGER_BYTES: int
 FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
+def inner_faces(
+    nodes: NDArray[np.int32], beyond: Sequence[NDArray[np.int32]], first: int, faces: NDArray[np.int32],
+    owner: NDArray[np.int32], neighbour: NDArray[np.int32],
+) -> int: ...  # fmt: skip
 
 # collapse
 def connect_quads(quads: Indices, n: int) -> tuple[Indices, Indices, Indices, bool]: ...

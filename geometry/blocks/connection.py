@@ -64,29 +64,6 @@ class Motion:
         angle = float(np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1]))
         return angle, np.linalg.solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
 
-    @property
-    def screw(self) -> tuple[float, Floats, Floats]:
-        """Angle in radians, axis (3,) of length 1 and centre (3,) of a motion in space, or in the plane.
-
-        The angle is not negative, except about z in the plane. The centre is the point of the axis nearest
-        to the origin; without a turn the angle is 0, the axis z, the centre the origin, and the shift is all
-        there is. With one, what is shifted along the axis is left out.
-        """
-        if len(self.turn) < 3:
-            angle, centre = self.rotation
-            return angle, np.array([0.0, 0.0, 1.0]), np.append(centre, 0.0)
-        turn = np.array(self.turn)
-        twice = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
-        angle = float(np.arctan2(np.sqrt(twice @ twice), np.trace(turn) - 1.0))
-        if not angle:
-            return 0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3)
-        columns = turn + np.eye(3) if angle > 3.0 else np.empty((3, 0))  # half a turn: the axis is in these
-        axis = columns[:, np.argmax((columns**2).sum(axis=0))] if angle > 3.0 else twice
-        axis = axis / np.sqrt(axis @ axis) * (-1.0 if axis @ twice < 0 else 1.0)
-        across = self.translation - (self.translation @ axis) * axis
-        centre = np.linalg.solve(np.eye(3) - turn + np.outer(axis, axis), across)
-        return angle, axis, centre
-
     def alike(self, other: Motion, tolerance: float) -> bool:
         """Return whether two motions carry nodes to the same place, to a part of the shifts."""
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))

@@ -107,6 +107,8 @@ class Grid(Connected):
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
         """``quad``, ``o`` or ``c`` for a single planar block connected in that way, else ``blocks``."""
+        if self.blocks[0].nodes.shape[-1] == 3:
+            return "blocks"
         return topology_of([block.counts for block in self.blocks], self.connections)
 
     @cached_property

@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 from block_grids import butterfly, duct, o_ring
 
+from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Motion
 from meshonet.geometry.blocks.extrude import extruded, plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 
 HEIGHTS = (0.5, 1.0, 3.0)
@@ -102,9 +104,17 @@ def test_periodic_sides_are_moved_as_in_the_plane() -> None:
     point = np.array([[0.3, 0.4, 0.7]])
     np.testing.assert_array_equal(thick.transform(point)[:, :2], motion(point[:, :2]))
     assert thick.transform(point)[0, 2] == 0.7
-    angle, axis, centre = thick.transform.screw
+    angle, axis, centre, shift, angles = screw_of(thick.transform)
+    assert not shift.any()
+    assert angles.tolist() == [0.0, 0.0, angle]
     assert (angle, axis.tolist()) == (pytest.approx(0.5), [0.0, 0.0, 1.0])
     np.testing.assert_allclose(centre[:2], motion.rotation[1], atol=1e-14)
+
+
+def rotation(axis: Floats, angle: float) -> Floats:
+    """Return Rodrigues' formula."""
+    cross = np.cross(np.eye(3), axis)  # times a vector: the axis times it
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
 
 
 @pytest.mark.parametrize("angle", [0.3, 2.0, np.pi])
@@ -112,15 +122,17 @@ def test_the_axis_of_a_motion_is_what_it_leaves_in_place(angle: float) -> None:
     rng = np.random.default_rng(1)
     axis, centre = rng.normal(size=3), rng.normal(size=3)
     axis /= np.linalg.norm(axis)
-    cross = np.cross(np.eye(3), axis)  # times a vector: the axis times it
-    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross  # Rodrigues' formula
+    turn = rotation(axis, angle)
     shift = centre - turn @ centre
     motion = Motion(tuple(shift.tolist()), tuple(map(tuple, turn.tolist())))
-    found, along, place = motion.screw
+    found, along, place, rest, angles = screw_of(motion)
     assert found == pytest.approx(angle)
     np.testing.assert_allclose(motion(place[None])[0], place, atol=1e-12)
     sign = 1.0 if angle < 3 else np.sign(along @ axis)
     np.testing.assert_allclose(sign * along, axis, atol=1e-7)
+    np.testing.assert_allclose(rest, 0, atol=1e-12)
+    x, y, z = (rotation(np.eye(3)[k], each) for k, each in enumerate(angles))
+    np.testing.assert_allclose(z @ y @ x, turn, atol=1e-12)
 
 
 @pytest.mark.parametrize("heights", [(), (1.0,), (0.0, 0.0), (1.0, 0.0), (0.0, float("nan"))])
