@@ -1,4 +1,4 @@
-"""Cross-sections of what is swept: closed curves, domains, layouts, and planar grids, which stay as they are."""
+"""Cross-sections of what is swept: closed curves, domains, layouts, and planar grids, kept as they are."""
 
 from __future__ import annotations
 

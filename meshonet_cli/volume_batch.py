@@ -53,7 +53,9 @@ def write_stacks(
         return process(
             sources, members, _Surfaces(request), destination, session, skip_existing=skip_existing, jobs=jobs
         )
-    return _write(sources, members, _Stacks(request), output, session, fail_on, to_format, skip_existing, jobs)
+    return _write(
+        sources, members, _Stacks(request), output, session, fail_on, to_format, skip_existing, jobs
+    )
 
 
 def write_sweeps(
@@ -64,13 +66,22 @@ def write_sweeps(
     """Write the volumes of sections along the path that is the last of `files`; return the exit code."""
     *sources, path = files
     if not sources:
-        raise InputError("there is no path", f"name it: meshonet sweep {path} PATH -o pipe.h5", source="sweep")
+        raise InputError(
+            "there is no path", f"name it: meshonet sweep {path} PATH -o pipe.h5", source="sweep"
+        )
     parameters = domain_parameters(_shared(section, jobs))
     parameters["percentiles"] = need_percentiles(parse_gates(fail_on))
-    request = grid_request(res=None if res is None else resolution(res), **parameters)
+    request = grid_request(res=None if res is None else _counts(res), **parameters)
     make = _Sweeps(path_of(path), request, Sweep(**along))
     members = items(sources, lambda source: read_sections(source, from_format), session)
     return _write(sources, members, make, output, session, fail_on, to_format, skip_existing, jobs)
+
+
+def _counts(text: str) -> tuple[int, int]:
+    ni, nj, nk = resolution(text)
+    if nk is not None:
+        raise bad_value(text, "the nodes of a section", "use NIxNJ, and {planes} along the path", "res")
+    return ni, nj
 
 
 def vector(text: str | None) -> tuple[float, float, float] | None:
@@ -103,9 +114,7 @@ def _write(
     destination = Destination(output, to_format, "grids")
     prepare(sources, destination, session)
     written = judging(session, fail_on)
-    deliver(
-        members, one_by_one(make), destination, session, written, skip_existing=skip_existing, jobs=jobs
-    )
+    deliver(members, one_by_one(make), destination, session, written, skip_existing=skip_existing, jobs=jobs)
     return session.finish()
 
 

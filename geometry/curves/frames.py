@@ -6,6 +6,8 @@ Transactions on Graphics 27 (2008) 2; fourth order in the step.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
@@ -20,12 +22,12 @@ def frames_along(path: Path, s: Floats, up: Floats | None = None) -> tuple[Float
     """Return the x and y axes (n, 3) of sections across a path, at increasing arc lengths `s` (n,) from 0.
 
     They and the tangent are right-handed. At the start the y axis is as near to `up` as it can be: to z
-    unless given, to y where the path starts along z. Along a closed path the frames turn evenly by what brings
-    the last one back to the first.
+    unless given, to y where the path starts along z. Along a closed path the frames turn evenly, by what
+    brings the last one back to the first.
 
     Raises InputError: `up` along the path.
     """
-    fine = np.concatenate([np.linspace(a, b, _FINER, endpoint=False) for a, b in zip(s, s[1:], strict=False)])
+    fine = np.concatenate([np.linspace(a, b, _FINER, endpoint=False) for a, b in pairwise(s)])
     fine = np.append(fine, s[-1])
     points, tangents, _ = path.at(fine)
     first = tangents[0]

@@ -40,9 +40,9 @@ _PARTS = 16  # of an interval in the table of arc length
 
 
 class SplinePath:
-    """The cubic spline through `points` (n, 3), with continuous curvature; a closed one repeats its first point.
+    """The cubic spline through `points` (n, 3), its curvature continuous.
 
-    It is parametrised by the lengths of its chords; at the ends of an open one the last intervals are
+    A closed one repeats its first point. It is parametrised by the lengths of its chords; at the ends of an open one the last intervals are
     parabolas. Raises InputError: fewer than two points (closed: four with the repeated one), a point twice in
     a row, values that are not finite.
 
@@ -86,7 +86,7 @@ class SplinePath:
         return Places(points, tangents, bend / speed**2)
 
     def _locate(self, s: Floats) -> tuple[np.ndarray[tuple[int], np.dtype[np.intp]], Floats]:
-        """Return the interval and the parameter in it at arc lengths: from the table, then Newton's method."""
+        """Return the interval and the parameter in it at arc lengths: by table and Newton's method."""
         count = len(self._table) - 1
         k = np.clip(np.searchsorted(self._table, s, side="right") - 1, 0, count - 1)
         i, low = k // _PARTS, (k % _PARTS) / _PARTS
@@ -155,7 +155,7 @@ class PiecedPath:
         self._start, self._tangent, self._normal = np.array(starts), np.array(tangents), np.array(normals)
 
     def at(self, s: Floats) -> Places:
-        """Return the places at arc lengths `s` (n,), 0 to the length; at a joint those of the piece behind."""
+        """Return the places at arc lengths `s` (n,), 0 to the length; at joints of the piece behind."""
         s = np.clip(np.asarray(s, dtype=np.float64), 0.0, self.length)
         k = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._radius) - 1)
         places = [np.empty((len(s), 3)) for _ in range(3)]
@@ -181,7 +181,9 @@ def _on_piece(start: Floats, tangent: Floats, normal: Floats, radius: float, s: 
         return Places(start + s[:, None] * tangent, straight, np.zeros((len(s), 3)))
     c, d = np.cos(s / radius)[:, None], np.sin(s / radius)[:, None]
     inwards = c * normal - d * tangent
-    return Places(start + radius * (d * tangent + (1 - c) * normal), c * tangent + d * normal, inwards / radius)
+    return Places(
+        start + radius * (d * tangent + (1 - c) * normal), c * tangent + d * normal, inwards / radius
+    )
 
 
 def _unit(vector: Floats, what: str) -> Floats:

@@ -73,7 +73,7 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and the two of `about` (6,), which are interpolated between sections."""
+        """Chord, twist in radians, x, y and both of `about` (6,), as they are interpolated between sections."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 

@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from meshonet.api.files import only
-from meshonet.api.grid import AnyShape, Counts, domain_parameters
+from meshonet.api.grid import AnyShape, domain_parameters
 from meshonet.formats.path import path_of
 from meshonet.formats.section import read_sections
 from meshonet.geometry.arrays import Floats
@@ -15,7 +15,7 @@ from meshonet.geometry.curves.path import Path, SplinePath
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.shapes.domain_shape import DomainShape
 from meshonet.geometry.shapes.outline import Outline
-from meshonet.solvers.pipeline.parameters import grid_request
+from meshonet.solvers.pipeline.parameters import Counts, grid_request
 from meshonet.solvers.pipeline.sweeps import make_sweep
 from meshonet.solvers.sweeping.sweep import Sweep
 

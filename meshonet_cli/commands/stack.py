@@ -20,8 +20,8 @@ _layer = o.option_of(o.BOUNDARY_LAYER)
 def stack(
     sections: Annotated[list[str], typer.Argument(
         metavar="SECTIONS.toml", show_default=False,
-        help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y, "
-        "twist, or sweep and dihedral; or - for standard input. See docs/wings.md.",
+        help="File with two sections or more: airfoil (a file or naca:2412), chord, z, and where needed x, y "
+        "and twist, or sweep and dihedral; or - for standard input.",
     )],
     output: o.Output,
     printing: o.PrintOptions,

@@ -19,8 +19,8 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 def sweep(
     files: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... PATH", show_default=False,
-        help="Cross-sections: circle:RADIUS, a file with a closed curve, a domain, a layout or a planar grid; "
-        "and the path of all, a file of points x y z, one a line, or lines and arcs in TOML.",
+        help="Cross-sections: circle:RADIUS, a file with a closed curve, a domain, a layout or a planar grid. "
+        "Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
     )],
     output: o.Output,
     printing: o.PrintOptions,
@@ -41,10 +41,12 @@ def sweep(
         "--twist", metavar="DEGREES", show_default=True, help="Turn the section by this from start to end.",
     )] = 0.0,
     scale: Annotated[float, _volume(
-        "--scale", metavar="F", show_default=True, help="Size of the section at the end, in sizes at the start.",
+        "--scale", metavar="F", show_default=True,
+        help="Size of the section at the end, in sizes at the start.",
     )] = 1.0,
     cells: Annotated[int | None, o.option_of(o.DOMAIN)(
-        "--cells", metavar="N", help="About so many cells in the section. [default: 320 in a circle, or 2500]",
+        "--cells", metavar="N",
+        help="About so many cells in the section. [default: 320 in a circle, or 2500]",
     )] = None,
     cell_size: Annotated[float | None, o.option_of(o.DOMAIN)(
         "--cell-size", metavar="H", help="Length of edges in the section away from walls, in its unit.",

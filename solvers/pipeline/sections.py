@@ -24,7 +24,6 @@ from meshonet.solvers.pipeline.make_grid import make_grid
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.sweeping.butterfly import DEFAULT_CELLS, Disc, butterfly
 
-_OF_SINGLE = ("spacing_south", "spacing_north", "spacing_west", "spacing_east")
 _SIDES = 65, 33
 """Nodes along the sides of a four-sided section, unless they are given."""
 
@@ -44,14 +43,22 @@ def section_grid(shape: Shape | Grid, request: GridRequest) -> tuple[Grid, tuple
         return shape, ()
     request, note = _with_height(shape, request)
     notes = (note,) if note else ()
-    if isinstance(shape, Circle) and request.cell_size is None and request.layout is None and not request.walls:
+    if (
+        isinstance(shape, Circle)
+        and request.cell_size is None
+        and request.layout is None
+        and not request.walls
+    ):
         return _disc(shape, request), notes
     inside = _inside(shape)
     if isinstance(inside, DomainShape) and inside.many:
         request = _walled(inside, request)
     elif request.first_cell is not None and not request.asks_for_blocks:
-        every = {name: request.first_cell for name in _OF_SINGLE if getattr(request, name) is None}
-        request = replace(request, first_cell=None, slide=False, **every)
+        h = request.first_cell
+        request = replace(
+            request, first_cell=None, slide=False, spacing_south=h, spacing_north=h, spacing_west=h,
+            spacing_east=h,
+        )  # fmt: skip
     if isinstance(inside, Outline) and request.sampling.ni is None and not request.asks_for_blocks:
         request = replace(request, sampling=replace(request.sampling, ni=_SIDES[0], nj=_SIDES[1]))
     result = make_grid(inside, request)
@@ -72,7 +79,7 @@ def extent(shape: Shape | Grid) -> float:
 
 
 def _with_height(shape: Shape, request: GridRequest) -> tuple[GridRequest, str]:
-    """Return the request with the height of a y+, based on the extent of the section, and where it is from."""
+    """Return the request with the height of a y+, by the extent of the section, and where it is from."""
     if request.y_plus is None or request.reynolds is None:
         return request, ""
     unit = extent(shape)

@@ -17,7 +17,9 @@ from meshonet.solvers.sweeping.sweep import Sweep, reach_of, self_crossing, swee
 _REMEDY = "use a wider bend, a smaller section or more {planes}"
 
 
-def make_sweep(shape: Shape | Grid, path: Path, request: GridRequest, settings: Sweep | None = None) -> Result:
+def make_sweep(
+    shape: Shape | Grid, path: Path, request: GridRequest, settings: Sweep | None = None
+) -> Result:
     """Return the volume of a cross-section carried along a path, measured.
 
     `request` says how the planar grid of the section is made (`section_grid`). Raises InputError: parameters,
@@ -33,7 +35,10 @@ def make_sweep(shape: Shape | Grid, path: Path, request: GridRequest, settings: 
         crossing = self_crossing(path, reach_of(section))
         if crossing is not None:
             where = "({:.4g}, {:.4g}, {:.4g})".format(*crossing)
-            notes = (*notes, f"the path comes back near itself: the volume may run through itself near {where}")
+            notes = (
+                *notes,
+                f"the path comes back near itself: the volume may run through itself near {where}",
+            )
         seconds["grid"] = time.perf_counter() - begun
         solution = Solution(grid, "sweep", notes=notes)
         return judged(

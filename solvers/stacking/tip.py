@@ -1,4 +1,4 @@
-"""The cap on the end of a wing: a ring along the edge of the last section, and a core inside it.
+r"""The cap on the end of a wing: a ring along the edge of the last section, and a core inside it.
 
 ::
 
@@ -73,7 +73,7 @@ class Cap:
         return ring, core
 
     def _inner(self, plane: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return the long sides (k, 2) of the core, from the trailing edge on, and half the thickness (k,)."""
+        """Return the long sides (k, 2) of the core from the trailing edge on, and half the thickness (k,)."""
         m = self.short
         camber, half = _sides(plane)
         nose, edge = camber[-1], camber[0]
@@ -113,7 +113,7 @@ class Cap:
 
 
 def _sides(plane: Floats) -> tuple[Floats, Floats]:
-    """Return the camber line (k, 2) from the trailing edge to the nose, and vectors from it to the upper side."""
+    """Return the camber line (k, 2) from trailing edge to nose, and vectors from it to the upper side."""
     k = len(plane) // 2 + 1
     upper, lower = plane[:k], plane[::-1][:k]
     return 0.5 * (upper + lower), 0.5 * (upper - lower)

@@ -2,9 +2,9 @@ r"""The inside of a circle in five blocks: a core, and a ring of four around it.
 
 ::
 
-         .-----------.          Corners of the core lie on the diagonals; its sides are bent outwards, half way
-       .' \         / '.        from straight ones towards arcs, so that no corner is far from a right angle:
-      /    +-------+    \       120 degrees, which three blocks that meet in a point cannot stay below.
+         .-----------.          Corners of the core lie on the diagonals, and its sides are bent outwards, a
+       .' \         / '.        quarter of the way from lines to arcs, so that no corner is far from a right
+      /    +-------+    \       angle: 120 degrees, which three blocks that meet cannot stay below.
       |    |  core |    |
       \    +-------+    /       Ring blocks count i along the wall, counter-clockwise, and j away from it.
        '. /         \ .'
