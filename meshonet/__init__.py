@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from meshonet.solvers.pipeline.make_grid import Result as Result
     from meshonet.solvers.pipeline.make_grid import make_grid as make_grid
     from meshonet.solvers.pipeline.make_grid import make_grids as make_grids
+    from meshonet.solvers.pipeline.parameters import grid_request as grid_request
     from meshonet.solvers.pipeline.request import GridRequest as GridRequest
-    from meshonet.solvers.pipeline.request import grid_request as grid_request
 
 __version__ = "0.1.0"
 
@@ -64,7 +64,8 @@ _MODULES = {
     "meshonet.geometry.spacing.sampling": ("Sampling",),
     "meshonet.solvers.method": ("METHODS",),
     "meshonet.solvers.pipeline.make_grid": ("Result", "make_grid", "make_grids"),
-    "meshonet.solvers.pipeline.request": ("GridRequest", "grid_request"),
+    "meshonet.solvers.pipeline.parameters": ("grid_request",),
+    "meshonet.solvers.pipeline.request": ("GridRequest",),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 __all__ = ["__version__", *_HOMES]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
@@ -12,6 +12,8 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.shapes.spatial_shape import in_space
+from meshonet.geometry.threads import cores
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import Row, listening
@@ -25,7 +27,14 @@ from meshonet_cli.report.grid import Report
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
-    from meshonet_cli.options import CheckOptions, FileOptions, LayerOptions, SamplingOptions, SideOptions
+    from meshonet_cli.options import (
+        CheckOptions,
+        FileOptions,
+        LayerOptions,
+        SamplingOptions,
+        SideOptions,
+        VolumeOptions,
+    )
 
 SHARED = 16  # members that one of several processes gets at a time at the most, when they are solved together
 
@@ -60,7 +69,7 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
         cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
-    if grid.topology == "blocks":
+    if grid.topology == "blocks" and not in_space(grid):
         from meshonet.geometry.quality.blocks import block_figures
 
         with report.timed("quality"):
@@ -69,7 +78,8 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
 
 
 def request_of(
-    method: str, sampling: SamplingOptions, checks: CheckOptions, *blocks: LayerOptions | SideOptions,
+    method: str, sampling: SamplingOptions, checks: CheckOptions,
+    *blocks: LayerOptions | SideOptions | VolumeOptions,
     settings: Mapping[str, Any], **parameters: Any,
 ) -> GridRequest:  # fmt: skip
     """Return the request that options describe, `parameters` by the names of its fields.
@@ -94,6 +104,8 @@ def write_grids(
     With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the
     file `history`.
     """
+    if jobs > 1 and request.threads is None:
+        request = replace(request, threads=max(cores() // jobs, 1))
     destination = Destination(output, files.to_format, "grids")
     prepare(sources[:1] if assemble else sources, destination, session)
     check_file(history)

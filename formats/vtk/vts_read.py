@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.formats.mesh.metadata import Facts, grid_with
-from meshonet.formats.mesh.slices import planar
+from meshonet.formats.mesh.metadata import Facts
+from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import CUT, Encoded, Encoding, decode
 from meshonet.geometry.arrays import Floats
@@ -24,17 +24,17 @@ _MOST_NODES = 1 << 40
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a ``.vts`` file.
+    """Yield the grid of a ``.vts`` file, in the plane or in space (`meshonet.formats.mesh.slices`).
 
-    Raises InputError: not such a file, damaged, compressed with LZ4, three-dimensional.
+    Raises InputError: not such a file, damaged, compressed with LZ4.
     """
-    nodes, facts = read_block(source)
-    yield grid_with(nodes, facts, source.stem)
+    coordinates, facts = read_block(source)
+    yield grid_of_block(coordinates, facts, source.stem)
 
 
-def read_block(source: Source) -> tuple[Floats, Facts]:
-    """Return the nodes (ni, nj, 2) of a ``.vts`` file and what it says of them; raises as `read_grids`."""
-    raw = source.read_bytes()
+def read_block(source: Source) -> tuple[list[Floats], Facts]:
+    """Return x, y, z (ni, nj, nk) each of a ``.vts`` file and what it says of them; raises as `read_grids`."""
+    raw = source.view()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
     pieces = dataset.findall("Piece")
@@ -47,7 +47,7 @@ def read_block(source: Source) -> tuple[Floats, Facts]:
     else:
         points = _assembled(pieces, whole, encoding)
     facts = {array.get("Name", ""): _texts(array, encoding) for array in dataset.iterfind("FieldData/Array")}
-    return planar([points[..., k].T for k in range(3)]), facts
+    return [points[..., k].T for k in range(3)], facts
 
 
 def _parsed(raw: bytes) -> tuple[Element, int, int]:

@@ -17,12 +17,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.block import Block, Range
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -31,7 +31,8 @@ from meshonet.geometry.blocks.connection import (
     topology_of,
     wake_cells,
 )
-from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
+from meshonet.geometry.blocks.outer_patches import outer_patches
+from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, sides_of
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,6 +46,8 @@ class Origin:
     parameters: tuple[tuple[str, float], ...] = ()
     split: str = ""
 
+
+Form: TypeAlias = Literal["plane", "surface", "volume"]
 
 UNKNOWN = Origin()
 """Of a sample that no dataset holds."""
@@ -71,6 +74,7 @@ class Grid(Connected):
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
         counts = [block.counts for block in self.blocks]
+        _check_alike(self.blocks)
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
         for connection in self.connections:
@@ -95,6 +99,9 @@ class Grid(Connected):
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
+        if form_of(block.nodes) == "volume":
+            named = tuple(patches) or sides_of(block.counts)
+            return cls((block,), named, (), name, provenance or {}, origin)
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
             open_at = f"column ni-1 differs from column 0 at j={j}"
@@ -106,7 +113,14 @@ class Grid(Connected):
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
         """``quad``, ``o`` or ``c`` for a single planar block connected in that way, else ``blocks``."""
+        if self.form != "plane":
+            return "blocks"
         return topology_of([block.counts for block in self.blocks], self.connections)
+
+    @property
+    def form(self) -> Form:
+        """``plane`` for blocks (ni, nj, 2), ``surface`` for patches (ni, nj, 3), ``volume`` for (ni, nj, nk, 3)."""
+        return form_of(self.blocks[0].nodes)
 
     @cached_property
     def nodes(self) -> Floats:
@@ -146,18 +160,23 @@ class Grid(Connected):
         return self.blocks[block].face(side)
 
     def outer_patches(self) -> list[Patch]:
-        """Return the outer boundary of planar blocks, each of its edges in one patch (`outer_patches`)."""
+        """Return the outer boundary, each cell at it in one patch (`outer_patches`)."""
         named: list[list[Patch]] = [[] for _ in self.blocks]
-        inside: list[list[tuple[Side, int, int]]] = [[] for _ in self.blocks]
         for patch in self.patches:
             named[patch.block].append(patch)
-        for each in self.connections:
-            for number in {each.block, each.donor}:
-                inside[number] += each.stretches(number)
+        inside = self.joined_ranges()
         outer: list[Patch] = []
         for number, block in enumerate(self.blocks):
             outer += outer_patches(named[number], block.counts, inside[number], number)
         return outer
+
+    def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
+        """Return for every block the sides and ranges of nodes that are connected."""
+        inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
+        for each in self.connections:
+            inside[each.block].append((each.side, each.range))
+            inside[each.donor].append((each.donor_side, each.donor_range))
+        return inside
 
     def walls(self) -> list[Patch]:
         """Return patches named as walls; without these, a body's or south's and north's unnamed stretches.
@@ -201,3 +220,19 @@ class Grid(Connected):
             raise InputError("to_pyvista needs pyvista, which is not installed", remedy) from None
         planes = (np.ascontiguousarray(plane)[..., None] for plane in (self.x, self.y, np.zeros_like(self.x)))
         return StructuredGrid(*planes)
+
+
+def form_of(nodes: Floats) -> Form:
+    """Return what the nodes of a block make: (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3)."""
+    if nodes.ndim == 4:
+        return "volume"
+    return "plane" if nodes.shape[-1] == 2 else "surface"
+
+
+def _check_alike(blocks: tuple[Block, ...]) -> None:
+    first = form_of(blocks[0].nodes)
+    for number, block in enumerate(blocks):
+        if form_of(block.nodes) != first:
+            names = {"plane": "a plane block", "surface": "a surface patch", "volume": "a volume"}
+            mixed = f"block 0 is {names[first]} and block {number} {names[form_of(block.nodes)]}"
+            raise InputError(mixed, "keep them in grids of their own")

@@ -50,7 +50,7 @@ def test_a_grid_comes_back_with_its_map(
     told = [(p.block, p.side, p.start, p.stop, p.name, p.kind) for p in found.patches]
     assert set(named) <= set(told)
     mesh, wanted = unstructured(found), unstructured(grid)
-    assert {n: len(e) for n, e in mesh.edges.items()} == {n: len(e) for n, e in wanted.edges.items()}
+    assert {n: len(e) for n, e in mesh.faces.items()} == {n: len(e) for n, e in wanted.faces.items()}
     assert "iblank" not in words or found.provenance == {
         "iblank": {"1": sum(b.nodes.size // 2 for b in grid.blocks)}
     }
@@ -93,7 +93,7 @@ def test_without_a_map_interfaces_are_found_and_lines_named(make: Make, tmp_path
     (tmp_path / "g.nmf").unlink()
     (found,) = back(tmp_path / "g.p3d")
     assert sorted_joints(found.connections) == sorted_joints(grid.connections)
-    assert set(unstructured(found).edges) == {"outer"}
+    assert set(unstructured(found).faces) == {"outer"}
 
 
 def test_a_hole_is_called_body(tmp_path: Path) -> None:
@@ -101,7 +101,7 @@ def test_a_hole_is_called_body(tmp_path: Path) -> None:
     write_grids(tmp_path / "g.p3d", [Grid.from_nodes(half[:7]), Grid.from_nodes(half[6:])])
     (found,) = back(tmp_path / "g.p3d")
     mesh = unstructured(found)
-    assert {name: len(edges) for name, edges in mesh.edges.items()} == {"body": 12, "outer": 12}
+    assert {name: len(edges) for name, edges in mesh.faces.items()} == {"body": 12, "outer": 12}
     assert len(mesh.points) == len(unstructured(ring()).points)
 
 
