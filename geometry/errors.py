@@ -60,6 +60,16 @@ def in_source(name: str) -> Iterator[None]:
         raise
 
 
+@contextmanager
+def in_place(place: str) -> Iterator[None]:
+    """Name the place in the input errors of a block that do not name one."""
+    try:
+        yield
+    except InputError as error:
+        error.place = error.place or place
+        raise
+
+
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
     """Return `text`, its names of parameters in braces passed through `spelling`; double braces stay single.
 
