@@ -253,9 +253,6 @@ def surface_march(
 def respace_lines(
     marched: Floats, steps: Floats, fade: Floats, order: Indices, sweeps: int, lines: Floats, threads: int
 ) -> None: ...
-def find_folds(
-    lines: Floats, quads: Indices, threads: int
-) -> tuple[Floats, Floats, Indices, Indices, Indices]: ...
 
 # solids
 def solids_folded(nodes: Floats, test: int, threads: int, counts: Whole) -> None: ...
