@@ -5,16 +5,19 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.threads import thread_count
 from meshonet.kernels._native import VolumeDescent, volume_energy
-from meshonet.solvers.volumes.functional import OPENING, OPTIMAL, UNFOLDING, Weights, inverse_lengths
+from meshonet.solvers.volumes.functional import OPENING, UNFOLDING, Weights, inverse_lengths
 
 RENEWED = 10
 """Iterations after which the preconditioner follows the nodes."""
-STILL, GAIN = 1e-3, 1e-5
-"""Moves, in cells, and parts of the value below which a descent stands still."""
-REACH = 1.0
+STILL, GAIN = 0.3, 5e-4
+"""Moves, in cells, and parts of the value: two steps on end below both end a descent."""
+REACH = 0.5
 """The farthest that a node may move in a first step, in cells."""
 FLAT = 0.05
 """Smallest Jacobian, 1 in a cell of mean edges, below which cells are opened before all else."""
+
+OPENED = 10
+"""Iterations of each stage of opening."""
 
 ROUNDS, ROUND = 14, 10
 """Rounds of unfolding at the most, and iterations of each."""
@@ -39,10 +42,10 @@ class Descent:
             self.planes, self._over, weights, EPSILON, thread_count(), np.empty_like(self.planes)
         )[1]
 
-    def run(self, weights: Weights, most: int, epsilon: float = 0.0, still: float = STILL) -> float:
+    def run(self, weights: Weights, most: int, epsilon: float = 0.0) -> float:
         """Take `most` iterations, fewer where nothing moves any more; return the smallest Jacobian."""
         terms = weights.shape, weights.smoothness, weights.power
-        limits = still, REACH, GAIN
+        limits = STILL, REACH, GAIN
         _, smallest, done = self._run.run(self.planes, self._over, terms, epsilon, most, RENEWED, *limits)
         self.iterations += done
         return smallest
@@ -50,7 +53,8 @@ class Descent:
     def unfold(self, smallest: float, rounds: int = ROUNDS, iterations: int = ROUND) -> float:
         """Lower the regularised functional while a Jacobian is not positive; return the smallest.
 
-        ε follows the smallest Jacobian: Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003) 2775-2787.
+        ε follows the smallest Jacobian: Escobar et al., Comput. Methods Appl. Mech. Engrg. 192 (2003)
+        2775-2787.
         """
         for count in range(rounds):
             if smallest > 0.0:
@@ -59,15 +63,9 @@ class Descent:
             smallest = self.run(UNFOLDING, iterations, float(epsilon))
         return smallest
 
-    def open(self, few: int) -> float:
+    def open(self) -> float:
         """Open flat cells of a valid grid; return the smallest Jacobian."""
-        smallest = self.run(UNFOLDING, 2 * few)
+        smallest = self.run(UNFOLDING, 2 * OPENED)
         for weights in OPENING:
-            smallest = self.run(weights, few)
+            smallest = self.run(weights, OPENED)
         return smallest
-
-    def settle(self, smallest: float, most: int, few: int = 10, still: float = STILL) -> float:
-        """Lower the functional of a valid grid by `most` iterations, flat cells opened first."""
-        if smallest < FLAT:
-            self.open(few)
-        return self.run(OPTIMAL, most, still=still)

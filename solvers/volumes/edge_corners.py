@@ -11,8 +11,8 @@ from meshonet.geometry.errors import InputError
 def check_corners(faces: SixFaces) -> None:
     """Raise InputError, with the node, where `faces` fold a cell whatever its inner nodes are.
 
-    At a node of an edge of the volume the three edges of a cell that meet there lie in the two faces. If their
-    Jacobian is not positive the cell is folded.
+    At a node of an edge of the volume the three edges of a cell that meet there lie in the two faces. If
+    their Jacobian is not positive the cell is folded.
     """
     worst, total, negative = [], 0, 0
     for side, second in edges():
@@ -26,12 +26,13 @@ def check_corners(faces: SixFaces) -> None:
         return
     if negative == total:
         raise InputError("the volume is left-handed", "reverse one of its directions")
-    scaled, side, second, at = min(worst)
+    least, side, second, at = min(worst)
     node = faces.edge(side, second)[at]
     index = _index(faces, side, second, at)
+    at_node = ", ".join(f"{name}={number}" for name, number in zip("ijk", index, strict=True))
     problem = (
-        f"{side} and {second} fold the cells along their common edge at i={index[0]}, j={index[1]}, k={index[2]} "
-        f"(scaled Jacobian {scaled:.3g}, {negative} such corners), whatever the nodes inside are"
+        f"{side} and {second} fold the cells along their common edge at {at_node} (scaled Jacobian "
+        f"{least:.3g}, {negative} such corners), whatever the nodes inside are"
     )
     raise InputError(problem, "change the faces there", place=place_of(node))
 
@@ -40,15 +41,13 @@ def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
     """Return the scaled corner Jacobians (n - 1, 2) at both ends of the segments of an edge."""
     (axis, end), (other, far) = PLACES[side], PLACES[second]
     edge = faces.edge(side, second)
-    vectors: list[Floats | None] = [None, None, None]
     # off the edge, in each of the two faces, along the direction that the other face is an end of
-    vectors[other] = _inwards(faces, side, other, far)
-    vectors[axis] = _inwards(faces, second, axis, end)
+    vectors = {other: _inwards(faces, side, other, far), axis: _inwards(faces, second, axis, end)}
     along = ({0, 1, 2} - {axis, other}).pop()
     step = np.diff(edge, axis=0)
     values = []
     for part in (slice(None, -1), slice(1, None)):
-        three = [step if axis == along else vectors[axis][part] for axis in range(3)]
+        three = [step if each == along else vectors[each][part] for each in range(3)]
         sizes = np.prod([np.linalg.norm(vector, axis=1) for vector in three], axis=0)
         jacobian = (np.cross(three[0], three[1]) * three[2]).sum(axis=1)
         values.append(np.divide(jacobian, sizes, out=np.zeros_like(sizes), where=sizes > 0))

@@ -2,8 +2,8 @@
 
     x = T(fine faces) + S (x_c - T(coarse faces))
 
-with T the transfinite interpolation in the parameters of the nodes and S tricubic splines on the coarse grid's
-uniform knots: the difference is smooth, and the faces' own detail is in T.
+with T the transfinite interpolation in the parameters of the nodes and S tricubic splines on the coarse
+grid's uniform knots: the difference is smooth, and the faces' own detail is in T.
 """
 
 from functools import lru_cache
@@ -28,7 +28,7 @@ def evaluate(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws
 
 
 def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
-    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at places (n,) of each direction."""
+    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places` (n,) a direction."""
     coefficients = values
     for axis in range(3):
         matrix = coefficient_matrix(values.shape[axis + 1])
@@ -54,11 +54,11 @@ def coefficient_matrix(m: int) -> Floats:
         system[m, :4] = system[m + 1, 1:] = -1.0, 3.0, -3.0, 1.0
     else:  # a straight line
         system[m, :3] = system[m + 1, 1:] = 1.0, -2.0, 1.0
-    return np.linalg.solve(system, np.eye(m + 2, m))
+    return np.asarray(np.linalg.solve(system, np.eye(m + 2, m)))
 
 
 def _reached(m: int, places: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Return of places (n,) from 0 to 1 the first of the four coefficients that count, and their weights (n, 4)."""
+    """Return of places (n,) from 0 to 1 the first of four coefficients that count, and weights (n, 4)."""
     at = places * (m - 1)
     first = np.clip(at.astype(np.intp), 0, m - 2)
     t = at - first

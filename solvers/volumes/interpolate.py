@@ -28,7 +28,9 @@ class Spline:
     weights: tuple[Floats, ...]
 
 
-def interpolate(faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None) -> Floats:
+def interpolate(
+    faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
+) -> Floats:
     """Return nodes (ni, nj, nk, 3), planar: the Boolean sum of the three directions at `laws`, plus `spline`.
 
     `out` (3, ni, nj, nk) takes them where fresh memory, which costs as much as the nodes, is not wanted.

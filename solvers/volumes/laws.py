@@ -1,7 +1,7 @@
-"""Parameters from 0 to 1 of the nodes along the edges of a volume: what interpolation between faces goes by.
+"""Parameters from 0 to 1 of nodes along the edges of a volume: what interpolation between faces goes by.
 
-The laws of one direction are (4, n), of its edges at the (low, low), (high, low), (low, high) and (high, high)
-ends of the other two directions.
+The laws of one direction are (4, n), of its edges at the (low, low), (high, low), (low, high) and (high,
+high) ends of the other two directions.
 """
 
 from typing import TypeAlias

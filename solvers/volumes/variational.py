@@ -1,4 +1,4 @@
-"""Six faces in, variational volume out: an optimum on few nodes, evaluated at the faces' own, and mended there."""
+"""Six faces in, variational volume out: an optimum on few nodes, evaluated at all, and mended there."""
 
 import time
 from typing import Literal
@@ -9,7 +9,7 @@ from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.six_faces import SixFaces
 from meshonet.geometry.errors import InputError
 from meshonet.solvers.solution import Outcome, Solution
-from meshonet.solvers.volumes.descent import STILL, Descent
+from meshonet.solvers.volumes.descent import FLAT, Descent
 from meshonet.solvers.volumes.edge_corners import check_corners
 from meshonet.solvers.volumes.evaluate import evaluate
 from meshonet.solvers.volumes.functional import OPTIMAL
@@ -22,10 +22,12 @@ COARSE = 33
 SPARE = 41
 """Nodes along a direction up to which the faces' own take the place of coarse ones."""
 EVEN = 1.5
-"""Ratio of steps along the edges, longest to shortest of a direction, up to which nodes count as evenly spaced."""
+"""Ratio of steps along edges, longest to shortest of a direction, up to which nodes count as evenly spaced."""
 COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
-ITERATIONS = 30, 15, 8
-"""On coarser levels, on the last but one, on the last."""
+ITERATIONS = 30, 20, 40
+"""At the most: on coarser levels, on the last but one, on the last."""
+FEW = 20
+"""Nodes a direction of levels up to which flat cells are opened first: finer ones start from open cells."""
 LEAST = 5
 
 
@@ -35,9 +37,9 @@ def variational(
     """Minimise the functional of `meshonet.solvers.volumes.functional` over the nodes inside `faces`.
 
     The optimum is found on at most `coarse` nodes a direction, evenly spaced in the mean arc length of the
-    edges ("auto": 33; None: as many as the faces have), from coarser copies, and evaluated at the nodes of the
-    faces by splines; folds that this leaves at faces are unfolded on windows. `max_cycles` are iterations
-    on the finest level that is solved.
+    edges ("auto": 33; None: as many as the faces have), from coarser copies, and evaluated at the nodes of
+    the faces by splines; folds that this leaves at faces are unfolded on windows. `max_cycles` are
+    iterations on the finest level that is solved.
 
     Raises InputError: faces that fold cells whatever is inside, with the node, before any work; an edge of no
     length; settings not positive.
@@ -89,11 +91,14 @@ def _settle(planes: Floats, most: int) -> int:
         return 0
     descent = Descent(planes)
     smallest = descent.smallest
-    if smallest <= 0.0:
+    folded = smallest <= 0.0
+    if folded:
         repair(planes)
         smallest = descent.unfold(descent.smallest)
+    if 0.0 < smallest < FLAT and (folded or max(planes.shape) <= FEW):
+        descent.open()
     if smallest > 0.0:
-        descent.settle(smallest, most, still=STILL)
+        descent.run(OPTIMAL, most)
     return descent.iterations
 
 
