@@ -264,3 +264,20 @@ def solids_run(
     counts: Whole, caught: Floats, held: Whole, threads: int,
 ) -> None: ...  # fmt: skip
 def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
+
+# volumes
+def tfi_volume(
+    nodes: Floats, faces: tuple[Floats, ...], laws: tuple[Floats, Floats, Floats], threads: int,
+    spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
+) -> None: ...  # fmt: skip
+def volume_energy(
+    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
+    gradient: Floats,
+) -> tuple[float, float]: ...  # fmt: skip
+
+class VolumeDescent:
+    def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...
+    def run(
+        self, x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
+        most: int, renew: int, still: float, reach: float, gain: float,
+    ) -> tuple[float, float, int]: ...  # fmt: skip
