@@ -1,8 +1,8 @@
 """Folded cells and metrics of volumes: blocks of nodes (ni, nj, nk, 3).
 
-A cell is folded when any of its eight corner Jacobians is not positive. Where all 27 Bezier coefficients of its
-Jacobian are positive, that is positive everywhere in the cell (`meshonet.geometry.quality.metrics`); corners at
-which an edge has no length are left out of both tests. Kernels work with
+A cell is folded when any of its eight corner Jacobians is not positive. Where all 27 Bezier coefficients of
+its Jacobian are positive, that is positive everywhere in the cell (`meshonet.geometry.quality.metrics`);
+corners at which an edge has no length are left out of both tests. Kernels work with
 `meshonet.geometry.threads.thread_count` threads, results are the same to the bit for any number.
 """
 
@@ -57,7 +57,7 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
 
 
 def worst_solids(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes` (ni, nj, nk, 3), `limit` at the most, least scaled Jacobian first."""
+    """Return the folded cells of `nodes` (ni, nj, nk, 3), `limit` at most, least scaled Jacobian first."""
     i, j, k = folded_solids(nodes)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     least = np.ones(len(i))
@@ -166,7 +166,7 @@ class _Part:
 
 
 class _Cells:
-    """Runs over the cells of blocks, which count and keep values between brackets (metrics, percentiles, 2)."""
+    """Runs over the cells of blocks; they keep values between brackets (metrics, percentiles, 2)."""
 
     def __init__(self, grid: Grid, volumes: Sequence[Floats], brackets: Floats | None) -> None:
         self._grid, self._volumes = grid, volumes
