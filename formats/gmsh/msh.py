@@ -38,9 +38,7 @@ Block: TypeAlias = "tuple[str, Indices]"
 """Name of a group of cells and their nodes (m, k) counted from 0."""
 
 
-def write_grids(
-    path: Path, grids: Iterable[Grid], *, options: Options = frozenset()
-) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the one grid of `grids`: quads, and lines in groups named as its patches.
 
     Of a volume, hexahedra and quads.

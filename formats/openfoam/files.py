@@ -1,4 +1,4 @@
-"""The files of a ``polyMesh``: lists of points, faces and labels, as text or binary, under OpenFOAM's headers.
+"""The files of a ``polyMesh``: lists of points, faces and labels under OpenFOAM's headers, text or binary.
 
 Binary ones are those of a little-endian machine with labels of 32 bits and scalars of 64, which every build
 reads by what the header says. https://doc.openfoam.com/2312/fundamentals/input-types/dictionaries/
@@ -17,7 +17,9 @@ from meshonet.geometry.arrays import Floats
 _ARCH = '    arch        "LSB;label=32;scalar=64";\n'
 
 
-def head(kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False) -> str:
+def head(
+    kind: str, name: str, note: str = "", place: str = "constant/polyMesh", *, binary: bool = False
+) -> str:
     """Return the header of a file of the class `kind`."""
     remark = f'    note        "{note}";\n' if note else ""
     form = f"binary;\n{_ARCH}" if binary else "ascii;\n"
