@@ -103,7 +103,9 @@ class SixFaces:
 
         They are at the (low, low), (high, low), (low, high) and (high, high) ends of the other two.
         """
-        first, second = ([side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis)
+        first, second = (
+            [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
+        )
         return [self.edge(side, other) for other in second for side in first]
 
     def grid(self, nodes: Floats, provenance: dict[str, object] | None = None) -> Grid:
@@ -122,7 +124,9 @@ class SixFaces:
         if counts == self.counts:
             return self
         knots = [np.linspace(0.0, 1.0, n) for n in self.counts]
-        return replace(self.at(knots, [np.linspace(0.0, 1.0, n) for n in counts]), patches=self._scaled(counts))
+        return replace(
+            self.at(knots, [np.linspace(0.0, 1.0, n) for n in counts]), patches=self._scaled(counts)
+        )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
         """Return faces at other parameters: nodes are at `knots` along each direction, wanted at `places`.
@@ -133,7 +137,9 @@ class SixFaces:
         for side in FACES:
             first, second = (axis for axis in range(3) if axis != PLACES[side][0])
             rows = cubic_spline(getattr(self, side), knots[first], places[first])
-            made[side] = np.moveaxis(cubic_spline(np.moveaxis(rows, 1, 0), knots[second], places[second]), 0, 1)
+            made[side] = np.moveaxis(
+                cubic_spline(np.moveaxis(rows, 1, 0), knots[second], places[second]), 0, 1
+            )
         share_edges(made)
         return replace(self, **made, patches=())
 
@@ -143,7 +149,9 @@ class SixFaces:
         if not whole:
             return ()
         sides = {patch.side: patch for patch in sides_of(counts)}
-        return tuple(replace(patch, start=0, stop=sides[patch.side].stop, across=None) for patch in self.patches)
+        return tuple(
+            replace(patch, start=0, stop=sides[patch.side].stop, across=None) for patch in self.patches
+        )
 
 
 def edges() -> Iterator[tuple[Side, Side]]:
@@ -187,7 +195,9 @@ def six_faces(grid: Grid) -> SixFaces:
         return SixFaces.of_block(volumes[0].nodes, name=grid.name, patches=grid.patches)
     if volumes or len(grid.blocks) != 6:
         what = f"{len(grid.blocks)} {'blocks' if volumes else 'surface patches'}"
-        raise InputError(f"{what} where the six faces of a volume are needed", "give six patches, or one block")
+        raise InputError(
+            f"{what} where the six faces of a volume are needed", "give six patches, or one block"
+        )
     from meshonet.geometry.blocks.six_patches import matched_patches
 
     return matched_patches(grid)

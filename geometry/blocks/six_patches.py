@@ -150,7 +150,11 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
         if gaps[at] > widest:
             widest, where = float(gaps[at]), pair
     share_edges(faces)
-    return (f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal",) if widest else ()
+    return (
+        (f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal",)
+        if widest
+        else ()
+    )
 
 
 def _edge(faces: dict[Side, Floats], side: Side, second: Side) -> Floats:

@@ -69,6 +69,4 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
-    return np.stack(
-        [u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1
-    )
+    return np.stack([u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1)
