@@ -108,6 +108,6 @@ def check_alike(blocks: Sequence[Block]) -> None:
     first = form_of(blocks[0].nodes)
     for number, block in enumerate(blocks):
         if form_of(block.nodes) != first:
-            names = {"plane": "a plane block", "surface": "a surface patch", "volume": "a volume"}
-            mixed = f"block 0 is {names[first]} and block {number} {names[form_of(block.nodes)]}"
+            names = {"plane": "in the plane", "surface": "a surface patch", "volume": "a volume"}
+            mixed = f"block 0 is {names[first]} and block {number} is {names[form_of(block.nodes)]}"
             raise InputError(mixed, "keep them in grids of their own")

@@ -38,4 +38,4 @@ class SpatialShape:
 
 def in_space(grid: Grid) -> bool:
     """Say whether the nodes of a grid have three coordinates."""
-    return any(block.nodes.shape[-1] == 3 for block in grid.blocks)
+    return grid.form != "plane"

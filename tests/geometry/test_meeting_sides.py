@@ -134,9 +134,12 @@ def test_reversed_connections_say_the_same() -> None:
     assert replace(grid, connections=tuple(each.reversed() for each in grid.connections)).blocks
 
 
-def test_planes_and_volumes_are_not_mixed() -> None:
-    flat, cube = lattice((0, 1, 3), (0, 1, 3), (0, 1, 3))[:, :, 0], lattice((0, 1, 3), (0, 1, 3), (0, 1, 3))
-    with pytest.raises(
-        InputError, match="block 0 is a surface patch and block 1 a volume; keep them in grids"
-    ):
-        find_connections([Block(flat), Block(cube)])
+def test_patches_are_joined_to_patches_and_volumes_to_volumes() -> None:
+    cubes = [Block(lattice((a, a + 1, 3), (0, 1, 3), (0, 1, 3))) for a in (0, 1)]
+    patches = [Block(block.face("top")) for block in cubes]
+    mixed = [cubes[0], patches[0], cubes[1], patches[1]]
+    assert [(c.block, c.side, c.donor) for c in find_connections(mixed)] == [(0, "east", 2), (1, "east", 3)]
+    with pytest.raises(InputError, match="block 0 is a volume and block 1 is a surface patch; keep them in"):
+        Grid((cubes[0], patches[0]))
+    with pytest.raises(InputError, match="block 1 has no z, others have; give all of them two coordinates"):
+        find_connections([cubes[0], Block(patches[0].nodes[..., :2])])
