@@ -16,10 +16,10 @@ from meshonet.geometry.errors import InputError
 
 
 def across(grid: Grid, connection: Connection, depth: int) -> tuple[Floats, Floats]:
-    """Return rows (depth, n, 2) of nodes on both sides of a connection, the shared row first.
+    """Return rows (depth, n, 2 or 3) of nodes on both sides of a connection, the shared row first.
 
-    Blocks are planar. The first nodes are carried to the second by the motion of a periodic connection; there
-    are fewer rows where a block has no more.
+    Blocks have two directions. The first nodes are carried to the second by the motion of a periodic
+    connection; there are fewer rows where a block has no more.
     """
     own = rows_beside(grid, connection.block, connection.side, connection.range[0], depth)
     donor = rows_beside(grid, connection.donor, connection.donor_side, connection.donor_range[0], depth)

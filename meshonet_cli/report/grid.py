@@ -75,6 +75,8 @@ class Report(Timed):
 
     def _size(self, *, short: bool = False) -> str:
         """Return how large the grid is."""
+        if self.ni is None and self.blocks is None:
+            return f"{self.quality.cells} cells"
         if self.blocks is None:
             return f"{self.ni} x {self.nj} {self.topology if short else 'nodes'}"
         count, irregular = len(self.blocks.sizes), len(self.blocks.irregular)
