@@ -8,8 +8,8 @@
     +--+--+        +--+--+                              -1 -1 -1 -1 -1
          east = west                   (one lattice of its nodes and of those one step across connected sides)
 
-A block is a lattice of node numbers, as in a plane `meshonet.geometry.layout.layout.Layout`. Nodes that lie in one
-place along a whole line of a side, as at the pole of a sphere, are one node.
+A block is a lattice of node numbers, as in a plane `meshonet.geometry.layout.layout.Layout`. Nodes that lie
+in one place along a whole line of a side, as at the pole of a sphere, are one node.
 """
 
 from __future__ import annotations
@@ -17,20 +17,23 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.arrays import AnyArray, Floats, Side
 from meshonet.geometry.blocks.block import PLACES, Block, face_of
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.handedness import signed_volume
 from meshonet.geometry.blocks.shared_nodes import shared_nodes
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
 
 Bools: TypeAlias = NDArray[np.bool_]
+FaceValues: TypeAlias = Callable[[int, Side], NDArray[Any]]
+"""Gives a view (n, m) of values at a side of a block."""
 
 POLE = 1e-12
 """Part of the size of the grid within which nodes of a line of a side are in one place."""
@@ -81,7 +84,7 @@ class HexMesh:
 
     @cached_property
     def beyond(self) -> tuple[Indices, ...]:
-        """The blocks with the nodes one step across connected sides (ni+2, nj+2, nk+2), -1 where there are none."""
+        """The blocks with the nodes one step across connected sides (ni+2, nj+2, nk+2), -1 for none."""
         wider = tuple(np.pad(block, 1, constant_values=-1) for block in self.blocks)
 
         def outside(number: int, side: Side) -> Indices:
@@ -100,19 +103,25 @@ class HexMesh:
         return replace(self, nodes=nodes)
 
 
-def second_layer(values: NDArray, side: Side) -> NDArray:  # type: ignore[type-arg]
+def any_corner(nodes: Bools) -> Bools:
+    """Say of each cell of a block of nodes (ni, nj, nk) whether any of its corners is one of some."""
+    cells = nodes
+    for axis in range(3):
+        ends = np.moveaxis(cells, axis, 0)
+        cells = np.moveaxis(ends[1:] | ends[:-1], 0, axis)
+    return np.asarray(cells)
+
+
+def second_layer(values: AnyArray, side: Side) -> AnyArray:
     """Return a view of what `values` (ni, nj, nk) are one step inside of a side."""
     axis, end = PLACES[side]
-    return np.asarray(np.moveaxis(values, axis, 0)[1 if end == 0 else -2])
+    return np.moveaxis(values, axis, 0)[1 if end == 0 else -2]
 
 
 def exchange(
-    connections: Sequence[Connection], outside: Callable[[int, Side], NDArray], inside: Callable[[int, Side], NDArray]  # type: ignore[type-arg]
+    connections: Sequence[Connection], outside: FaceValues, inside: FaceValues
 ) -> None:  # fmt: skip
-    """Fill what is `outside` of both sides of connections with what is `inside` of the other one.
-
-    Both give views (n, m) of values of a side of a block.
-    """
+    """Fill what is `outside` of both sides of connections with what is `inside` of the other one."""
     for each in connections:
         own_out, donor_out = each.nodes(lambda block, side: outside(block, side)[..., None])
         own_in, donor_in = each.nodes(lambda block, side: inside(block, side)[..., None])
@@ -127,30 +136,26 @@ def hex_mesh_of(grid: Grid) -> HexMesh:
     for number, block in enumerate(grid.blocks):
         if len(block.counts) != 3:
             sizes = " x ".join(map(str, block.counts))
-            raise InputError(f"block {number} of {sizes} nodes is no volume", "give blocks of three directions")
-        if not _right_handed(block.nodes):
+            raise InputError(
+                f"block {number} of {sizes} nodes is no volume", "give blocks of three directions"
+            )
+        if signed_volume([block.nodes[..., axis] for axis in range(3)]) < 0:
             remedy = "reverse one of its directions"
-            raise InputError(f"block {number} is left-handed", remedy, place=f"block {number}")
+            raise InputError("the block is left-handed", remedy, place=f"block {number}")
     joined = tuple(each for each in grid.connections if each.transform is None)
     numbers = shared_nodes([block.counts for block in grid.blocks], joined)
-    nodes = np.empty((1 + max(int(number.max()) for number in numbers), 3))
-    for number, block in zip(numbers, grid.blocks, strict=True):
-        nodes[number] = block.nodes
+    nodes = np.empty((1 + max(int(lattice.max()) for lattice in numbers), 3))
+    for lattice, block in zip(numbers, grid.blocks, strict=True):
+        nodes[lattice] = block.nodes
     return HexMesh(*_with_poles(nodes, numbers), joined)
-
-
-def _right_handed(nodes: Floats) -> bool:
-    """Say whether most cells of a block have a positive volume at their first corner."""
-    corner = nodes[:-1, :-1, :-1]
-    u, v, w = nodes[1:, :-1, :-1] - corner, nodes[:-1, 1:, :-1] - corner, nodes[:-1, :-1, 1:] - corner
-    volume = np.einsum("...c,...c", u, np.cross(v, w))
-    return bool(2 * np.count_nonzero(volume < 0) <= np.count_nonzero(volume))
 
 
 def _with_poles(nodes: Floats, numbers: tuple[Indices, ...]) -> tuple[Floats, tuple[Indices, ...]]:
     """Return nodes and blocks of node numbers, those of lines of sides that are in one place made one."""
     near = POLE * float(np.ptp(nodes, axis=0).max())
-    pairs = [pair for number in numbers for side in PLACES for pair in _poles(face_of(number, side), nodes, near)]
+    pairs = [
+        pair for number in numbers for side in PLACES for pair in _poles(face_of(number, side), nodes, near)
+    ]
     if not pairs:
         return nodes, numbers
     first, second = (np.concatenate(ends) for ends in zip(*pairs, strict=True))

@@ -1,7 +1,8 @@
 """A mesh of hexahedra as the compiled descent takes it: bricks of cells, and where forces on its nodes are.
 
-Bricks (``kernels/hexes/energy.h``) are parts of blocks that fit into cache, their longest direction last. They
-never reach over the end of a connection, so that a side of theirs has cells beyond it everywhere or nowhere.
+Bricks (``kernels/hexes/energy.h``) are parts of blocks that fit into cache, their longest direction last.
+They never reach over the end of a connection, so that a side of theirs has cells beyond it everywhere or
+nowhere.
 """
 
 from __future__ import annotations
@@ -9,59 +10,67 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner
 from meshonet.kernels._native import BRICK
 
 Targets = Sequence[tuple[Floats, Floats, Floats]]
-"""Of each block the logarithms of wanted lengths of edges along xi, eta and zeta: (ni+1, nj, nk) with one edge
-beyond either end, and so on."""
+"""Of each block the logarithms of wanted lengths of edges along xi, eta and zeta: (ni+1, nj, nk) with one
+edge beyond either end, and so on."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bricks:
     """Tables of the bricks that have something to do with nodes that move."""
 
-    bricks: Indices
+    bricks: NDArray[np.int64]
     """(b, 8) cells along each direction, starts in the tables, and whether it is ragged."""
-    lattices: Indices
+    lattices: NDArray[np.int32]
     inverse: Floats
-    targets: Floats
-    own: Indices
+    targets: NDArray[np.float32]
+    own: NDArray[np.int32]
     """Numbers of the nodes of each brick, where their forces are."""
 
 
 def bricks_of(mesh: HexMesh, moves: Bools, targets: Targets) -> Bricks:
     """Return the bricks of a mesh of which nodes `moves` (n,) are free."""
-    rows, lattices, inverse, wanted, own = [], [], [], [], []
-    starts = [0, 0, 0, 0]
+    rows: list[list[int]] = []
+    tables: tuple[list[NDArray[Any]], ...] = ([], [], [], [])
+    starts = [0] * len(tables)
     for brick in _bricks(mesh, moves, targets):
-        nodes, cells, edges, inner, ragged = brick
-        counts = [n - 1 for n in inner.shape]
-        rows.append([*counts, starts[0], starts[1], starts[2], 3 * starts[3], ragged])
-        for table, values, k in ((lattices, [nodes], 0), (inverse, [cells], 1), (wanted, edges, 2), (own, [inner], 3)):
-            table.extend(value.ravel() for value in values)
+        counts = [n - 1 for n in brick.own.shape]
+        rows.append([*counts, *starts[:3], 3 * starts[3], brick.ragged])
+        parts: list[list[NDArray[Any]]] = [[brick.nodes], [brick.inverse], [*brick.targets], [brick.own]]
+        for k, values in enumerate(parts):
+            tables[k].extend(value.ravel() for value in values)
             starts[k] += sum(value.size for value in values)
-    return Bricks(
-        np.array(rows, dtype=np.int64).reshape(-1, 8),
-        _joined(lattices, np.int32),
-        _joined(inverse, np.float64),
-        _joined(wanted, np.float32),
-        _joined(own, np.int32),
-    )
+    kinds = np.int32, np.float64, np.float32, np.int32
+    joined = [
+        np.concatenate([np.empty(0, kind), *table]).astype(kind, copy=False)
+        for kind, table in zip(kinds, tables, strict=True)
+    ]
+    return Bricks(np.array(rows, dtype=np.int64).reshape(-1, 8), *joined)
 
 
-def _joined(parts: list[np.ndarray], kind: type) -> np.ndarray:  # type: ignore[type-arg]
-    return np.concatenate([np.empty(0, kind), *parts]).astype(kind, copy=False)
+@dataclass(frozen=True, eq=False)
+class _Brick:
+    """Node numbers with those beyond, reciprocal lengths, wanted edges, and its own node numbers."""
+
+    nodes: Indices
+    inverse: Floats
+    targets: list[Floats]
+    own: Indices
+    ragged: bool
 
 
-def _bricks(mesh: HexMesh, moves: Bools, targets: Targets) -> Iterator[tuple]:  # type: ignore[type-arg]
-    """Yield lattice with nodes beyond, reciprocal lengths, wanted edges, own lattice and raggedness of bricks."""
+def _bricks(mesh: HexMesh, moves: Bools, targets: Targets) -> Iterator[_Brick]:
     free = np.append(moves, False)  # of -1, where there is no node
     for number, (wider, wanted) in enumerate(zip(mesh.beyond, targets, strict=True)):
         last = int(np.argmax(wider.shape))
@@ -82,7 +91,7 @@ def _bricks(mesh: HexMesh, moves: Bools, targets: Targets) -> Iterator[tuple]:  
                 for d in range(3)
             ]
             cells = inverse[(slice(None), *(slice(a, b) for a, b in spans))]
-            yield lattice[wide], cells, parts, inner, _ragged(inner, free[inner])
+            yield _Brick(lattice[wide], cells, parts, inner, _ragged(inner, free[inner]))
 
 
 def cell_lengths(edges: Sequence[Floats]) -> Floats:
@@ -122,13 +131,10 @@ def _ragged(nodes: Indices, moving: Bools) -> bool:
     """Say whether edges have no length, or no node of a cell moves."""
     if any((np.diff(nodes, axis=axis) == 0).any() for axis in range(3)):
         return True
-    for axis in range(3):
-        ends = np.moveaxis(moving, axis, 0)
-        moving = np.moveaxis(ends[1:] | ends[:-1], 0, axis)
-    return not moving.all()
+    return not any_corner(moving).all()
 
 
-def forces_of(bricks: Bricks, moves: Bools) -> tuple[Indices, Indices, Indices]:
+def forces_of(bricks: Bricks, moves: Bools) -> tuple[Indices, Indices, NDArray[np.int32]]:
     """Return the nodes that move, where each one's places start (k+1,), and the places of forces on them."""
     free = np.flatnonzero(moves)
     rank = np.cumsum(moves) - 1

@@ -1,9 +1,9 @@
 """The joint optimum of hexahedra in blocks: one functional over all cells, one descent of all nodes.
 
-The functional (``kernels/hexes/energy.c``) is that of `meshonet.solvers.volumes.variational` with lengths of cells and
-edges that are wanted instead of one length a direction, so that layers keep theirs, and with the squared
-differences of log lengths taken across interfaces as inside of blocks. Interface nodes and singular edges are
-unknowns like any other.
+The functional (``kernels/hexes/energy.c``) is that of `meshonet.solvers.volumes.variational` with lengths of
+cells and edges that are wanted instead of one length a direction, so that layers keep theirs, and with the
+squared differences of log lengths taken across interfaces as inside of blocks. Interface nodes and singular
+edges are unknowns like any other.
 
 Folded meshes are unfolded first, with Jacobians regularised, less and less of it.
 
@@ -83,7 +83,8 @@ class HexProblem:
         sizes = _sizes(self.mesh, targets)[free]
         return HexDescent(
             self.nodes, bricks.bricks, bricks.lattices, self.moves, bricks.inverse, bricks.targets,
-            (free, start, place, 1.0 / sizes), (unknowns, projections), float(self.mesh.cells), thread_count(),
+            (free, start, place, 1.0 / sizes), (unknowns, projections), float(self.mesh.cells),
+            thread_count(),
         )  # fmt: skip
 
     def result(self) -> Floats:

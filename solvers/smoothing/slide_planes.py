@@ -1,4 +1,4 @@
-"""Nodes of flat outer patches, which may slide in their planes, and along the lines where two of them meet."""
+"""Nodes of flat outer patches: they may slide in their planes, and along the lines where two of them meet."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.polygon.corners import Indices
 from meshonet.geometry.volume.hex_mesh import Bools, HexMesh
 from meshonet.solvers.energy.hexes import Slides
 
@@ -59,7 +60,7 @@ def _normal(points: Floats) -> Floats | None:
 
 
 def _add_plane(
-    nodes: np.ndarray, normal: Floats | None, name: int, normals: Floats, count: np.ndarray, names: np.ndarray  # type: ignore[type-arg]
+    nodes: Indices, normal: Floats | None, name: int, normals: Floats, count: Indices, names: Indices
 ) -> None:  # fmt: skip
     """Add a plane to those of nodes; `count` becomes 3 or more for nodes that stay."""
     if normal is None:
@@ -76,8 +77,8 @@ def _add_plane(
         names[node] = name
 
 
-def _projections(normals: Floats, count: np.ndarray) -> Floats:  # type: ignore[type-arg]
-    """Return the projections (k, 3, 3) on the planes, or on the lines where two meet, of normals (k, 2, 3)."""
+def _projections(normals: Floats, count: Indices) -> Floats:
+    """Return the projections (k, 3, 3) on the planes of normals (k, 2, 3), or on lines where two meet."""
     first, second = normals[:, 0], normals[:, 1]
     second = second - np.einsum("kc,kc->k", first, second)[:, None] * first
     size = np.linalg.norm(second, axis=1)

@@ -1,12 +1,13 @@
 """Layers at the outer sides of volumes, with the heights that they had.
 
-As `meshonet.solvers.smoothing.layers` in the plane: nodes of thin cells are moved along the optimised line that
-leaves the side to where their old heights add up, and held there while the rest is optimised once more.
+As `meshonet.solvers.smoothing.layers` in the plane: nodes of thin cells are moved along the optimised line
+that leaves the side to where their old heights add up, and held there while the rest is optimised once
+more.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,8 +29,8 @@ _ROOM = 0.9
 class Layers:
     """Lines from outer sides inwards, of nodes (n,) each of which the first is on the side.
 
-    `rows` (m,) of lines (m, n) are how many edges from the side on end thin cells, `heights` (m, n-1) those that
-    the edges should have.
+    `rows` (m,) of lines (m, n) are how many edges from the side on end thin cells, `heights` (m, n-1) those
+    that the edges should have.
     """
 
     lines: Indices
@@ -45,7 +46,6 @@ class Layers:
 def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:
     """Return the layers at outer sides of a mesh of which nodes `moves` (n,) are free."""
     layers = []
-    claimed = np.zeros(len(mesh.nodes), dtype=np.intp)
     for number, (block, wanted) in enumerate(zip(mesh.blocks, targets, strict=True)):
         for side, (axis, end) in PLACES.items():
             free = mesh.free_cells(number, side)
@@ -55,7 +55,7 @@ def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:
             lattice = np.moveaxis(block, axis, 0)[way]
             logs = [np.moveaxis(each, axis, 0)[way] for each in wanted]
             edges = [logs[axis][1:-1], *(_own(logs[d], d, axis) for d in range(3) if d != axis)]
-            rows = _rows(mesh.nodes[lattice], edges, free)
+            rows = _rows(edges, free)
             rows[~moves[lattice[1]]] = 0
             rows = np.minimum(rows, len(lattice) - 3).ravel()
             if rows.any():
@@ -63,10 +63,7 @@ def layers_of(mesh: HexMesh, moves: Bools, targets: Targets) -> list[Layers]:
                 lines = lattice.reshape(len(lattice), -1)[:, at].T
                 heights = _heights(mesh.nodes[lines], edges[0].reshape(len(lattice) - 1, -1)[:, at].T)
                 layers.append(Layers(lines, rows[at], heights))
-    for each in layers:
-        inside = np.arange(1, each.lines.shape[1])[None] <= each.rows[:, None]
-        claimed += np.bincount(np.unique(each.lines[:, 1:][inside]), minlength=len(claimed))
-    return [_not_shared(each, claimed) for each in layers]
+    return _of_one_foot(layers, len(mesh.nodes))
 
 
 def _own(logs: Floats, direction: int, axis: int) -> Floats:
@@ -75,7 +72,7 @@ def _own(logs: Floats, direction: int, axis: int) -> Floats:
     return np.moveaxis(np.moveaxis(logs, place, 0)[1:-1], 0, place)
 
 
-def _rows(nodes: Floats, logs: list[Floats], free: Bools) -> Indices:
+def _rows(logs: list[Floats], free: Bools) -> Indices:
     """Return how many rows from a side on are thin at each of its nodes (n, m)."""
     height, first, second = logs
     mean = 0.25 * (height[:, 1:, 1:] + height[:, 1:, :-1] + height[:, :-1, 1:] + height[:, :-1, :-1])
@@ -99,15 +96,21 @@ def _heights(points: Floats, logs: Floats) -> Floats:
     return np.where(np.abs(own - logs) < _UNLIKE, np.sqrt(squares), np.exp(logs))
 
 
-def _not_shared(layers: Layers, claimed: Indices) -> Layers:
-    """Return layers whose rows end where nodes are in those of another side too."""
-    alone = claimed[layers.lines[:, 1:]] <= 1
-    most = np.logical_and.accumulate(alone, axis=1).sum(axis=1)
-    return Layers(layers.lines, np.minimum(layers.rows, most), layers.heights)
+def _of_one_foot(layers: list[Layers], count: int) -> list[Layers]:
+    """Return layers whose rows end where nodes are over more than one node of outer sides."""
+    low, high = np.full(count, count), np.full(count, -1)
+    for each in layers:
+        for row in range(int(each.rows.max())):
+            at = each.lines[each.rows > row]
+            np.minimum.at(low, at[:, row + 1], at[:, 0])
+            np.maximum.at(high, at[:, row + 1], at[:, 0])
+    alone = low >= high
+    rows = [np.logical_and.accumulate(alone[each.lines[:, 1:]], axis=1).sum(axis=1) for each in layers]
+    return [replace(each, rows=np.minimum(each.rows, most)) for each, most in zip(layers, rows, strict=True)]
 
 
 def with_layers(nodes: Floats, layers: list[Layers]) -> tuple[Floats, Bools]:
-    """Return `nodes` (n, 3) with heights of layers as they should be, and which of them (n,) are in layers."""
+    """Return `nodes` (n, 3) with layers as high as they should be, and which of them (n,) are in layers."""
     moved, held = nodes.copy(), np.zeros(len(nodes), dtype=bool)
     for each in layers:
         points = nodes[each.lines]
@@ -134,7 +137,7 @@ def _at(points: Floats, place: Floats, wanted: Floats) -> Floats:
 
 
 def with_first_heights(nodes: Floats, first: Indices, heights: Floats) -> Floats:
-    """Return `nodes` with the second node of each edge (m, 2) at a height (m,) over the first, to the last digit."""
+    """Return `nodes` with the second node of each edge (m, 2) exactly at a height (m,) over the first."""
     foot = nodes[first[:, 0]]
     way = nodes[first[:, 1]] - foot
     moved = nodes.copy()

@@ -1,7 +1,7 @@
 """What lengths the edges of a given grid of volumes should have: its own, without noise and without jumps.
 
-Logarithms of lengths are diffused along grid lines and across them, where there are neighbours on both sides, so
-that geometric growth stays what it is. Edges between nodes that do not move keep their lengths.
+Logarithms of lengths are diffused along grid lines and across them, where there are neighbours on both
+sides, so that geometric growth stays what it is. Edges between nodes that do not move keep their lengths.
 """
 
 from __future__ import annotations

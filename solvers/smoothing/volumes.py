@@ -1,10 +1,10 @@
-"""Given grids of many blocks in space, smoothed: the joint optimum of their nodes, with the spacing that they have.
+"""Given grids of many blocks in space, smoothed: the joint optimum of their nodes, with their own spacing.
 
-The optimum is `meshonet.solvers.energy.hexes`'s, which wants cells and edges as long as they were given, without
-noise (`meshonet.solvers.smoothing.volume_spacing`); layers at outer sides keep their heights
-(`meshonet.solvers.smoothing.volume_layers`). Folded cells are unfolded first, from around them on. No cell has a
-scaled Jacobian less than the worst of the given grid, nor is the mean deviation from 90 degrees larger: where it
-would be, nodes go part of the way.
+The optimum is `meshonet.solvers.energy.hexes`'s, which wants cells and edges as long as they were given,
+without noise (`meshonet.solvers.smoothing.volume_spacing`); layers at outer sides keep their heights
+(`meshonet.solvers.smoothing.volume_layers`). Folded cells are unfolded first, from around them on. Neither
+the least scaled Jacobian nor the mean deviation from 90 degrees becomes worse
+(`meshonet.solvers.smoothing.volume_judge`): where they would, nodes go part of the way.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, hex_mesh_of, with_nodes
+from meshonet.geometry.volume.hex_mesh import Bools, HexMesh, any_corner, hex_mesh_of, with_nodes
 from meshonet.solvers.energy.hex_bricks import Targets
 from meshonet.solvers.energy.hexes import HexProblem, Slides, optimise, unfold
 from meshonet.solvers.smoothing.slide_planes import slides_of
-from meshonet.solvers.smoothing.volume_judge import Measures, measures
+from meshonet.solvers.smoothing.volume_judge import Measures, cells_below, measures
 from meshonet.solvers.smoothing.volume_layers import Layers, layers_of, with_first_heights, with_layers
 from meshonet.solvers.smoothing.volume_spacing import wanted_edges
 from meshonet.solvers.solution import Outcome, Solution
@@ -39,8 +39,8 @@ _AS_GOOD = "the grid is kept as it was: its optimum is no better"
 def smooth_volumes(grid: Grid, *, iterations: int = ITERATIONS, slide: bool = False) -> Solution:
     """Return `grid` with its nodes moved to the optimum of all blocks.
 
-    Nodes of outer sides stay bitwise, and so do those of periodic ones; with `slide` those of flat patches move in
-    their planes. `iterations` are those of the optimum at the most.
+    Nodes of outer sides stay bitwise, and so do those of periodic ones; with `slide` those of flat patches
+    move in their planes. `iterations` are those of the optimum at the most.
 
     Raises InputError: blocks that are no volumes, or left-handed.
     """
@@ -86,7 +86,7 @@ def _unfolded(given: HexMesh, before: Measures, moves: Bools, targets: Targets, 
     """Return the mesh without folded cells, or with fewer: what is around them is moved first, then all."""
     mesh, measured = given, before
     for reach in (*_AROUND, None):
-        near = moves if reach is None else moves & _around(mesh, measured, reach)
+        near = moves if reach is None else moves & _around(mesh, reach)
         problem = HexProblem(mesh, near, targets, slides)
         unfold(problem)
         tried = mesh.with_nodes(problem.result())
@@ -98,32 +98,27 @@ def _unfolded(given: HexMesh, before: Measures, moves: Bools, targets: Targets, 
     return mesh
 
 
-def _around(mesh: HexMesh, measured: Measures, reach: int) -> Bools:
+def _around(mesh: HexMesh, reach: int) -> Bools:
     """Return which nodes (n,) are within so many cells of folded ones."""
-    near = np.zeros(len(mesh.nodes), dtype=bool)
-    for block, least in zip(mesh.blocks, measured.cells, strict=True):
-        _mark(near, block, least <= 0.0)
+    near = _nodes_of(mesh, cells_below(mesh, 0.0))
     for _ in range(reach):
         near = _dilated(near, mesh)
     return near
 
 
-def _mark(nodes: Bools, block: np.ndarray, cells: Bools) -> None:  # type: ignore[type-arg]
-    for corner in np.ndindex(2, 2, 2):
-        at = tuple(slice(c, c + n) for c, n in zip(corner, cells.shape, strict=True))
-        nodes[block[at][cells]] = True
+def _nodes_of(mesh: HexMesh, cells: list[Bools]) -> Bools:
+    """Return which nodes (n,) are corners of some cells of each block."""
+    nodes = np.zeros(len(mesh.nodes), dtype=bool)
+    for block, some in zip(mesh.blocks, cells, strict=True):
+        for corner in np.ndindex(2, 2, 2):
+            at = tuple(slice(c, c + n) for c, n in zip(corner, some.shape, strict=True))
+            nodes[block[at][some]] = True
+    return nodes
 
 
 def _dilated(nodes: Bools, mesh: HexMesh) -> Bools:
     """Return which nodes are in a cell with one of some."""
-    wider = nodes.copy()
-    for block in mesh.blocks:
-        cells = nodes[block]
-        for axis in range(3):
-            ends = np.moveaxis(cells, axis, 0)
-            cells = np.moveaxis(ends[1:] | ends[:-1], 0, axis)
-        _mark(wider, block, cells)
-    return wider
+    return _nodes_of(mesh, [any_corner(nodes[block]) for block in mesh.blocks])
 
 
 def _optima(
@@ -137,7 +132,12 @@ def _optima(
         return [start.with_nodes(optimum.nodes)]
     nodes, held = with_layers(optimum.nodes, layers)
     rest = optimise(
-        start.with_nodes(nodes), moves & ~held, targets, slides=slides, iterations=iterations, tolerance=TOLERANCE
+        start.with_nodes(nodes),
+        moves & ~held,
+        targets,
+        slides=slides,
+        iterations=iterations,
+        tolerance=TOLERANCE,
     )
     return [start.with_nodes(rest.nodes if rest.valid else nodes)]
 
@@ -145,17 +145,14 @@ def _optima(
 def _held_back(
     start: HexMesh, made: HexMesh, before: Measures, layers: list[Layers]
 ) -> tuple[HexMesh, Measures] | None:
-    """Return `made` moved back towards `start` until it is no worse, None where hardly anything would move."""
+    """Return `made` moved back towards `start` until it is no worse, None where nothing would move."""
     part = np.ones(len(start.nodes))
     for number in range(_ROUNDS):
         tried = start.with_nodes(_part_of_the_way(start.nodes, made.nodes, part, layers))
         now = measures(tried)
         if now.no_worse(before):
             return tried, now
-        bad = np.zeros(len(part), dtype=bool)
-        for block, cells in zip(start.blocks, now.bad_cells(before), strict=True):
-            for corner in np.ndindex(2, 2, 2):
-                bad[block[tuple((cells + corner).T)]] = True
+        bad = _nodes_of(start, cells_below(tried, 0.0 if now.folded else before.bound))
         if not bad.any():  # the mean deviation
             bad[:] = True
         for share in _SHARES:
