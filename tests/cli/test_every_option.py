@@ -267,7 +267,6 @@ chord = 0.5
 z = {}
 """
 ELSEWHERE = {
-
     ("models", "--debug"): "shipped models do not fail; test_cli_models breaks one",
     ("train", "--initial"): "test_the_quad_operator_learns_around_bodies_from_a_model_that_is_there",
     ("train", "--patience"): "test_patience_ends_a_run",
