@@ -52,9 +52,10 @@ Look here for the files that meshonet reads and writes. `meshonet convert IN OUT
 `--from` and `--to` name a format where the ending is ambiguous. `meshonet convert --list-formats` prints this
 table.
 
-*names*: names of patches are kept. *3D*: `--extrude H` (`--planes K`) repeats the grid in z. *blocks*: a grid
-of several blocks is written with its blocks kept, or merged to one mesh; other formats refuse it. *many*: one
-file can hold several grids or boundaries. *options* are written behind a colon, one of each group, for
+*names*: names of patches are kept. *3D*: what is held in space, volumes and surfaces; what holds volumes also
+takes plane grids that `--extrude H` (`--planes K`) repeats in z. *blocks*: a grid of several blocks is
+written with its blocks kept, or merged to one mesh; other formats refuse it. *many*: one file can hold
+several grids or boundaries. *options* are written behind a colon, one of each group, for
 example `--to gmsh:4.1,ascii`. The first of a group is the default unless the ending says otherwise.
 
 """
@@ -100,7 +101,8 @@ may have repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3
 the same words choose the variant to write. A grid of several blocks gets a neutral map beside the file,
 `NAME.nmf`, and a map of that name is read with any file: its types, or the names in its comments, become
 names of patches. `single` omits the count of blocks, `planes` writes the coordinates of one k after the
-other, and `span-i` repeats the grid in z along its first index. iblank is reported but not kept.
+other, and `span-i` has the third direction of volumes as the first index of the file. iblank is reported
+but not kept. Of a block of 2 GiB or more there is no Fortran record: write `plot3d:binary`.
 
 ## HDF5
 
@@ -127,8 +129,22 @@ donor's direction that runs along it, counted from 1, negative when reversed; `t
 
 ## Three-dimensional files
 
-A file is read when it is a plane, or identical planes along any index. Other three-dimensional files are
-refused.
+What a file of structured blocks holds, its blocks decide together:
+
+1. Files of this program say it themselves (`.vts`, `.vtm`, `.vtk`, CGNS, HDF5).
+2. A block is a *slice* if it is one plane of nodes in which a coordinate is constant, or a layer one cell
+   thick: two planes that are copies of each other, shifted along one coordinate. Where all blocks are slices
+   across the same coordinate at the same places, the file holds a grid in the plane. That coordinate and the
+   index across are left out.
+3. Else a block with one plane of nodes, along any index, is a patch of a surface, any other one a volume.
+
+Left-handed volumes get i reversed, and so do the ranges that the file has for them. Surface patches stay
+as they are. Volumes that touch are one grid; all patches of surface of a file are one grid, whether they
+touch or not, so that gaps can be told of. Where a file does not say what is joined, parts of faces of volumes
+and of edges of patches whose nodes coincide are, as in the plane.
+
+A plane grid that `convert --extrude` made thicker is read as plane again by formats that hold names; Plot3D
+files of more than one layer of cells are volumes.
 
 ## Not read
 

@@ -17,6 +17,7 @@ from meshonet.formats.format import Options, only_one
 from meshonet.formats.mesh.metadata import facts_of
 from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
+from meshonet.formats.text.free_format import leading_numbers
 from meshonet.formats.text.number_table import write_rows
 from meshonet.formats.vtk.arrays import CUT, points_of
 from meshonet.geometry.arrays import Floats
@@ -90,6 +91,14 @@ class _Cursor:
             raise InputError(f"should have {count} more numbers and has {len(rest)}", CUT)
         self.at = len(self.data) - len(rest[count]) if len(rest) > count else len(self.data)
         return rest[:count]
+
+    def numbers(self, count: int) -> Floats:
+        """Return the next `count` numbers."""
+        values, stop = leading_numbers(self.data, count, self.at)
+        if len(values) < count:
+            return np.array(self.words(count), dtype=np.float64)
+        self.at = stop
+        return values
 
     def bytes(self, count: int) -> bytes:
         """Return the next `count` bytes."""
@@ -166,7 +175,7 @@ def _numbers(cursor: _Cursor, kind: str, count: int, *, text: bool) -> NDArray[A
     if kind.lower() not in _KINDS:
         raise InputError(f"number type {kind[:40]!r} is not known", "write double or float")
     if text:
-        return np.array(cursor.words(count), dtype=np.float64)
+        return cursor.numbers(count)
     dtype = np.dtype(">" + _KINDS[kind.lower()])
     return np.frombuffer(cursor.bytes(count * dtype.itemsize), dtype)
 
