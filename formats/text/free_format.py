@@ -1,12 +1,14 @@
 """Many numbers out of text in Fortran's free format, compiled: 0.1 us each, five times as fast as NumPy's."""
 
+from mmap import mmap
+
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.kernels._native import count_words, take_numbers
 
 
-def leading_numbers(text: bytes, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
+def leading_numbers(text: bytes | mmap, most: int | None = None, start: int = 0) -> tuple[Floats, int]:
     """Return the numbers of `text` from byte `start` on, at most so many, and where what is left starts.
 
     They end at a word that is no number, or that needs another reader: not finite, subnormal, repeated.
