@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, channel, ring
 
-from meshonet.formats.figure.figure import _drawn_lines, draw, write
+from meshonet.formats.figure.figure import _drawn_lines, draw
+from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
 from meshonet.formats.figure.picture import Picture
 from meshonet.geometry.blocks.grid import Grid

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from block_grids import butterfly, duct, o_ring
 
-from meshonet.formats.figure.figure import draw, write
+from meshonet.formats.figure.figure import draw
+from meshonet.formats.figure.files import write
 from meshonet.formats.figure.layers import Colouring
 from meshonet.formats.figure.picture import Picture
 from meshonet.geometry.blocks.grid import Grid
