@@ -253,9 +253,6 @@ def surface_march(
 def respace_lines(
     marched: Floats, steps: Floats, fade: Floats, order: Indices, sweeps: int, lines: Floats, threads: int
 ) -> None: ...
-def find_folds(
-    lines: Floats, quads: Indices, threads: int
-) -> tuple[Floats, Floats, Indices, Indices, Indices]: ...
 
 # solids
 def solids_folded(nodes: Floats, test: int, threads: int, counts: Whole) -> None: ...
@@ -268,3 +265,20 @@ def solids_run(
 ) -> None: ...  # fmt: skip
 def solids_lines(nodes: Floats, threads: int, summary: Floats, where: Whole) -> None: ...
 def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
+
+# volumes
+def tfi_volume(
+    nodes: Floats, faces: tuple[Floats, ...], laws: tuple[Floats, Floats, Floats], threads: int,
+    spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
+) -> None: ...  # fmt: skip
+def volume_energy(
+    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
+    gradient: Floats,
+) -> tuple[float, float]: ...  # fmt: skip
+
+class VolumeDescent:
+    def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...
+    def run(
+        self, x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
+        most: int, renew: int, still: float, reach: float, gain: float,
+    ) -> tuple[float, float, int]: ...  # fmt: skip

@@ -72,7 +72,8 @@ class SixFaces:
         cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = (), notes: tuple[str, ...] = ()
     ) -> SixFaces:
         """Return the outer faces of nodes (ni, nj, nk, 3)."""
-        return cls(*(face_of(nodes, side) for side in FACES), name=name, patches=patches, notes=notes)
+        west, east, south, north, bottom, top = (face_of(nodes, side) for side in FACES)
+        return cls(west, east, south, north, bottom, top, name, patches, notes)
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -133,7 +134,7 @@ class SixFaces:
 
         Both rise from 0 to 1; corners are kept, and what is at an end of `places` stays on its edge.
         """
-        made = {}
+        made: dict[Side, Floats] = {}
         for side in FACES:
             first, second = (axis for axis in range(3) if axis != PLACES[side][0])
             rows = cubic_spline(getattr(self, side), knots[first], places[first])
@@ -141,7 +142,8 @@ class SixFaces:
                 cubic_spline(np.moveaxis(rows, 1, 0), knots[second], places[second]), 0, 1
             )
         share_edges(made)
-        return replace(self, **made, patches=())
+        west, east, south, north, bottom, top = (made[side] for side in FACES)
+        return SixFaces(west, east, south, north, bottom, top, self.name, (), self.notes)
 
     def _scaled(self, counts: tuple[int, int, int]) -> tuple[Patch, ...]:
         """Return the patches where they cover whole sides; none where they do not."""
