@@ -49,6 +49,9 @@ class Picture:
             raise InputError(f"{box!r} is not a box", remedy, parameter="zoom")
         if self.slice is not None:
             parse_slice(self.slice)
+        if self.seen_from is not None and not all(map(math.isfinite, self.seen_from)):
+            remedy = "use azimuth and elevation in degrees, e.g. -125,25"
+            raise InputError(f"{self.seen_from} is no direction", remedy, parameter="seen_from")
         if self.every is not None and self.every < 1:
             problem = f"every {self.every}-th line cannot be drawn"
             raise InputError(problem, "use 1 or more", parameter="every")
