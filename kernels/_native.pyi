@@ -246,6 +246,19 @@ class DelaunayMesh:
     def nodes(self) -> tuple[Whole, Floats]: ...
     def triangles(self) -> tuple[Indices, Indices, Indices]: ...
 
+# hexes
+BRICK: tuple[int, int, int]
+
+class HexDescent:
+    def __init__(
+        self, nodes: Floats, bricks: Whole, lattices: NDArray[np.int32], moves: NDArray[np.bool_],
+        inverse: Floats, targets: NDArray[np.float32],
+        places: tuple[Indices, Indices, NDArray[np.int32], Floats], slides: tuple[Indices, Floats],
+        cells: float, threads: int,
+    ) -> None: ...  # fmt: skip
+    def weigh(self, shape: float, smoothness: float, epsilon: float = 0.0, size: float = 0.0) -> None: ...
+    def run(self, gain: float, most: int, renewal: int) -> tuple[float, float, int]: ...
+    def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
 # surfaces
 def surface_march(
     levels: Floats, heights: Floats, graph: Any, settings: Sequence[float], threads: int
