@@ -16,18 +16,8 @@ from meshonet.solvers.blocking.layer_law import layer_arcs
 from meshonet.solvers.blocking.layer_rows import JOIN, LayerSettings, arc_shares, heights_inside
 
 
-def front_nodes(mesh: QuadMesh, cut: CutLoop, k: int) -> tuple[Indices, Floats]:
-    """Return the nodes (m,) of a mesh on the front of a sheet, in order, and their column numbers (m,)."""
-    start, stop = cut.span(k)
-    on = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.arc >= start) & (mesh.places.arc <= stop))
-    order = on[np.argsort(mesh.places.arc[on], kind="stable")]
-    index = cut.index(k, mesh.places.arc[order])
-    near = np.round(index)
-    return order, np.where(np.abs(index - near) < 1e-7, near, index)
-
-
 def attach_sheets(
-    layout: Layout, cut: CutLoop, domain: Domain, numbers: dict[int, int], settings: LayerSettings,
+    layout: Layout, cut: CutLoop[Sheet], domain: Domain, numbers: dict[int, int], settings: LayerSettings,
     rows: list[int],
 ) -> Layout:  # fmt: skip
     """Return the layout with the blocks of C sheets, of so many `rows` each, in `domain`.
@@ -41,7 +31,7 @@ def attach_sheets(
     nodes = mesh.nodes.copy()
     heights = _heights(layout)
     on_fronts = np.zeros(len(nodes), dtype=bool)
-    found = [front_nodes(mesh, cut, k) for k in range(len(cut.sheets))]
+    found = [cut.front_nodes(mesh, 0, k) for k in range(len(cut.layers))]
     for order, _ in found:
         on_fronts[order] = True
     rest = np.flatnonzero((old.loop == 0) & ~on_fronts)
@@ -52,7 +42,7 @@ def attach_sheets(
     count = len(nodes)
     blocks, layers = list(layout.blocks), dict(layout.layers)
     for k, (order, index) in enumerate(found):
-        sheet = cut.sheets[k]
+        sheet = cut.layers[k]
         loop[order], cells[order], arc[order] = -1, 0, 0.0
         loop[order[[0, -1]]], arc[order[[0, -1]]] = 0, np.mod(sheet.ends, cut.outer.length)
         lines, starts = _lines(sheet, index, nodes[order], heights[order], settings, rows[k])
@@ -106,7 +96,7 @@ def _lines(
 
 
 def _numbered(
-    sheet: Sheet, cut: CutLoop, order: Indices, starts: Floats, lines: Floats, count: int
+    sheet: Sheet, cut: CutLoop[Sheet], order: Indices, starts: Floats, lines: Floats, count: int
 ) -> tuple[Indices, Floats, Places]:
     """Return numbers (k, rows + 1) from the front to wake and wall, and new nodes with their places."""
     k, rows = len(order), lines.shape[1] - 1

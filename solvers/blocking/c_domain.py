@@ -29,7 +29,7 @@ class Sheets(layered.Rings):
     `cut` is the first loop of `rest`; `numbers` are those that the loops of `rest` have in `domain`.
     """
 
-    cut: CutLoop
+    cut: CutLoop[Sheet]
     numbers: dict[int, int]
 
     @classmethod
@@ -75,7 +75,7 @@ class Sheets(layered.Rings):
     @cached_property
     def _metric(self) -> SizeMetric:
         parts = [ring_metric(ring, self.settings) for ring in self.rings.values()]
-        return SizeMetric.joined([*(_sheet_metric(s, self.settings) for s in self.cut.sheets), *parts])
+        return SizeMetric.joined([*(_sheet_metric(s, self.settings) for s in self.cut.layers), *parts])
 
     @property
     def measures(self) -> dict[int, Measure]:
@@ -90,7 +90,7 @@ class Sheets(layered.Rings):
     def attached_cells(self, chords: Chords, counts: Indices) -> int:
         """Return the cells of sheets, rings and of the rows to the far field, for counts (chords,)."""
         places, total, around = chords.layout.mesh.places, 0, 0
-        spans = [self.cut.span(k) for k in range(len(self.cut.sheets))]
+        spans = [self.cut.span(k) for k in range(len(self.cut.layers))]
         for edge in np.flatnonzero(chords.wall):
             nodes, cells = chords.edges[edge], int(counts[chords.chord[edge]])
             number = self.numbers[int(places.loop[nodes[0]])]
@@ -99,10 +99,10 @@ class Sheets(layered.Rings):
             elif number == 0:
                 arc = places.arc[nodes[len(nodes) // 2]]
                 on = [k for k, (start, stop) in enumerate(spans) if start < arc < stop]
-                total += cells * self.sheet_rows(self.cut.sheets[on[0]]) if on else 0
+                total += cells * self.sheet_rows(self.cut.layers[on[0]]) if on else 0
                 around += 0 if on else cells
         if self.near is not None:
-            around += 2 * sum(self.sheet_rows(sheet) for sheet in self.cut.sheets)
+            around += 2 * sum(self.sheet_rows(sheet) for sheet in self.cut.layers)
             total += around * self.near.cells(2.0 * np.pi * self.near.radius / max(around, 1))
         return total
 

@@ -21,8 +21,9 @@ from meshonet.geometry.polygon.corners import Indices
 from meshonet.solvers.blocking import layered
 from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.base_complex import base_complex
-from meshonet.solvers.blocking.c_attach import attach_sheets, front_nodes
+from meshonet.solvers.blocking.c_attach import attach_sheets
 from meshonet.solvers.blocking.c_domain import Sheets
+from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
@@ -117,7 +118,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
-        for k in range(len(sheets.cut.sheets)):
+        for k in range(len(sheets.cut.layers)):
             mesh = _balanced(mesh, sheets.cut, k)
         held, fronts = None, sheets.measures
         for turn in range(layered.FREE + 1):
@@ -127,7 +128,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
             mesh = optimum.mesh
             if turn == layered.FREE - 1:
                 held = np.zeros(len(mesh.nodes), dtype=bool)
-                for k in range(len(sheets.cut.sheets)):
+                for k in range(len(sheets.cut.layers)):
                     mesh, on = _tied(mesh, sheets.cut, k, times * layered.EVEN if even else 0.0)
                     held[on] = True
                 if even and fronts:
@@ -138,10 +139,10 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
         return layered.unfolded(fine, fine.mesh.wall_nodes)
 
 
-def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
+def _balanced(mesh: QuadMesh, cut: CutLoop[Sheet], k: int) -> QuadMesh:
     """Return the mesh with nodes of a front moved along it, as many on both sides of the wake."""
-    order, index = front_nodes(mesh, cut, k)
-    sheet, last = cut.sheets[k], len(order) - 1
+    order, index = cut.front_nodes(mesh, 0, k)
+    sheet, last = cut.layers[k], len(order) - 1
     n = len(sheet.levels)
     corner = mesh.places.cells[order] > 0
     low, high = (int(np.flatnonzero(corner & (index == at))[0]) for at in (sheet.edge, n - 1 - sheet.edge))
@@ -157,14 +158,14 @@ def _balanced(mesh: QuadMesh, cut: CutLoop, k: int) -> QuadMesh:
     return _moved(mesh.with_places(mesh.nodes, replace(mesh.places, cells=cells)), cut, k, order, new)
 
 
-def _tied(mesh: QuadMesh, cut: CutLoop, k: int, limit: float) -> tuple[QuadMesh, Indices]:
+def _tied(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, limit: float) -> tuple[QuadMesh, Indices]:
     """Return the mesh with nodes at the same columns on both sides of a wake, and these nodes.
 
     Neighbouring cells along the front differ by at most the exponential of `limit`, unless that is 0.
     """
-    order, index = front_nodes(mesh, cut, k)
-    last = len(cut.sheets[k].levels) - 1.0
-    edge = int(np.flatnonzero(index == cut.sheets[k].edge)[0])
+    order, index = cut.front_nodes(mesh, 0, k)
+    last = len(cut.layers[k].levels) - 1.0
+    edge = int(np.flatnonzero(index == cut.layers[k].edge)[0])
     new = index.copy()
     mean = 0.5 * (index[: edge + 1] + last - index[::-1][: edge + 1])
     if limit:
@@ -182,7 +183,7 @@ def _tied(mesh: QuadMesh, cut: CutLoop, k: int, limit: float) -> tuple[QuadMesh,
     return _moved(mesh, cut, k, order, new), held
 
 
-def _moved(mesh: QuadMesh, cut: CutLoop, k: int, order: Indices, index: Floats) -> QuadMesh:
+def _moved(mesh: QuadMesh, cut: CutLoop[Sheet], k: int, order: Indices, index: Floats) -> QuadMesh:
     nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
     arc[order] = cut.front_arcs(k, index)
     nodes[order] = cut.loop.at(arc[order])
@@ -195,7 +196,7 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     first = near.circle if near else domain.loops[0]
     fronts = [sheets.rings[k].front if k in sheets.rings else loop for k, loop in enumerate(domain.loops)]
     inner = Domain((first, *fronts[1:]), domain.name)
-    rows = [sheets.sheet_rows(sheet) for sheet in sheets.cut.sheets]
+    rows = [sheets.sheet_rows(sheet) for sheet in sheets.cut.layers]
     layout = attach_sheets(outside, sheets.cut, inner, sheets.numbers, sheets.settings, rows)
     rings = [
         ring_rows(layout.mesh, k, ring, sheets.rows(ring), sheets.settings, heights_inside(layout, k))
