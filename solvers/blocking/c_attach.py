@@ -6,10 +6,11 @@ import numpy as np
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.domain.domain import Domain
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.attach import beside, quads_of, spaced
+from meshonet.solvers.blocking.attach import beside, spaced
 from meshonet.solvers.blocking.c_sheets import Sheet
 from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.layer_law import layer_arcs
@@ -56,7 +57,7 @@ def attach_sheets(
             layers[len(blocks)] = rows[k]
             blocks.append(table[block][:, ::-1])
     joined = Places(*(np.concatenate([vars(p)[name] for p in parts]) for name in vars(parts[0])))
-    whole = QuadMesh(domain, np.concatenate(coordinates), quads_of(blocks), joined)
+    whole = QuadMesh(domain, np.concatenate(coordinates), lattice_quads(blocks), joined)
     return Layout(whole, tuple(blocks), layers)
 
 

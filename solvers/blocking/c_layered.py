@@ -29,11 +29,12 @@ from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_growth import evened
 from meshonet.solvers.blocking.even_loops import evened_loops
-from meshonet.solvers.blocking.even_rows import evened_rows, guarded
+from meshonet.solvers.blocking.finished import finished, respaced_layers
+from meshonet.solvers.blocking.folds import unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
 from meshonet.solvers.blocking.outside import found_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
-from meshonet.solvers.blocking.respace import respaced
+from meshonet.solvers.blocking.wall_layers import wanted_counts
 from meshonet.solvers.energy.quads import optimise
 
 SKEW_DEG = 35.0
@@ -114,7 +115,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
     """Return the fine layout outside sheets and rings, its nodes alike on both sides of wakes."""
     chords = Chords.of(layout)
     with timings.stage("refine"):
-        counts, _, times, metric = layered.wanted_counts(sheets, chords, cells, 0.0)
+        counts, _, times, metric = wanted_counts(sheets, chords, cells, 0.0)
         coarse = refine(layout, counts, chords)
     with timings.stage("optimum"):
         mesh = coarse.mesh
@@ -136,7 +137,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
                     held |= np.isin(mesh.places.loop, list(fronts))
     with timings.stage("refine"):
         fine = multiplied(Layout(mesh, coarse.blocks), times)
-        return layered.unfolded(fine, fine.mesh.wall_nodes)
+        return unfolded(fine, fine.mesh.wall_nodes)
 
 
 def _balanced(mesh: QuadMesh, cut: CutLoop[Sheet], k: int) -> QuadMesh:
@@ -204,24 +205,10 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     ]
     walls = Domain((first, *domain.loops[1:]), domain.name)
     layout = attach(layout, walls, rings)
-    change = respaced(layout, sheets.settings).mesh.nodes - layout.mesh.nodes
-    nodes = guarded(layout.mesh.nodes, change, layout.mesh, layered.RESPACED_SINE)
-    layout = _on_outer(replace(layout, mesh=layout.mesh.with_nodes(nodes)))
+    layout = _on_outer(respaced_layers(layout, sheets.settings))
     if near is not None:
         layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
-    layout = evened_rows(
-        _conforming(layout), layered.MARGIN * float(np.log(sheets.settings.growth)), sheets.settings.constant
-    )
-    held = np.zeros(len(layout.mesh.nodes), dtype=bool)
-    for number in layout.layers:
-        block = layout.blocks[number]
-        held[block[:, : 2 * block.shape[1] // 3]] = True
-    layout = _exact(layered.unfolded(layout, held), sheets.settings.first)
-    corners = layered.corner_jacobians(layout.mesh)
-    if corners.min() <= 0.0:
-        x, y = layout.mesh.nodes[layout.mesh.quads[int(corners.argmin())]].mean(axis=0)
-        raise NoValidGridError(f"layers or cells beside them are folded at ({x:.6g}, {y:.6g})")
-    return layout
+    return _exact(finished(_conforming(layout), sheets.settings), sheets.settings.first)
 
 
 def _conforming(layout: Layout) -> Layout:

@@ -21,7 +21,7 @@ from meshonet.geometry.domain.gap import gaps_in_front, wall_points
 from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.column_weights import column_weights, started, whole_columns
+from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
 from meshonet.solvers.blocking.free_wake import Wake
 from meshonet.solvers.blocking.marched import GAP_PART, SLOPE, THINNER, TRIES, marched
 from meshonet.solvers.blocking.wall_columns import wall_columns
@@ -91,7 +91,7 @@ class Sheet:
     @property
     def thickness(self) -> Floats:
         """(n,) lengths of the columns."""
-        return np.asarray(np.hypot(*np.diff(self.levels, axis=1).transpose(2, 0, 1)).sum(axis=1))
+        return line_lengths(self.levels)
 
     def columns(self, index: Floats, start: Floats) -> tuple[Floats, Floats]:
         """Return lines (k, m, 2) at column numbers (k,), which need not be whole, and their openings.

@@ -40,3 +40,8 @@ def started(lines: Floats, begin: Floats) -> Floats:
     moved = lines + left[..., None] * (begin - lines[:, 0])[:, None]
     moved[:, 0] = begin
     return np.asarray(moved)
+
+
+def line_lengths(lines: Floats) -> Floats:
+    """Return the lengths (k,) of lines (k, m, 2)."""
+    return np.asarray(np.hypot(*np.diff(lines, axis=1).transpose(2, 0, 1)).sum(axis=1))

@@ -94,6 +94,11 @@ class CutLoop(Generic[L]):
         knots = self._front_knots(k)
         return float(knots[0]), float(knots[-1])
 
+    def front_at(self, arc: float) -> int | None:
+        """Return the number of the front that an arc length of the new loop lies within, None for none."""
+        spans = (self.span(k) for k in range(len(self.layers)))
+        return next((k for k, (start, stop) in enumerate(spans) if start < arc < stop), None)
+
     def index(self, k: int, arcs: Floats) -> Floats:
         """Return the column numbers (m,) of layers at arc lengths (m,) of the new loop on their front."""
         knots = self._front_knots(k)

@@ -61,8 +61,14 @@ class _Held:
 
 
 def _along_layers(layout: Layout, row: Row) -> bool:
-    block = layout.blocks[row.blocks[0]]
-    return row.blocks[0] in layout.layers and bool(np.isin(row.nodes[:, 0], block[[0, -1]]).all())
+    """Return whether the lines of a row run along layers anywhere."""
+    sides = row.nodes[0], row.nodes[-1]
+    for number in row.blocks:
+        if number in layout.layers:
+            wall = layout.blocks[number][:2, 0]
+            if any(np.isin(wall, side).all() for side in sides):
+                return True
+    return False
 
 
 def _add_moves(change: Floats, nodes: Floats, each: _Held, limit: float) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.domain.grading import graded
+from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import cells_for_growth, growth_ratio
 from meshonet.kernels._native import hyperbolic_march
 from meshonet.solvers.hyperbolic.march import AREA_SMOOTHING
@@ -54,6 +56,38 @@ def marched(
         if not folded.any():
             break
     return best, where
+
+
+def fitted(
+    start: Floats, arcs: Floats, length: float, room: Floats, thickness: float, first: float,
+    attempts: Sequence[MarchSettings], *, place: Callable[[int], str], ends: Floats | None = None,
+) -> Floats:  # fmt: skip
+    """Return levels (n, m, 2) as thick as `thickness`, where `room` (n,) allows it, that are not folded.
+
+    `arcs` (n,) are those of the columns on a wall that closes after `length`; `place` names that of a column.
+    Raises InputError: a gap that no layer fits in, or a wall that every march folds at.
+    """
+    least = FEWEST_CELLS * first
+    if room.min() < least:
+        raise InputError(
+            f"a gap of {room.min() / GAP_PART:.3g} leaves no room for layers of {first:.3g}",
+            "use thinner first cells, or none there",
+            place=place(int(np.argmin(room))),
+        )
+    thickness = max(thickness, least)  # of thick first cells
+    folded = np.zeros(len(start), dtype=bool)
+    for _ in range(TRIES):
+        wanted = graded(np.minimum(thickness, room), arcs, length, SLOPE)
+        if wanted.min() < 0.99 * least:
+            break
+        levels, folded = marched(start, wanted, first, attempts, ends)
+        if levels is not None and not folded.any():
+            return levels
+        thickness *= THINNER
+    raise InputError(
+        "layers fold at the wall however thin", "smooth the wall there, or leave its layers out",
+        place=place(int(np.argmax(folded))),
+    )  # fmt: skip
 
 
 def _march(

@@ -13,6 +13,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.loop import Loop
+from meshonet.geometry.layout.lattice import lattice_quads
 from meshonet.geometry.layout.layout import Layout
 from meshonet.geometry.layout.quad_mesh import Places, QuadMesh
 from meshonet.geometry.polygon.corners import Indices
@@ -117,7 +118,7 @@ class _Refined:
             lattices.append(lattice)
             count += len(inside)
         places = _joined(self.places, Places.inside(count - len(self.nodes)))
-        quads = np.concatenate([quads_of(lattice) for lattice in lattices])
+        quads = lattice_quads(lattices)
         mesh = QuadMesh(self.old.domain, np.concatenate(parts), quads, places)
         return Layout(mesh, tuple(lattices))
 
@@ -132,12 +133,6 @@ class _Refined:
         if not strides[0][1] and not strides[1][1]:
             fine[:, :: strides[0][0], :: strides[1][0]] = coarse[0]
         return np.asarray(fine[:, 1:-1, 1:-1].reshape(2, -1).T)
-
-
-def quads_of(lattice: Indices) -> Indices:
-    """Return the quads ((ni - 1) (nj - 1), 4) of a lattice of nodes (ni, nj), counter-clockwise."""
-    corners = lattice[:-1, :-1], lattice[1:, :-1], lattice[1:, 1:], lattice[:-1, 1:]
-    return np.stack(corners, axis=-1).reshape(-1, 4)
 
 
 def _joined(first: Places, second: Places) -> Places:

@@ -8,6 +8,7 @@ ring: the first cell stays what it is, the last one becomes about as large as th
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -20,12 +21,12 @@ from meshonet.solvers.blocking.layer_law import layer_arcs
 from meshonet.solvers.blocking.layer_rows import LayerSettings
 
 
-def respaced(layout: Layout, settings: LayerSettings) -> Layout:
+def respaced(layout: Layout, settings: LayerSettings, joints: Collection[int] = ()) -> Layout:
     """Return the layout with nodes moved along the lines that leave the walls of its layers.
 
-    The layers of each wall must go round it.
+    The layers of each wall must go round it, or end on walls, or at `joints`: nodes where fronts meet.
     """
-    strips = _strips(layout)
+    strips = _strips(layout, joints)
     if not strips:
         return layout
     nodes = layout.mesh.nodes.copy()
@@ -49,14 +50,14 @@ def respaced(layout: Layout, settings: LayerSettings) -> Layout:
     return replace(layout, mesh=layout.mesh.with_nodes(nodes))
 
 
-def _strips(layout: Layout) -> list[Indices]:
+def _strips(layout: Layout, joints: Collection[int]) -> list[Indices]:
     """Return the nodes (n, m) of the lines from wall to outer side, for each block of layers."""
     ends = {}
     for number, block in enumerate(layout.blocks):
         if number not in layout.layers:
             for turned in (block, block[::-1, ::-1], block.T[:, ::-1], block.T[::-1]):
                 ends[int(turned[0, 0]), int(turned[1, 0]), int(turned[-1, 0])] = turned
-    strips, alone = [], _without_ring(layout)
+    strips, alone = [], _without_ring(layout, joints)
     for number in layout.layers:
         block = layout.blocks[number]
         front = block[:, -1]
@@ -67,11 +68,11 @@ def _strips(layout: Layout) -> list[Indices]:
     return strips
 
 
-def _without_ring(layout: Layout) -> set[int]:
+def _without_ring(layout: Layout, joints: Collection[int]) -> set[int]:
     """Return the numbers of blocks of layers on whose front, or farther along it, lie irregular nodes."""
     mesh = layout.mesh
     ends = {number: set(layout.blocks[number][[0, -1], -1].tolist()) for number in layout.layers}
-    irregular = set(np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist())
+    irregular = set(np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist()) | set(joints)
     alone = {number for number, nodes in ends.items() if nodes & irregular}
     reached = set().union(*(ends[number] for number in alone))
     while more := {number for number, nodes in ends.items() if nodes & reached} - alone:

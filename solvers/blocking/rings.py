@@ -20,12 +20,10 @@ from meshonet.geometry.curves.curve import Curve
 from meshonet.geometry.curves.monotone import monotone_cubic
 from meshonet.geometry.domain.domain import Domain
 from meshonet.geometry.domain.gap import wall_gaps
-from meshonet.geometry.domain.grading import graded
 from meshonet.geometry.domain.loop import Loop
-from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.corners import Indices
-from meshonet.solvers.blocking.column_weights import column_weights, started, whole_columns
-from meshonet.solvers.blocking.marched import FEWEST_CELLS, GAP_PART, SLOPE, THINNER, TRIES, marched
+from meshonet.solvers.blocking.column_weights import column_weights, line_lengths, started, whole_columns
+from meshonet.solvers.blocking.marched import GAP_PART, fitted
 from meshonet.solvers.blocking.wall_columns import wall_columns
 from meshonet.solvers.hyperbolic.settings import ATTEMPTS
 
@@ -49,6 +47,11 @@ class Ring:
     arcs: Floats
     levels: Floats
     front: Loop
+
+    @property
+    def thickness(self) -> Floats:
+        """(n,) lengths of the columns."""
+        return line_lengths(self.levels)
 
     def columns(self, places: Floats) -> tuple[Floats, Floats]:
         """Return the lines (k, m, 2) to `places` (k,), arc lengths of the front, and where they start.
@@ -105,35 +108,24 @@ def march_ring(domain: Domain, loop: Loop, first: float, thickness: float, large
     unit. Raises InputError: a gap that no layer fits in, or a wall that every march folds at; with the place.
     """
     arcs = wall_columns(loop, largest)
-    gaps = wall_gaps(domain, loop, arcs)
-    room = GAP_PART * gaps
-    place = _place(loop, arcs, int(np.argmin(room)))
-    if room.min() < FEWEST_CELLS * first:
-        raise InputError(
-            f"a gap of {gaps.min():.3g} leaves no room for layers of {first:.3g}",
-            "use thinner first cells, or none there",
-            place=place,
-        )
-    thickness = max(thickness, FEWEST_CELLS * first)  # of thick first cells
-    folded = np.zeros(len(arcs), dtype=bool)
-    for _ in range(TRIES):
-        wanted = graded(np.minimum(thickness, room), arcs, loop.length, SLOPE)
-        if wanted.min() < 0.99 * FEWEST_CELLS * first:
-            break
-        levels, folded = marched(loop.at(arcs), wanted, first, ATTEMPTS)
-        if levels is not None and not folded.any():
-            return _ring(loop, arcs, levels)
-        thickness *= THINNER
-    at = int(np.argmax(folded)) if folded.any() else 0
-    raise InputError(
-        "layers fold at the wall however thin", "smooth the wall there, or leave its layers out",
-        place=_place(loop, arcs, at),
-    )  # fmt: skip
+    room = GAP_PART * wall_gaps(domain, loop, arcs)
+    levels = fitted(
+        loop.at(arcs),
+        arcs,
+        loop.length,
+        room,
+        thickness,
+        first,
+        ATTEMPTS,
+        place=lambda k: place(loop, arcs[k]),
+    )
+    return _ring(loop, arcs, levels)
 
 
-def _place(loop: Loop, arcs: Floats, column: int) -> str:
-    x, y = loop.at(arcs[column : column + 1])[0]
-    return f"{loop.name_at(float(arcs[column]))}, ({x:.6g}, {y:.6g})"
+def place(loop: Loop, arc: float) -> str:
+    """Return the name and the coordinates of a place on a loop, for messages."""
+    x, y = loop.at(np.array([arc]))[0]
+    return f"{loop.name_at(float(arc))}, ({x:.6g}, {y:.6g})"
 
 
 def _ring(loop: Loop, arcs: Floats, levels: Floats) -> Ring:
