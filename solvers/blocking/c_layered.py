@@ -32,6 +32,7 @@ from meshonet.solvers.blocking.even_loops import evened_loops
 from meshonet.solvers.blocking.finished import finished, respaced_layers
 from meshonet.solvers.blocking.folds import unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
+from meshonet.solvers.blocking.on_loops import on_loops
 from meshonet.solvers.blocking.outside import found_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.wall_layers import wanted_counts
@@ -205,7 +206,9 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     ]
     walls = Domain((first, *domain.loops[1:]), domain.name)
     layout = attach(layout, walls, rings)
-    layout = _on_outer(respaced_layers(layout, sheets.settings))
+    layout = respaced_layers(layout, sheets.settings)
+    sliding = (layout.mesh.places.loop == 0) & (layout.mesh.places.cells == 0)
+    layout = replace(layout, mesh=on_loops(layout.mesh, sliding))
     if near is not None:
         layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
     return _exact(finished(_conforming(layout), sheets.settings), sheets.settings.first)
@@ -231,19 +234,6 @@ def _conforming(layout: Layout) -> Layout:
                 layers[len(blocks)] = turned.shape[1] - 1
         blocks.append(turned)
     return Layout(mesh, tuple(blocks), layers)
-
-
-def _on_outer(layout: Layout) -> Layout:
-    """Return the layout with nodes of the outer loop on it."""
-    mesh = layout.mesh
-    nodes, arc = mesh.nodes.copy(), mesh.places.arc.copy()
-    on = np.flatnonzero((mesh.places.loop == 0) & (mesh.places.cells == 0))
-    outer = mesh.domain.loops[0]
-    for _ in range(3):
-        arc[on] += ((nodes[on] - outer.at(arc[on])) * outer.tangent(arc[on])).sum(axis=1)
-    arc[on] = np.mod(arc[on], outer.length)
-    nodes[on] = outer.at(arc[on])
-    return replace(layout, mesh=mesh.with_nodes(nodes, arc))
 
 
 def _exact(layout: Layout, first: float) -> Layout:

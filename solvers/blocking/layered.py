@@ -23,9 +23,11 @@ from meshonet.solvers.blocking.attach import attach
 from meshonet.solvers.blocking.chords import Chords
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_loops import evened_loops
+from meshonet.solvers.blocking.even_metric import metric_places
 from meshonet.solvers.blocking.finished import finished, respaced_layers
 from meshonet.solvers.blocking.folds import smallest_corner, unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
+from meshonet.solvers.blocking.on_loops import on_loops
 from meshonet.solvers.blocking.outside import found_outside, taken_outside
 from meshonet.solvers.blocking.refine import multiplied, refine
 from meshonet.solvers.blocking.size_metric import SizeMetric
@@ -82,7 +84,7 @@ def _outside(
     chords = Chords.of(layout)
     with timings.stage("refine"):
         counts, stride, times, metric = wanted_counts(walls, chords, *size)
-        coarse = refine(layout, counts, chords)
+        coarse = refine(layout, counts, chords, metric_places(chords, counts, metric))
     with timings.stage("optimum"):
         if stride > 1:
             with suppress(NoValidGridError):  # so few cells may stay folded, and more not
@@ -134,4 +136,6 @@ def _joined(walls: WallLayers, outside: Layout) -> Layout:
     whole = attach(layout, walls.domain, rows)
     joints = [int(whole.blocks[number][-1, -1]) for number in corners]
     whole = with_corners(respaced_layers(whole, settings, joints), corners, settings)
+    sliding = np.isin(whole.mesh.places.loop, list(walls.cuts)) & (whole.mesh.places.cells == 0)
+    whole = replace(whole, mesh=on_loops(whole.mesh, sliding))
     return finished(whole, settings, corners)

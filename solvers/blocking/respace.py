@@ -8,7 +8,7 @@ ring: the first cell stays what it is, the last one becomes about as large as th
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -57,23 +57,34 @@ def _strips(layout: Layout, joints: Collection[int]) -> list[Indices]:
         if number not in layout.layers:
             for turned in (block, block[::-1, ::-1], block.T[:, ::-1], block.T[::-1]):
                 ends[int(turned[0, 0]), int(turned[1, 0]), int(turned[-1, 0])] = turned
-    strips, alone = [], _without_ring(layout, joints)
+    outers: dict[int, Indices] = {}
+    for number in layout.layers:
+        front = layout.blocks[number][:, -1]
+        outer = ends.get((int(front[0]), int(front[1]), int(front[-1])))
+        if outer is not None and np.array_equal(outer[:, 0], front):
+            outers[number] = outer
+    alone = _without_ring(layout, joints, outers)
+    strips = []
     for number in layout.layers:
         block = layout.blocks[number]
-        front = block[:, -1]
-        outer = ends.get((int(front[0]), int(front[1]), int(front[-1])))
-        if outer is None or number in alone or not np.array_equal(outer[:, 0], front):
-            outer = front[:, None]
-        strips.append(np.concatenate([block, outer[:, 1:]], axis=1))
+        beyond = outers[number][:, 1:] if number in outers and number not in alone else block[:, :0]
+        strips.append(np.concatenate([block, beyond], axis=1))
     return strips
 
 
-def _without_ring(layout: Layout, joints: Collection[int]) -> set[int]:
-    """Return the numbers of blocks of layers on whose front, or farther along it, lie irregular nodes."""
+def _without_ring(layout: Layout, joints: Collection[int], outers: Mapping[int, Indices]) -> set[int]:
+    """Return the numbers of blocks of layers on whose front, or farther along it, lie irregular nodes.
+
+    And of those beyond which, in `outers` by number, other layers follow.
+    """
     mesh = layout.mesh
     ends = {number: set(layout.blocks[number][[0, -1], -1].tolist()) for number in layout.layers}
     irregular = set(np.flatnonzero(mesh.irregular & ~mesh.wall_nodes).tolist()) | set(joints)
+    fronts = np.zeros(len(mesh.nodes), dtype=bool)
+    for number in layout.layers:
+        fronts[layout.blocks[number][:, -1]] = True
     alone = {number for number, nodes in ends.items() if nodes & irregular}
+    alone |= {number for number, outer in outers.items() if fronts[outer[1:-1, -1]].any()}
     reached = set().union(*(ends[number] for number in alone))
     while more := {number for number, nodes in ends.items() if nodes & reached} - alone:
         alone |= more

@@ -164,7 +164,7 @@ def march_strip(domain: Domain, stretch: Stretch, first: float, thickness: float
     arcs = np.concatenate([[begin], arcs[(arcs > begin) & (arcs < end)], [end]])
     tangent = loop.tangent(arcs)
     tangent[-1] = loop.tangent(np.array([end - _inside(loop)]))[0]
-    room = GAP_PART * gaps_in_front(_walls(domain, stretch, thickness), loop.at(arcs), tangent)
+    room = GAP_PART * _gaps(domain, stretch, thickness, arcs, tangent)
     room[[0, -1]] = np.minimum(room[[0, -1]], _room_beyond(loop, stretch))
     levels = fitted(
         loop.at(arcs), arcs, 4.0 * arcs[-1], room, thickness, first, ATTEMPTS,
@@ -178,16 +178,23 @@ def _inside(loop: Loop) -> float:
     return 1e-7 * loop.length
 
 
-def _walls(domain: Domain, stretch: Stretch, thickness: float) -> Floats:
-    """Return points (m, 2) of all walls but what lies beyond the ends of a stretch, near these."""
+def _gaps(domain: Domain, stretch: Stretch, thickness: float, arcs: Floats, tangent: Floats) -> Floats:
+    """Return the gaps (n,) in front of columns, but to what lies beyond the nearer end of the stretch."""
     loop = domain.loops[stretch.loop]
     begin, end = stretch.span(loop)
     own = np.linspace(0.0, loop.length, _SAMPLES, endpoint=False)
-    beyond = np.minimum(np.mod(own - end, loop.length), np.mod(begin - own, loop.length))
-    within = np.mod(own - begin, loop.length) <= end - begin
-    points = loop.at(own[within | (beyond >= REACH * thickness)])
+    points = loop.at(own)
     others = [each for k, each in enumerate(domain.loops) if k != stretch.loop]
-    return np.concatenate([points, wall_points(others)]) if others else points
+    rest = wall_points(others) if others else np.empty((0, 2))
+    reach = REACH * thickness
+    ahead, back = np.mod(own - end, loop.length) < reach, np.mod(begin - own, loop.length) < reach
+    outside = np.mod(own - begin, loop.length) > end - begin
+    later = arcs > 0.5 * (begin + end)
+    gaps = np.empty(len(arcs))
+    for half, near, far in ((~later, back, ahead), (later, ahead, back)):
+        walls = np.concatenate([points[~(near | (far & outside))], rest])
+        gaps[half] = gaps_in_front(walls, loop.at(arcs[half]), tangent[half])
+    return gaps
 
 
 def _room_beyond(loop: Loop, stretch: Stretch) -> Floats:
