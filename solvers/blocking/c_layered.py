@@ -29,6 +29,7 @@ from meshonet.solvers.blocking.cut_loop import CutLoop
 from meshonet.solvers.blocking.decompose import Timings
 from meshonet.solvers.blocking.even_growth import evened
 from meshonet.solvers.blocking.even_loops import evened_loops
+from meshonet.solvers.blocking.even_metric import metric_places
 from meshonet.solvers.blocking.finished import finished, respaced_layers
 from meshonet.solvers.blocking.folds import unfolded
 from meshonet.solvers.blocking.layer_rows import LayerSettings, heights_inside, ring_rows
@@ -117,7 +118,7 @@ def _outside(sheets: Sheets, layout: Layout, cells: int, timings: Timings, even:
     chords = Chords.of(layout)
     with timings.stage("refine"):
         counts, _, times, metric = wanted_counts(sheets, chords, cells, 0.0)
-        coarse = refine(layout, counts, chords)
+        coarse = refine(layout, counts, chords, metric_places(chords, counts, metric))
     with timings.stage("optimum"):
         mesh = coarse.mesh
         for k in range(len(sheets.cut.layers)):

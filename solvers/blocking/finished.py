@@ -16,7 +16,7 @@ from meshonet.solvers.blocking.respace import respaced
 
 RESPACED_SINE = 0.1
 """Of angles, that no node that is placed anew across layers may make smaller."""
-MARGIN = 1.1
+MARGIN = 1.21
 """By how much cells may differ in the end, in logarithms, over the growth of layers."""
 
 

@@ -138,7 +138,7 @@ def _outside_layers(domain: Domain, request: BlockRequest, height: float, layout
     loops, stretches = layered_walls(domain, request.walls)
     walls = WallLayers.of(domain, loops, LayerSettings(height), stretches)
     if layout is None:
-        return found_outside(walls.rest, walls.fronts)
+        return found_outside(walls.rest, walls.fronts, spans=walls.spans)
     return taken_outside(layout, walls.rest, walls.fronts)
 
 

@@ -58,8 +58,7 @@ class _Refined:
         self.first = len(vertices) + np.concatenate([[0], np.cumsum(inner)])
         self.nodes = np.empty((int(self.first[-1]), 2))
         self.nodes[: len(vertices)] = self.old.nodes[vertices]
-        places, more = self.old.places.take(vertices), Places.inside(int(inner.sum()))
-        self.places = _joined(places, more)
+        self.places = _joined(self.old.places.take(vertices), Places.inside(int(inner.sum())))
         self.edges = [self._edge(k) for k in range(len(chords.edges))]
         self._set_partners()
         self.layout = self._filled()
@@ -85,8 +84,8 @@ class _Refined:
             spline = spline_matrix(len(old), finer * (len(new) - 1) + 1, bool(ring))
             line = spline @ self.old.nodes[old]
             if self.at is not None:
-                number = np.linspace(0.0, len(old) - 1.0, len(line))
-                line = np.stack([np.interp(at, number, line[:, axis]) for axis in (0, 1)], axis=1)
+                dense = np.linspace(0.0, len(old) - 1.0, len(line))
+                line = np.stack([np.interp(at, dense, line[:, axis]) for axis in (0, 1)], axis=1)
             self.nodes[inner] = line[1:-1]
         whole, rest = divmod(len(new) - 1, len(old) - 1)
         if (

@@ -20,6 +20,9 @@ from meshonet.solvers.blocking.attach import spaced
 from meshonet.solvers.blocking.layer_law import layer_arcs
 from meshonet.solvers.blocking.layer_rows import LayerSettings
 
+SMOOTHINGS = 200
+"""How often the cells that lines are to end with are averaged along the front."""
+
 
 def respaced(layout: Layout, settings: LayerSettings, joints: Collection[int] = ()) -> Layout:
     """Return the layout with nodes moved along the lines that leave the walls of its layers.
@@ -107,5 +110,29 @@ def _beyond(layout: Layout, strips: list[Indices]) -> Floats:
         leaving = outer[a] & ~inside[b]
         np.add.at(total, a[leaving], np.log(length[leaving]))
         np.add.at(count, a[leaving], 1.0)
-    # between two strips nothing leaves: a constant ratio then
-    return np.where(count > 0, np.exp(total / np.maximum(count, 1.0)), np.inf)
+    mean, known = total / np.maximum(count, 1.0), count > 0
+    sides = np.concatenate([np.stack([strip[:-1, -1], strip[1:, -1]], axis=1) for strip in strips])
+    while True:  # between two strips nothing leaves: they end as those beside them do
+        reached = known[sides].sum(axis=1) == 1
+        if not reached.any():
+            break
+        pair = sides[reached]
+        source = pair[known[pair]]
+        new = pair.sum(axis=1) - source
+        mean[new], known[new] = mean[source], True
+    values = _smoothed(mean, sides[known[sides].all(axis=1)])
+    return np.where(known, np.exp(values), np.inf)  # a constant ratio where nothing leaves at all
+
+
+def _smoothed(values: Floats, pairs: Indices) -> Floats:
+    """Return values (n,) averaged with those of their neighbours, `pairs` (m, 2), again and again.
+
+    What leaves a side changes at once where a block ends, and lines beside each other are to be alike.
+    """
+    first, second = pairs.T
+    beside = np.bincount(pairs.ravel(), minlength=len(values))
+    for _ in range(SMOOTHINGS):
+        step = values[second] - values[first]
+        rise = np.bincount(first, step, len(values)) - np.bincount(second, step, len(values))
+        values = values + 0.5 * rise / np.maximum(beside, 1)
+    return values

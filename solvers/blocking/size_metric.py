@@ -35,7 +35,7 @@ class Near:
     scale: Floats
 
     def length(self, across: Floats, along: Floats, largest: float) -> Floats:
-        """Return the lengths (m,) of the edges, the least that a part wants, from those (n,) at the points."""
+        """Return the lengths (m,) of the edges, the least of all parts, from those (n,) at the points."""
         high = np.minimum(across[self.point] + self.rise, largest)
         wide = np.minimum(along[self.point] + self.rise, largest)
         most = np.sqrt(self.square / high**2 + (1.0 - self.square) / wide**2).max(axis=0)
@@ -55,8 +55,8 @@ class SizeMetric:
     grading : by how much lengths grow with the distance.
     scale : of a conformal map, how much longer (n,) edges at places (n, 2) of its plane are; lengths and
         distances above are those before the map, places, points and directions those behind it.
-    starts : numbers of the points at which parts begin, walls that ask for sizes of their own: an edge gets the
-        least of these, so that sizes change gradually from one wall to the next.
+    starts : numbers of the points at which parts begin, walls that ask for sizes of their own: an edge gets
+        the least of these, so that sizes change gradually from one wall to the next.
     """
 
     points: Floats

@@ -36,8 +36,8 @@ def attach_strips(
 ) -> tuple[Layout, tuple[int, ...]]:
     """Return a layout with the layers of a cut loop, and the numbers of the blocks in its corners.
 
-    `rows` are those of each strip; `number` is that of the loop, the cut one in the layout's domain, the whole
-    one in `domain`.
+    `rows` are those of each strip; `number` is that of the loop, the cut one in the layout's domain and the
+    whole one in `domain`.
     """
     return _Attached(layout, domain, number, cut, settings).whole(rows)
 

@@ -168,7 +168,7 @@ def march_strip(domain: Domain, stretch: Stretch, first: float, thickness: float
     room[[0, -1]] = np.minimum(room[[0, -1]], _room_beyond(loop, stretch))
     levels = fitted(
         loop.at(arcs), arcs, 4.0 * arcs[-1], room, thickness, first, ATTEMPTS,
-        place=lambda k: place(loop, arcs[min(k, len(arcs) - 1)]), ends=_ways(loop, stretch, tangent),
+        place=lambda k: place(loop, min(float(arcs[k]), end - _inside(loop))), ends=_ways(loop, stretch, tangent),
     )  # fmt: skip
     strip = Strip(stretch, loop, arcs, levels)
     return _on_loop(strip)

@@ -16,6 +16,7 @@ from meshonet.solvers.blocking.even_loops import Measure
 from meshonet.solvers.blocking.feature_sizes import feature_sizes
 from meshonet.solvers.blocking.layer_rows import LayerSettings, last_layers, open_metric, ring_metric
 from meshonet.solvers.blocking.near_field import NearField
+from meshonet.solvers.blocking.padding import Span
 from meshonet.solvers.blocking.rings import Ring, march_ring
 from meshonet.solvers.blocking.size_metric import SizeMetric
 from meshonet.solvers.blocking.stretches import Stretch
@@ -77,6 +78,12 @@ class WallLayers:
     def fronts(self) -> tuple[int, ...]:
         """Numbers of the loops of which fronts have taken the place, or parts of it."""
         return (*self.rings, *self.cuts)
+
+    @property
+    def spans(self) -> list[Span]:
+        """Stretches of the loops of `rest` that are fronts, but for whole loops."""
+        cuts = ((k, cut) for k, cut in self.cuts.items() if len(cut.loop.corners) > 1)
+        return [(k, *cut.span(i)) for k, cut in cuts for i in range(len(cut.layers))]
 
     @cached_property
     def _metric(self) -> SizeMetric:
@@ -145,7 +152,7 @@ def _sizes(domain: Domain, number: int) -> tuple[float, float]:
 
 
 def _measure(cut: CutLoop[Strip]) -> Measure:
-    """Return arc lengths of a cut loop, and what rises with them: walls under fronts, else the loop itself."""
+    """Return arc lengths of a cut loop, and what rises with them: those of walls where there are fronts."""
     arcs, rise = [np.zeros(1)], [np.zeros(1)]
     for k, strip in enumerate(cut.layers):
         index, wall = strip.along_wall
