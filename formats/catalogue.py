@@ -41,7 +41,7 @@ def _row(record: Format) -> tuple[str, ...]:
             record.write_layouts is not None,
         ),
         "yes" if record.names_patches else "",
-        "yes" if record.extrudes else "",
+        ", ".join(record.space),
         record.blocks,
         "yes" if record.many else "",
         record.description,

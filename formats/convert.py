@@ -4,10 +4,10 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from meshonet.formats.format import Heights
 from meshonet.formats.registry import format_for_output, format_of, formats, read_grids, read_shapes
 from meshonet.formats.source import LARGEST, open_source
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.transform import coarser_grid, normalised, turned
 from meshonet.geometry.errors import InputError
@@ -33,7 +33,7 @@ class Conversion:
     normalise: bool = False
     coarsen: int = 1
 
-    def heights(self) -> Heights:
+    def heights(self) -> tuple[float, ...]:
         """Return z of each plane, none for a flat grid; InputError for a height that is not positive."""
         if self.extrude is None:
             if self.planes is not None:
@@ -78,10 +78,10 @@ class Conversion:
             return None
         record = format_for_output(output, to_format)
         write = record.write_grids
-        if write is None or not record.extrudes:
-            able = ", ".join(each.name for each in formats() if each.extrudes)
+        if write is None or "volumes" not in record.space:
+            able = ", ".join(each.name for each in formats() if "volumes" in each.space)
             raise InputError(f"{record.name} holds flat grids only", f"write one of {able}", source=output)
-        return lambda path, grids: write(path, grids, heights)
+        return lambda path, grids: write(path, (extruded(grid, heights) for grid in grids))
 
 
 def plot3d_variant(

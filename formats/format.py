@@ -18,8 +18,8 @@ from meshonet.geometry.shapes.shape import Shape
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
 
-Heights: TypeAlias = tuple[float, ...]
-"""z of each plane of a grid that is repeated in z, increasing from 0; none for a flat one."""
+Space: TypeAlias = Literal["volumes", "surfaces"]
+"""What grids whose nodes have three coordinates are made of: blocks of volume, or patches of a surface."""
 Options: TypeAlias = frozenset[str]
 """Words behind a format's name, ``plot3d:big,float32``."""
 
@@ -35,10 +35,10 @@ class Format:
         outer edges then serve) or cannot be read.
     read_grids, write_grids, write_boundaries, write_layouts : None when the format cannot.
     sniff : says from the first `HEAD_BYTES` bytes whether a file looks like this.
-    extrudes : whether `write_grids` takes `Heights` third and writes layers of cells between these planes.
     names_patches : whether names of patches and the topology survive in it.
     blocks : how a grid of several planar blocks is written: the blocks ``kept``, or ``merged`` to one mesh;
         not at all if empty.
+    space : which grids in space `write_grids` takes, and `read_grids` gives where the format can be read.
     many : whether one file holds several grids or boundaries.
     one_size : whether all that one file holds must have the same counts of nodes and the same topology.
     beside : whether other files are written beside the file, so that it cannot be written to a stream.
@@ -58,9 +58,9 @@ class Format:
     write_boundaries: Callable[[Path, Iterable[Boundary]], None] | None = None
     write_layouts: Callable[[Path, Iterable[Layout]], None] | None = None
     sniff: Callable[[bytes], bool] | None = None
-    extrudes: bool = False
     names_patches: bool = False
     blocks: Literal["", "kept", "merged"] = ""
+    space: tuple[Space, ...] = ()
     many: bool = False
     one_size: bool = False
     beside: bool = False
@@ -131,6 +131,13 @@ def at_least_one(grids: Iterator[Grid]) -> Grid:
     if first is None:
         raise InputError("there is no grid to write", "check the input")
     return first
+
+
+def kinds_in_space(grid: Grid) -> tuple[Space, ...]:
+    """Return what a grid in space is made of, nothing for one in the plane."""
+    directions = {len(block.counts) for block in grid.blocks if block.nodes.shape[-1] == 3}
+    kinds: dict[int, Space] = {3: "volumes", 2: "surfaces"}
+    return tuple(kind for count, kind in kinds.items() if count in directions)
 
 
 def size_of(sample: Boundary | Grid) -> str:

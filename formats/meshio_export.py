@@ -27,14 +27,14 @@ def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozens
 
     (kind,) = options or {"stl"}
     mesh = unstructured(only_one(grids, f"a file of {kind}"))
-    cells, nodes = ("triangle", _triangles(mesh)) if kind in _TRIANGLES else ("quad", mesh.quads)
+    cells, nodes = ("triangle", _triangles(mesh)) if kind in _TRIANGLES else ("quad", mesh.cells)
     made = meshio.Mesh(in_space(mesh.points), [(cells, nodes.astype(np.int32))])
     getattr(meshio, kind).write(str(path), made, **_SETTINGS.get(kind, {}))
 
 
 def _triangles(mesh: Unstructured) -> Indices:
     """Return two triangles (2m, 3) for each quadrilateral."""
-    quads = mesh.quads
+    quads = mesh.cells
     corner = mesh.points[quads]
     first, second = (np.hypot(*(corner[:, k] - corner[:, k + 2]).T) for k in (0, 1))
     turned = np.where((first <= second)[:, None], quads, np.roll(quads, -1, axis=1))

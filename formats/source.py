@@ -1,6 +1,7 @@
 """Where bytes come from: a file, standard input, or memory, under the name the user gave it."""
 
 import io
+import mmap
 import stat
 import sys
 from dataclasses import dataclass, replace
@@ -12,6 +13,7 @@ from meshonet.geometry.errors import InputError
 SPLITS = ("train", "test")
 HEAD_BYTES = 65536
 """How much of a file a format sees when it is asked whether the file is one of its own."""
+_MAPPED = 1 << 24
 LARGEST = 1e150
 """Coordinates in files must be below this, so that areas and their sums are finite."""
 
@@ -53,6 +55,13 @@ class Source:
     def read_bytes(self) -> bytes:
         """Return everything."""
         return self.data if self.data is not None else self._file().read_bytes()
+
+    def buffer(self) -> bytes | mmap.mmap:
+        """Return everything; of a large file its pages, which the system reads when they are looked at."""
+        if self.data is not None or self.size < _MAPPED:
+            return self.read_bytes()
+        with self.open() as stream:
+            return mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
 
     def open(self) -> BinaryIO:
         """Return a seekable binary stream; the caller closes it."""

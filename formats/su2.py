@@ -12,14 +12,16 @@ from typing import BinaryIO
 
 import numpy as np
 
-from meshonet.formats.format import Heights, only_one
+from meshonet.formats.format import only_one
+from meshonet.formats.mesh.collapsed import refuse_collapsed
 from meshonet.formats.mesh.names import words
 from meshonet.formats.mesh.surface import Surface, shapes_of
-from meshonet.formats.mesh.unstructured import Indices, Unstructured, extruded, unstructured
+from meshonet.formats.mesh.unstructured import Indices, Unstructured, unstructured
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import parsed, write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.screw import screw_of
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.shapes.shape import Shape
 
@@ -30,13 +32,15 @@ _NODES = {b"3": 2, b"5": 3, b"9": 4}
 _CUT = "the file is cut short: write it again"
 
 
-def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> None:
-    """Write the one grid of `grids`: quadrilaterals, and lines under the names of its patches.
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`: quadrilaterals and lines under the names of its patches.
 
-    Repeated in z: hexahedra, and quadrilaterals, those of the outer planes as markers ``back`` and ``front``.
+    Of a volume, hexahedra and quadrilaterals.
     """
-    mesh = unstructured(only_one(grids, "a .su2 file"))
-    points, markers, cells = extruded(mesh, heights)
+    grid = only_one(grids, "a .su2 file")
+    refuse_collapsed(grid, "a .su2 file")
+    mesh = unstructured(grid)
+    points, markers, cells = mesh.points, mesh.faces, mesh.cells
     word = words(markers)
     with path.open("wb") as stream:
         stream.write(_periodic(mesh, word).encode("ascii"))
@@ -59,9 +63,8 @@ def _periodic(mesh: Unstructured, word: Mapping[str, str]) -> str:
         return ""
     pairs = []
     for pair in mesh.periodic:
-        angle, (x, y) = pair.motion.rotation
-        shift = np.zeros(2) if angle else pair.motion.translation
-        numbers = x, y, 0, 0, 0, np.degrees(angle), *shift, 0
+        screw = screw_of(pair.motion)
+        numbers = *screw.centre, *np.degrees(screw.angles), *screw.shift
         listed = ", ".join(f"{number + 0.0:.17g}" for number in numbers)
         pairs.append(f"{word[pair.name]}, {word[pair.partner]}, {listed}")
     return f"% The configuration file needs this line:\n% MARKER_PERIODIC= ( {', '.join(pairs)} )\n"

@@ -6,14 +6,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from meshonet.formats.format import Format, later
+from meshonet.formats.format import Format, kinds_in_space, later
 from meshonet.formats.plot3d import CHOICES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 _DRAW = "meshonet.formats.figure.figure:write_grids"
-_OF_ANY_BLOCKS = ("hdf5",)
-"""Formats that hold blocks in space and on surfaces too."""
+_BOTH: Any = ("volumes", "surfaces")
+_VOLUMES: Any = ("volumes",)
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _WKT = re.compile(rb"\s*(?:POLYGON|LINESTRING|LINEARRING|MULTI\w+|GEOMETRYCOLLECTION)\b", re.IGNORECASE)
 _MESHIO = {
@@ -64,7 +64,7 @@ def _format(name: str, endings: str, description: str, functions: str, **more: A
     """Return a record; `functions`, ``module:field``, are loaded when they are called."""
     for function in functions.split():
         more[function.partition(":")[2]] = later(f"meshonet.formats.{function}")
-    if "write_grids" in more and name not in _OF_ANY_BLOCKS:
+    if "write_grids" in more:
         more["write_grids"] = partial(_write, more["write_grids"], name)
     return Format(name, tuple(endings.split()), description, **more)
 
@@ -77,11 +77,15 @@ def _write(
 
 
 def _held(grid: Grid, name: str) -> Grid:
-    if any(block.nodes.shape[2:] != (2,) for block in grid.blocks):
-        remedy = f"write {', '.join(_OF_ANY_BLOCKS)}"
-        raise InputError(f"{name} files hold grids in the plane and this one is in space", remedy)
-    if len(grid.blocks) > 1 and not TABLE[name].blocks:
-        able = ", ".join(record.name for record in _FORMATS if record.blocks)
+    record = TABLE[name]
+    for kind in kinds_in_space(grid):
+        if kind not in record.space:
+            able = ", ".join(other.name for other in _FORMATS if kind in other.space and other.write_grids)
+            held = ", ".join(("grids in the plane", *record.space))
+            problem = f"{name} files hold {held} and this grid has {kind} in space"
+            raise InputError(problem, f"write one of {able}")
+    if len(grid.blocks) > 1 and not record.blocks:
+        able = ", ".join(other.name for other in _FORMATS if other.blocks)
         problem = f"{name} files hold one block and the grid has {len(grid.blocks)}"
         raise InputError(problem, f"write one of {able}")
     return grid
@@ -91,39 +95,41 @@ _FORMATS: tuple[Format, ...] = (
     _format(
         "hdf5", ".h5 .hdf5", "HDF5 dataset of boundaries or grids",
         "hdf5.read:read_shapes hdf5.read:read_grids hdf5.write:write_grids hdf5.write:write_boundaries",
-        sniff=is_hdf5, names_patches=True, many=True, one_size=True, blocks="kept",
+        sniff=is_hdf5, names_patches=True, many=True, one_size=True, blocks="kept", space=_BOTH,
     ),
     _format(
         "vts", ".vts", "VTK XML structured grid", "vtk.vts_read:read_grids vtk.vts:write_grids",
-        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), extrudes=True, names_patches=True,
+        sniff=partial(holds, (b"<VTKFile", b"StructuredGrid")), names_patches=True,
+        space=_BOTH,
     ),
     _format(
         "vtm", ".vtm", "VTK multi-block file: an index and a folder of .vts, one a block",
         "vtk.vtm:read_grids vtk.vtm:write_grids",
         sniff=partial(holds, (b"<VTKFile", b"vtkMultiBlockDataSet")),
-        extrudes=True, names_patches=True, blocks="kept", many=True, beside=True,
+        names_patches=True, blocks="kept", many=True, beside=True, space=_BOTH,
     ),
     _format(
         "vtk", ".vtk", "legacy VTK structured grid", "vtk.legacy:read_grids vtk.legacy:write_grids",
-        sniff=is_legacy_vtk, extrudes=True, names_patches=True, choices=(("binary", "ascii"),),
+        sniff=is_legacy_vtk, names_patches=True, choices=(("binary", "ascii"),), space=_BOTH,
     ),
     _format(
         "vtu", ".vtu", "VTK XML unstructured grid, seams merged, patches by number",
-        "vtk.vtu:write_grids", extrudes=True, blocks="merged",
+        "vtk.vtu:write_grids", blocks="merged", space=_BOTH,
     ),
     _format(
         "gmsh", ".msh", "Gmsh mesh, patches as physical groups; read as a boundary",
         "gmsh.read:read_shapes gmsh.msh:write_grids", sniff=partial(holds, (b"$MeshFormat",)),
-        extrudes=True, names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")), blocks="merged",
+        names_patches=True, choices=(("binary", "ascii"), ("2.2", "4.1")), blocks="merged", space=_BOTH,
     ),
     _format(
         "cgns", ".cgns", "CGNS structured zones in HDF5, with boundary conditions and families",
         "cgns.read:read_grids cgns.write:write_grids", blocks="kept",
-        sniff=is_cgns, extrudes=True, names_patches=True, many=True,
+        sniff=is_cgns, names_patches=True, many=True, space=_BOTH,
     ),
     _format(
-        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file, one cell thick",
-        "openfoam:write_grids", extrudes=True, names_patches=True, fills_folder=True, blocks="merged",
+        "openfoam", ".foam", "OpenFOAM case: constant/polyMesh in the folder of the file",
+        "openfoam.write:write_grids", choices=(("ascii", "binary"),), names_patches=True, fills_folder=True,
+        blocks="merged", space=_VOLUMES,
     ),
     _format(
         "geo", ".geo", "Gmsh geometry: the outer edges as transfinite curves, patches as physical groups",
@@ -131,18 +137,18 @@ _FORMATS: tuple[Format, ...] = (
     ),
     _format(
         "nmf", ".nmf", "NASA neutral map file: boundary conditions and interfaces of Plot3D blocks",
-        "plot3d.nmf:write_grids", extrudes=True, names_patches=True, blocks="kept",
+        "plot3d.nmf:write_grids", names_patches=True, blocks="kept", space=_BOTH,
     ),
     _format(
         "su2", ".su2", "SU2 mesh, text, patches as markers; read as a boundary",
         "su2:read_shapes su2:write_grids", sniff=partial(holds, (b"NDIME", b"=")),
-        extrudes=True, names_patches=True, blocks="merged",
+        names_patches=True, blocks="merged", space=_VOLUMES,
     ),
     _format(
         "plot3d", ".p3d .xyz .fmt .x .dat .bin .ufmt .unf",
         "Plot3D: text, C binary (.bin) or Fortran records (.ufmt), with the .nmf beside it",
         "plot3d.read:read_grids plot3d.write:write_grids plot3d.read:sniff",
-        extrudes=True, blocks="kept", many=True, choices=CHOICES, reads_options=True,
+        blocks="kept", many=True, choices=CHOICES, reads_options=True, space=_BOTH,
         suffix_options={".bin": "binary", ".ufmt": "fortran", ".unf": "fortran"},
     ),
     _format(

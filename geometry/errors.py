@@ -60,6 +60,16 @@ def in_source(name: str) -> Iterator[None]:
         raise
 
 
+@contextmanager
+def in_place(place: str) -> Iterator[None]:
+    """Name the place in the input errors of a block that do not name one."""
+    try:
+        yield
+    except InputError as error:
+        error.place = error.place or place
+        raise
+
+
 def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
     """Return `text`, its names of parameters in braces passed through `spelling`; double braces stay single.
 
@@ -72,17 +82,33 @@ def spelled(text: str, spelling: Callable[[str], str] = str) -> str:
 
 @dataclass(frozen=True)
 class BadCell:
-    """A folded cell: the indices of its lower-left node and its centre; of many blocks, which of them."""
+    """A folded cell: the indices of its lower-left node and its centre; of many blocks, which of them.
+
+    k is None on a surface and in the plane, z in the plane.
+    """
 
     i: int
     j: int
     x: float
     y: float
     block: int | None = None
+    k: int | None = None
+    z: float | None = None
+
+    @property
+    def indices(self) -> str:
+        """``block=2, i=3, j=4, k=5``, what there is of them."""
+        places = {"block": self.block, "i": self.i, "j": self.j, "k": self.k}
+        return ", ".join(f"{name}={value}" for name, value in places.items() if value is not None)
+
+    @property
+    def centre(self) -> str:
+        """``x=0.1, y=0.2, z=0.3``, what there is of them."""
+        places = {"x": self.x, "y": self.y, "z": self.z}
+        return ", ".join(f"{name}={value:.6g}" for name, value in places.items() if value is not None)
 
     def __str__(self) -> str:
-        block = "" if self.block is None else f"block={self.block}, "
-        return f"{block}i={self.i}, j={self.j}, x={self.x:.6g}, y={self.y:.6g}"
+        return f"{self.indices}, {self.centre}"
 
 
 class NoValidGridError(MeshonetError):

@@ -28,7 +28,7 @@ def thread_count() -> int:
 @contextmanager
 def limited_to(threads: int | None) -> Iterator[None]:
     """Have kernels work with so many threads inside; None leaves the number as it is."""
-    global _limit  # noqa: PLW0603
+    global _limit
     before = _limit
     _limit = before if threads is None else max(threads, 1)
     try:

@@ -153,6 +153,10 @@ INTEGER_BYTES: int
 FLOAT_BYTES: int
 
 def put_rows(out: NDArray[np.int8], rows: Reals, text: bytes, at: Indices) -> int: ...
+def inner_faces(
+    nodes: NDArray[np.int32], beyond: Sequence[NDArray[np.int32]], first: int, faces: NDArray[np.int32],
+    owner: NDArray[np.int32], neighbour: NDArray[np.int32],
+) -> int: ...  # fmt: skip
 
 # collapse
 def connect_quads(quads: Indices, n: int) -> tuple[Indices, Indices, Indices, bool]: ...
@@ -241,3 +245,40 @@ class DelaunayMesh:
     def shake(self, first: int, part: float, seed: int) -> None: ...
     def nodes(self) -> tuple[Whole, Floats]: ...
     def triangles(self) -> tuple[Indices, Indices, Indices]: ...
+
+# surfaces
+def surface_march(
+    levels: Floats, heights: Floats, graph: Any, settings: Sequence[float], threads: int
+) -> tuple[int, int, int]: ...
+def respace_lines(
+    marched: Floats, steps: Floats, fade: Floats, order: Indices, sweeps: int, lines: Floats, threads: int
+) -> None: ...
+
+# solids
+def solids_folded(nodes: Floats, test: int, threads: int, counts: Whole) -> None: ...
+def solids_places(nodes: Floats, test: int, counts: Whole, places: Whole) -> None: ...
+def solids_volumes(nodes: Floats, threads: int, volumes: Floats) -> None: ...
+def solids_chunks(nodes: Floats) -> int: ...
+def solids_run(
+    nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
+    counts: Whole, caught: Floats, held: Whole, threads: int,
+) -> None: ...  # fmt: skip
+def solids_lines(nodes: Floats, threads: int, summary: Floats, where: Whole) -> None: ...
+def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
+
+# volumes
+def tfi_volume(
+    nodes: Floats, faces: tuple[Floats, ...], laws: tuple[Floats, Floats, Floats], threads: int,
+    spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
+) -> None: ...  # fmt: skip
+def volume_energy(
+    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
+    gradient: Floats,
+) -> tuple[float, float]: ...  # fmt: skip
+
+class VolumeDescent:
+    def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...
+    def run(
+        self, x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
+        most: int, renew: int, still: float, reach: float, gain: float,
+    ) -> tuple[float, float, int]: ...  # fmt: skip

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from meshonet.formats.output import whole_file
@@ -12,6 +12,8 @@ from meshonet.formats.registry import read_grids
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.gates import need_percentiles, parse_gates
 from meshonet.geometry.shapes.shape import Shape
+from meshonet.geometry.shapes.spatial_shape import in_space
+from meshonet.geometry.threads import cores
 from meshonet.solvers.pipeline.make_grid import MOST_NODES, Result, make_grids
 from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.progress import Row, listening
@@ -25,7 +27,14 @@ from meshonet_cli.report.grid import Report
 from meshonet_cli.session import Session
 
 if TYPE_CHECKING:
-    from meshonet_cli.options import CheckOptions, FileOptions, LayerOptions, SamplingOptions, SideOptions
+    from meshonet_cli.options import (
+        CheckOptions,
+        FileOptions,
+        LayerOptions,
+        SamplingOptions,
+        SideOptions,
+        VolumeOptions,
+    )
 
 SHARED = 16  # members that one of several processes gets at a time at the most, when they are solved together
 
@@ -60,7 +69,7 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
         cycles=solution.cycles, notes=result.notes, history=result.history,
     )  # fmt: skip
     report.seconds |= result.seconds
-    if grid.topology == "blocks":
+    if grid.topology == "blocks" and not in_space(grid):
         from meshonet.geometry.quality.blocks import block_figures
 
         with report.timed("quality"):
@@ -69,7 +78,8 @@ def reported(member: Item[Shape], result: Result) -> tuple[Grid, Report]:
 
 
 def request_of(
-    method: str, sampling: SamplingOptions, checks: CheckOptions, *blocks: LayerOptions | SideOptions,
+    method: str, sampling: SamplingOptions, checks: CheckOptions,
+    *blocks: LayerOptions | SideOptions | VolumeOptions,
     settings: Mapping[str, Any], **parameters: Any,
 ) -> GridRequest:  # fmt: skip
     """Return the request that options describe, `parameters` by the names of its fields.
@@ -94,21 +104,18 @@ def write_grids(
     With `assemble` they are one domain. The gates of `checks` end the program with 1; the cycles go to the
     file `history`.
     """
+    if jobs > 1 and request.threads is None:
+        request = replace(request, threads=max(cores() // jobs, 1))
     destination = Destination(output, files.to_format, "grids")
     prepare(sources[:1] if assemble else sources, destination, session)
     check_file(history)
-    gates = parse_gates(checks.fail_on)
     members = shape_items(sources, files.from_format, session, request.sampling if assemble else None)
     cycles: list[tuple[str, Iterable[Row]]] = []
+    judge = judging(session, checks.fail_on)
 
     def written(report: Report, path: str) -> None:
-        report.finished(path)
-        label, folded = report.item.label, report.quality.folded
-        cycles.append((label, report.history))
-        if folded:
-            session.warn(f"{label}: {folded} folded cells are in {path}")
-        session.report(report)
-        session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
+        cycles.append((report.item.label, report.history))
+        judge(report, path)
 
     with listening(Live(session.status)) if session.live else contextlib.nullcontext():
         deliver(
@@ -119,6 +126,24 @@ def write_grids(
         with whole_file(history) as file:
             write(file, cycles)
     return session.finish()
+
+
+def judging(session: Session, fail_on: Sequence[str] | None) -> Callable[[Report, str], None]:
+    """Return what reports a grid written to a file, warns of folded cells and looks at the gates.
+
+    Raises InputError: a gate that is none.
+    """
+    gates = parse_gates(fail_on)
+
+    def written(report: Report, path: str) -> None:
+        report.finished(path)
+        label, folded = report.item.label, report.quality.folded
+        if folded:
+            session.warn(f"{label}: {folded} folded cells are in {path}")
+        session.report(report)
+        session.gate(label, [text for gate in gates if (text := gate.broken(report.quality))])
+
+    return written
 
 
 def _together(request: GridRequest) -> int:

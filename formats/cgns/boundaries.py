@@ -1,21 +1,23 @@
-"""What a CGNS zone of others says of its sides: boundary conditions by family, one-to-one interfaces.
+"""What a CGNS zone of others says of its faces: boundary conditions by family, one-to-one interfaces.
 
 Ranges may run either way and count nodes or, where the location says so, faces; a condition may list its
-points instead. What a transform says follows from the ranges: right-handed zones run along an interface in
-opposite ways.
+points instead, and then is what rectangles these points fill. Signs of a transform follow from the ranges.
 """
 
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.formats.cgns.nodes import Node, array, children, text
-from meshonet.formats.mesh.spans import Span, span_of
+from meshonet.formats.mesh.windows import Face, Triple, Window
 from meshonet.formats.source import printable
-from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
+from meshonet.geometry.blocks.outer_patches import JOINED, UNNAMED, rectangles
+from meshonet.geometry.blocks.patches import Kind, kind_of
 from meshonet.geometry.errors import InputError
 
+Points = NDArray[np.int64]
 _KINDS: tuple[tuple[str, Kind], ...] = (
     ("BCWall", "wall"), ("BCFarfield", "farfield"), ("BCInflow", "inlet"), ("BCTunnelInflow", "inlet"),
     ("BCOutflow", "outlet"), ("BCTunnelOutflow", "outlet"), ("BCSymmetry", "symmetry"),
@@ -25,49 +27,131 @@ _NOTHING = ("Null", "BCTypeNull")
 _FACES = ("FaceCenter", "IFaceCenter", "JFaceCenter", "KFaceCenter", "EdgeCenter", "CellCenter")
 
 
-def conditions(base: Node, zone: Node, counts: tuple[int, ...], dropped: int) -> Iterator[Patch]:
-    """Yield the boundary conditions that cover a stretch of one side, called by their family.
+def conditions(base: Node, zone: Node, counts: Triple, block: int) -> Iterator[Face]:
+    """Yield the boundary conditions on faces of block number `block`, called by their family.
 
-    `counts` are the zone's nodes along its two indices, `dropped` is the third one.
+    `counts` are the zone's nodes along its three indices, 1 along one that it has not.
     """
     for _, group in children(zone, "ZoneBC_t"):
         for title, condition in children(group, "BC_t"):
             kind = _text(condition)
             family = next((text(node) for _, node in children(condition, "FamilyName_t")), "")
-            span = _covered(condition, counts, dropped)
-            if span is None or (kind in _NOTHING and not family):
+            if kind in _NOTHING and not family:
                 continue
             if kind == "FamilySpecified":
                 kind = _family_kind(base, family)
             name = printable(family.rpartition("/")[2] or title).strip() or "part"
             known = next((k for sign, k in _KINDS if kind.startswith(sign)), _OTHER)
             told = kind_of(name)
-            yield Patch(name, *span, kind=known if told == _OTHER else told)
+            for first, last in _covered(condition, counts):
+                yield Face(Window(block, first, last), name, known if told == _OTHER else told)
 
 
 def interfaces(
-    base: Node, zone: Node, counts: tuple[int, ...], dropped: int
-) -> Iterator[tuple[str, Span, str, NDArray[Any]]]:
-    """Yield of each one-to-one interface its name, stretch of the zone, the donor's path and range."""
+    base: Node, zone: Node, counts: Triple, block: int
+) -> Iterator[tuple[str, Window, str, Points, Triple]]:
+    """Yield of each one-to-one interface name, own window, the donor's path, its range (2, 3), partners."""
     for _, group in children(zone, "ZoneGridConnectivity_t"):
         for name, joint in children(group, "GridConnectivity1to1_t"):
             ranges = dict(children(joint, "IndexRange_t"))
             if not {"PointRange", "PointRangeDonor"} <= set(ranges):
                 continue
-            own = span_of(array(ranges["PointRange"], 2), counts, dropped)
+            own = _points(array(ranges["PointRange"], 2))
+            donor_range = _points(array(ranges["PointRangeDonor"], 2))
+            if own is None or donor_range is None or not _inside(own, counts):
+                raise InputError(f"interface {printable(name)!r} leaves its zone", "correct its PointRange")
             donor = text(joint)
             path = f"/{donor.lstrip('/')}" if "/" in donor else f"{base.name}/{donor}"
-            if own is not None:
-                yield printable(name), own, path, array(ranges["PointRangeDonor"], 2)
+            yield printable(name), _window(block, own), path, donor_range, _partners(joint, printable(name))
 
 
-def _covered(condition: Node, counts: tuple[int, ...], dropped: int) -> Span | None:
+def window_of(block: int, points: Points, counts: Triple) -> Window | None:
+    """Return the window from the first of two points to the last, None outside a block of `counts` nodes."""
+    return _window(block, points) if _inside(points, counts) else None
+
+
+def _window(block: int, points: Points) -> Window:
+    first, last = (tuple(row) for row in points[[0, -1]].tolist())
+    return Window(block, first, last)
+
+
+def _inside(points: Points, counts: Triple) -> bool:
+    return bool((points >= 0).all() and (points < np.array(counts)).all())
+
+
+def _points(indices: NDArray[Any]) -> Points | None:
+    """Return indices (n, 2 or 3) counted from 0, three each; None where that is not what they are."""
+    if indices.ndim != 2 or indices.shape[1] not in (2, 3) or not len(indices):
+        return None
+    points = np.zeros((len(indices), 3), np.int64)
+    points[:, : indices.shape[1]] = indices.astype(np.int64) - 1
+    return points
+
+
+def _partners(joint: Node, name: str) -> Triple:
+    """Return the donor's index along each of the zone's; the standard's default is the same one."""
+    values = next((array(node, 1) for _, node in children(joint, '"int[IndexDimension]"')), None)
+    if values is None:
+        return 0, 1, 2
+    partners = [abs(int(value)) - 1 for value in values]
+    partners += range(len(partners), 3)
+    if sorted(partners) != [0, 1, 2]:
+        shown = values.tolist()
+        raise InputError(f"interface {name!r} has transform {shown}", "give each index once, from 1 on")
+    return partners[0], partners[1], partners[2]
+
+
+def _covered(condition: Node, counts: Triple) -> Iterator[tuple[Triple, Triple]]:
+    """Yield the first and last nodes of the parts of faces that a condition is on."""
     location = next((text(node) for _, node in children(condition, "GridLocation_t")), "")
-    found = [*children(condition, "IndexRange_t"), *children(condition, "IndexArray_t")]
-    for name, node in found:
-        if name in ("PointRange", "PointList", "ElementRange"):
-            return span_of(array(node, 2), counts, dropped, faces=location in _FACES)
-    return None
+    faces = location in _FACES
+    nodes = [*children(condition, "IndexRange_t"), *children(condition, "IndexArray_t")]
+    for name, node in nodes:
+        points = _points(array(node, 2)) if name in ("PointRange", "PointList", "ElementRange") else None
+        if points is None:
+            continue
+        if name == "PointList" and not faces:
+            yield from _listed(points, counts)
+            return
+        low, high = points.min(axis=0), points.max(axis=0)
+        across = _across(low, high, counts, location)
+        if across is not None:
+            if faces:
+                high[[k for k in range(3) if k != across and counts[k] > 1]] += 1
+                low[across] = high[across] = 0 if low[across] == 0 else counts[across] - 1
+            yield _window(0, np.stack([low, high]))[1:]
+        return
+
+
+def _across(low: Points, high: Points, counts: Triple, location: str) -> int | None:
+    """Return the index that a range is constant in, at an end of the block; None if it is on no face."""
+    hinted = {"I": 0, "J": 1, "K": 2}.get(location[:1]) if location in _FACES else None
+    last = [count - 2 if location == "CellCenter" else count - 1 for count in counts]
+    able = [k for k in range(3) if counts[k] > 1 and low[k] == high[k] and low[k] in (0, last[k])]
+    return next((k for k in able if hinted in (None, k)), None)
+
+
+def _listed(points: Points, counts: Triple) -> Iterator[tuple[Triple, Triple]]:
+    """Yield the rectangles of cells at faces all of whose nodes are among `points`."""
+    points = points[((points >= 0) & (points < np.array(counts))).all(axis=1)]
+    for across in (k for k in range(3) if counts[k] > 1):
+        along = [k for k in range(3) if k != across]
+        for place in (0, counts[across] - 1):
+            on = points[points[:, across] == place][:, along]
+            marked = np.zeros([counts[k] for k in along], dtype=bool)
+            marked[tuple(on.T)] = True
+            marked = marked.squeeze()
+            for axis in range(marked.ndim):
+                ends = (slice(None),) * axis
+                marked = marked[(*ends, slice(None, -1))] & marked[(*ends, slice(1, None))]
+            for _, span in rectangles(np.where(marked, UNNAMED, JOINED)):
+                spans = iter(span)
+                ranges = [
+                    (place, place) if k == across else next(spans) if counts[k] > 1 else (0, 0)
+                    for k in range(3)
+                ]
+                first, last = zip(*ranges, strict=True)
+                yield first, last
 
 
 def _family_kind(base: Node, family: str) -> str:

@@ -10,14 +10,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from meshonet.formats.cgns.nodes import NAME_LENGTH, Node, child
-from meshonet.formats.cgns.ranges import Integers, range_of
+from meshonet.formats.cgns.ranges import donor_range, range_of, transform_of
 from meshonet.formats.mesh.names import words
-from meshonet.geometry.blocks.block import PLACES
+from meshonet.formats.mesh.periodic import patch_on
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.screw import screw_of
 
 
-def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid, planes: int) -> None:
+def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid) -> None:
     """Join the two sides of each connection of `grid`, once from each, in the `zones` of its blocks."""
     groups: dict[int, Node] = {}
     taken: dict[int, set[str]] = {}
@@ -32,33 +33,18 @@ def write_connections(zones: Sequence[Node], names: Sequence[str], grid: Grid, p
             word = words([title], NAME_LENGTH, taken[way.block])[title]
             taken[way.block].add(word)
             joint = child(group, word, "GridConnectivity1to1_t", names[way.donor])
-            ((first, last),), (along,) = way.donor_range, way.orientation
-            start, stop = (first, last)[::along]
-            own = range_of(way.side, *way.range[0], counts[way.block], planes)
+            own = range_of(way.side, way.range, counts[way.block])
             child(joint, "PointRange", "IndexRange_t", own)
-            donor = range_of(way.donor_side, start, stop, counts[way.donor], planes)
-            child(joint, "PointRangeDonor", "IndexRange_t", donor)
-            child(joint, "Transform", '"int[IndexDimension]"', _transform(way, planes))
+            child(joint, "PointRangeDonor", "IndexRange_t", donor_range(way, counts[way.donor]))
+            child(joint, "Transform", '"int[IndexDimension]"', transform_of(way))
             if way.transform is not None:
-                _write_motion(joint, way.transform, 3 if planes else 2)
+                _write_motion(joint, way.transform, grid.blocks[way.block].nodes.shape[-1])
 
 
 def _title(grid: Grid, connection: Connection, names: Sequence[str]) -> str:
     """Return what to call an interface: as the patch that lies on it, if any."""
-    (span,) = connection.range
-    place = connection.block, connection.side
-    for patch in grid.patches:
-        if (patch.block, patch.side) == place and patch.start <= span[0] and span[1] <= patch.stop:
-            return patch.name
-    return "Cut" if connection.block == connection.donor else f"to_{names[connection.donor]}"
-
-
-def _transform(connection: Connection, planes: int) -> Integers:
-    (axis, end), (other, donor_end) = PLACES[connection.side], PLACES[connection.donor_side]
-    transform = np.array([0, 0, 3], np.int32)[: 3 if planes else 2]
-    transform[1 - axis] = connection.orientation[0] * (2 - other)
-    transform[axis] = (1 + other) * (-1 if end == donor_end else 1)
-    return transform
+    own = "Cut" if connection.block == connection.donor else f"to_{names[connection.donor]}"
+    return patch_on(grid, connection) or own
 
 
 def _write_motion(joint: Node, motion: Motion, dimension: int) -> None:
@@ -66,16 +52,11 @@ def _write_motion(joint: Node, motion: Motion, dimension: int) -> None:
 
     Of two dimensions there is no axis to turn about; the angle is written as the last number all the same.
     """
-    angle, centre = motion.rotation
-    shift = np.zeros(2) if angle else motion.translation
+    screw = screw_of(motion)
     node = child(
         child(joint, "GridConnectivityProperty", "GridConnectivityProperty_t"), "Periodic", "Periodic_t"
     )
-    values = {
-        "RotationCenter": [*centre, 0.0],
-        "RotationAngle": [0.0, 0.0, angle],
-        "Translation": [*shift, 0.0],
-    }
+    values = {"RotationCenter": screw.centre, "RotationAngle": screw.angles, "Translation": screw.shift}
     for name, numbers in values.items():
         turns = name == "RotationAngle"
         kept = numbers[3 - dimension :] if turns else numbers[:dimension]

@@ -4,15 +4,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES, Range
+from meshonet.geometry.blocks.connection import Connection
 
 Integers = NDArray[np.int32]
 
 
-def range_of(side: Side, first: int, last: int, counts: tuple[int, ...], planes: int) -> Integers:
-    """Return the first and the last node (2, 2 or 3) of a stretch of a zone of `counts` nodes.
+def range_of(side: Side, span: Range, counts: tuple[int, ...]) -> Integers:
+    """Return the first and the last node (2, d) of a part of a side of a zone of `counts` nodes."""
+    axis, end = PLACES[side]
+    place = [0 if end == 0 else counts[axis] - 1] * 2
+    rows = [*span[:axis], tuple(place), *span[axis:]]
+    return np.array(rows, np.int32).T + np.int32(1)
 
-    Of 3 with all its `planes` when there are any.
-    """
-    i, j = (1 if side == "west" else counts[0]), (1 if side == "south" else counts[1])
-    ends = [[k + 1, j] if side in ("south", "north") else [i, k + 1] for k in (first, last)]
-    return np.array([[*ends[0], 1], [*ends[1], planes]] if planes else ends, np.int32)
+
+def donor_range(each: Connection, counts: tuple[int, ...]) -> Integers:
+    """Return the first and the last node of the donor's part, at those of the connection's own one."""
+    span = list(each.donor_range)
+    for way in each.orientation:
+        if way < 0:
+            span[-way - 1] = span[-way - 1][::-1]
+    return range_of(each.donor_side, tuple(span), counts)
+
+
+def transform_of(each: Connection) -> Integers:
+    """Return the donor's index along each index of the zone, counted from 1, negative where opposed."""
+    (axis, end), (other, donor_end) = PLACES[each.side], PLACES[each.donor_side]
+    dimension = len(each.orientation) + 1
+    donor_axes = [index for index in range(dimension) if index != other]
+    transform = np.zeros(dimension, np.int32)
+    transform[axis] = (1 + other) * (-1 if end == donor_end else 1)
+    own_axes = [index for index in range(dimension) if index != axis]
+    for index, way in zip(own_axes, each.orientation, strict=True):
+        transform[index] = (1 + donor_axes[abs(way) - 1]) * (1 if way > 0 else -1)
+    return transform

@@ -1,44 +1,62 @@
-"""Reading CGNS: the structured zones of a file, each a plane block or a layer one cell thick.
+"""Reading CGNS: the structured zones of a file, blocks in the plane, of volume, or patches of a surface.
 
 Zones that this package wrote say which grid they belong to. Of others, those that touch are one grid, be they
 joined one to one in the file or found to coincide, whatever bases they are in.
 """
 
-import contextlib
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from meshonet.formats.cgns.boundaries import conditions, interfaces
+from meshonet.formats.cgns.boundaries import conditions, interfaces, window_of
 from meshonet.formats.cgns.nodes import Node, array, children, is_adf, text
 from meshonet.formats.hdf5.check import opened
-from meshonet.formats.mesh.gather import Joint, Piece, grids_of
-from meshonet.formats.mesh.metadata import Facts, grid_of_blocks, grid_with, number_of_grid
-from meshonet.formats.mesh.slices import plane_of
-from meshonet.formats.mesh.spans import span_of
+from meshonet.formats.mesh.axis_order import nodes_of
+from meshonet.formats.mesh.metadata import (
+    Facts,
+    grid_of_blocks,
+    grid_with,
+    number_of_grid,
+    says_in_space,
+)
+from meshonet.formats.mesh.slices import planar
+from meshonet.formats.mesh.structured import FileBlock, grids_of_file
+from meshonet.formats.mesh.windows import Face, Pair, Triple
 from meshonet.formats.source import Source, printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
-_FACTS = ("topology", "name", "parts", "kinds", "provenance", "block", "connections")
+_FACTS = ("topology", "name", "parts", "kinds", "provenance", "block", "connections", "across", "coordinates")
 _MOST_NODES = 1 << 40
 
 
 class _Zone(NamedTuple):
-    """A structured zone: names of its base and of itself, plane nodes, the index that is not in them."""
+    """A structured zone: base, node, name, what this package wrote of it, and x, y[, z] (ni, nj, nk) each."""
 
     base: Node
     node: Node
     title: str
     facts: Facts
-    nodes: Floats
-    dropped: int
+    coordinates: list[Floats]
 
     @property
     def path(self) -> str:
         return str(self.node.name)
+
+    @property
+    def counts(self) -> Triple:
+        """Nodes along the three indices, 1 along one that the zone has not."""
+        ni, nj, nk = self.coordinates[0].shape
+        return ni, nj, nk
+
+    @property
+    def nodes(self) -> Floats:
+        """Nodes of a zone of this package's, in the plane or in space."""
+        if not says_in_space(self.facts):
+            return planar(self.coordinates)
+        return nodes_of([np.squeeze(values) for values in self.coordinates])
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
@@ -78,43 +96,33 @@ def _own(structured: Sequence[tuple[Node, str, Node]], stem: str) -> Iterator[Gr
             yield grid_of_blocks([(zone.nodes, zone.facts) for zone in read], stem)
             continue
         for zone in read:
-            with _placed(zone.title):
+            with in_place(f"zone {zone.title!r}"):
                 yield grid_with(zone.nodes, zone.facts, zone.title if len(structured) > 1 else stem)
 
 
 def _foreign(zones: Sequence[_Zone], stem: str) -> Iterator[Grid]:
     """Yield the grids of zones that others wrote."""
-    pieces, joints = [], list[Joint]()
+    blocks, faces, pairs = [], list[Face](), list[Pair]()
     numbers = {zone.path: k for k, zone in enumerate(zones)}
     for k, zone in enumerate(zones):
-        with _placed(zone.title):
-            shape = zone.nodes.shape[:2]
-            patches = tuple(conditions(zone.base, zone.node, shape, zone.dropped))
-            pieces.append(Piece(zone.nodes, zone.title, patches))
-            for title, own, path, points in interfaces(zone.base, zone.node, shape, zone.dropped):
+        place = f"zone {zone.title!r}"
+        with in_place(place):
+            blocks.append(FileBlock(zone.coordinates, zone.title, place))
+            faces += conditions(zone.base, zone.node, zone.counts, k)
+            for title, own, path, points, partner in interfaces(zone.base, zone.node, zone.counts, k):
                 donor = numbers.get(path)
                 if donor is None:
                     continue
-                end = span_of(points, zones[donor].nodes.shape[:2], zones[donor].dropped)
-                if end is not None:
-                    joints.append(Joint((k, *own), (donor, *end), title))
-    yield from grids_of(pieces, joints, stem)
-
-
-@contextlib.contextmanager
-def _placed(title: str) -> Iterator[None]:
-    """Name a zone in errors raised inside."""
-    try:
-        yield
-    except InputError as error:
-        error.place = error.place or f"zone {title!r}"
-        raise
+                end = window_of(donor, points, zones[donor].counts)
+                if end is None:
+                    raise InputError(f"interface {title!r} leaves its donor", "correct its PointRangeDonor")
+                pairs.append(Pair(own, end, partner, title))
+    yield from grids_of_file(blocks, faces, pairs, stem)
 
 
 def _zone(base: Node, name: str, node: Node) -> _Zone:
-    with _placed(printable(name)):
-        nodes, dropped = plane_of(_coordinates(node))
-        return _Zone(base, node, printable(name), _facts(node), nodes, dropped)
+    with in_place(f"zone {printable(name)!r}"):
+        return _Zone(base, node, printable(name), _facts(node), _coordinates(node))
 
 
 def _facts(zone: Node) -> Facts:
@@ -142,7 +150,9 @@ def _coordinates(zone: Node) -> list[Floats]:
             raise InputError(problem, "write the zone without rind planes")
         coordinates.append(np.asarray(values, np.float64).reshape((*dims, 1)[:3]))
     if len(coordinates) < 2:
-        raise InputError("has no CoordinateX and CoordinateY", "write Cartesian coordinates")
+        named = ", ".join(sorted(printable(name) for name in arrays)[:6])
+        rest = f", only {named}" if named else ""
+        raise InputError(f"has no CoordinateX and CoordinateY{rest}", "write Cartesian coordinates")
     return coordinates
 
 

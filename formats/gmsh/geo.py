@@ -65,7 +65,7 @@ def _named(mesh: Unstructured, lines: Indices) -> dict[str, Indices]:
     """Return the numbers of the lines of each part."""
     width = len(mesh.points) + 1
     keys = lines[:, 0] * width + lines[:, 1]
-    ends = {name: np.sort(edges + 1, axis=1) for name, edges in mesh.edges.items()}
+    ends = {name: np.sort(edges + 1, axis=1) for name, edges in mesh.faces.items()}
     return {name: np.searchsorted(keys, rows[:, 0] * width + rows[:, 1]) + 1 for name, rows in ends.items()}
 
 

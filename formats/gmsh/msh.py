@@ -11,15 +11,9 @@ from typing import BinaryIO, NamedTuple, TypeAlias
 
 import numpy as np
 
-from meshonet.formats.format import Heights, Options, only_one
-from meshonet.formats.mesh.unstructured import (
-    CELLS,
-    Indices,
-    extruded,
-    in_space,
-    periodic_nodes,
-    unstructured,
-)
+from meshonet.formats.format import Options, only_one
+from meshonet.formats.mesh.collapsed import refuse_collapsed
+from meshonet.formats.mesh.unstructured import CELLS, Indices, in_space, unstructured
 from meshonet.formats.source import printable
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
@@ -45,36 +39,32 @@ Block: TypeAlias = "tuple[str, Indices]"
 """Name of a group of cells and their nodes (m, k) counted from 0."""
 
 
-def write_grids(
-    path: Path, grids: Iterable[Grid], heights: Heights = (), *, options: Options = frozenset()
-) -> None:
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
     """Write the one grid of `grids`: quads, and lines in groups named as its patches.
 
-    Repeated in z: hexahedra, and faces in groups.
+    Of a volume, hexahedra and quads.
     """
-    mesh = unstructured(only_one(grids, "a .msh file"))
-    points, patches, cells = extruded(mesh, heights)
-    tags = {name: tag for tag, name in enumerate(patches, start=1)}
+    grid = only_one(grids, "a .msh file")
+    refuse_collapsed(grid, "a .msh file")
+    mesh = unstructured(grid)
+    tags = {name: tag for tag, name in enumerate(mesh.faces, start=1)}
     links = [
-        Link(
-            tags[pair.partner],
-            tags[pair.name],
-            _affine(pair.motion),
-            periodic_nodes(pair, mesh, len(heights))[:, ::-1],
-        )
+        Link(tags[pair.partner], tags[pair.name], _affine(pair.motion), pair.nodes[:, ::-1])
         for pair in mesh.periodic
     ]
-    inside = INTERIOR if INTERIOR not in patches else f"{INTERIOR}-cells"
+    inside = INTERIOR if INTERIOR not in mesh.faces else f"{INTERIOR}-cells"
     write = _write_41 if "4.1" in options else _write_22
-    write(path, in_space(points), [*patches.items(), (inside, cells)], links, text="ascii" in options)
+    blocks = [*mesh.faces.items(), (inside, mesh.cells)]
+    write(path, in_space(mesh.points), blocks, links, text="ascii" in options)
 
 
 def _affine(motion: Motion) -> list[float]:
-    """Return a motion in the plane as a matrix (4, 4) row by row."""
+    """Return a motion as a matrix (4, 4) row by row."""
     matrix = np.eye(4)
     if motion.turn:
-        matrix[:2, :2] = motion.turn
-    matrix[:2, 3] = motion.translation
+        d = len(motion.turn)
+        matrix[:d, :d] = motion.turn
+    matrix[: len(motion.translation), 3] = motion.translation
     return [float(value) for value in matrix.ravel()]
 
 

@@ -14,16 +14,16 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from meshonet.formats.mesh.loop_names import with_loop_names
+from meshonet.formats.mesh.motions import like_others, matched
 from meshonet.formats.mesh.recover_topology import is_left_handed, recovered, usable
 from meshonet.geometry.arrays import Floats, Side
 from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.blocks.connection import Connection, Motion
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
-from meshonet.geometry.blocks.find_connections import AROUND, TOLERANCE, find_connections, order
+from meshonet.geometry.blocks.find_connections import AROUND, find_connections, order
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch, kind_of
 from meshonet.geometry.blocks.transform import turned_patch
-from meshonet.geometry.errors import InputError
 
 Stretch: TypeAlias = tuple[int, Side, int, int]
 """Block, side, first and last node, the first the smaller."""
@@ -39,14 +39,11 @@ class Joint(NamedTuple):
 
 _FLIPPED: dict[Side, Side] = {"west": "east", "east": "west"}
 _WAYS = dict(AROUND)
-_DIGITS = range(1, 18)
-_LOOSE = 1e-3
-"""Joined nodes may differ by this part of the shortest edge along their side."""
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A block of a file: nodes (ni, nj, 2) as they stand there, what it is called, its named stretches.
+    """A block of a file: nodes as they stand there, what it is called, its named patches.
 
     `iblank` says how many nodes have which mark, where there are marks.
     """
@@ -99,7 +96,7 @@ def grids_of(pieces: Sequence[Piece], joints: Sequence[Joint], name: str) -> Ite
         if patch.kind != "interface"
     ]
     connections = sorted((*said, *find_connections(blocks, without=known)), key=order)
-    groups = _groups(len(blocks), connections)
+    groups = groups_of(len(blocks), connections)
     for count, group in enumerate(groups, start=1):
         title = name if len(groups) == 1 else (len(group) == 1 and turned[group[0]].name) or f"{name}-{count}"
         own = [each for each in connections if each.block in group]
@@ -130,18 +127,9 @@ def _joined(blocks: Sequence[Block], joints: Sequence[Joint]) -> list[Connection
             continue
         connection = _connection(blocks, first, second)
         if connection.transform is not None:
-            connection = _like_others(connection, motions)
+            connection = like_others(connection, motions)
         found[first, second] = connection
     return list(found.values())
-
-
-def _like_others(connection: Connection, motions: list[Motion]) -> Connection:
-    for known in motions:
-        for each in (connection, connection.reversed()):
-            if each.transform and known.alike(each.transform, _LOOSE):
-                return replace(each, transform=known)
-    motions.append(connection.transform or Motion())
-    return connection
 
 
 def _with_periodic_names(
@@ -166,41 +154,10 @@ _ORDER: tuple[Side, ...] = ("west", "east", "south", "north")
 def _connection(blocks: Sequence[Block], first: Stretch, second: Stretch) -> Connection:
     way = -_WAYS[first[1]] * _WAYS[second[1]]  # right-handed blocks run along an interface in opposite ways
     connection = Connection(first[0], first[1], ((first[2:]),), second[0], second[1], ((second[2:]),), (way,))
-    if first[3] - first[2] != second[3] - second[2]:
-        counts = f"{first[3] - first[2]} cells to {second[3] - second[2]}"
-        raise InputError(f"{connection} joins {counts}", "join equal counts, one to one")
-    own, donor = connection.nodes(lambda block, side: blocks[block].face(side))
-    edge = float(np.hypot(*np.diff(own, axis=0).T).min())
-    for motion in _motions(own, donor):
-        if np.abs(motion(own) - donor).max() <= max(
-            _LOOSE * edge, TOLERANCE * float(np.ptp(own, axis=0).max())
-        ):
-            return replace(connection, transform=motion if motion.shift or motion.turn else None)
-    problem = f"{connection} joins nodes that no shift or rotation makes the same"
-    raise InputError(problem, "correct its ranges, or leave it out")
+    return matched(connection, blocks)
 
 
-def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
-    """Yield what may carry nodes (n, 2) to others: nothing, a shift, a rotation."""
-    yield Motion()
-    x, y = (donor - own).mean(axis=0).tolist()
-    for digits in _DIGITS:  # one that was meant makes the very nodes
-        motion = Motion((float(f"{x:.{digits}g}"), float(f"{y:.{digits}g}")))
-        if np.array_equal(motion(own), donor):
-            yield motion
-    yield Motion((x, y))
-    here, there = (nodes[-1] - nodes[0] for nodes in (own, donor))
-    if not here.any():
-        return
-    turn = complex(*there) / complex(*here)
-    turn /= abs(turn) or 1.0
-    rows = (turn.real, -turn.imag), (turn.imag, turn.real)
-    x, y = (donor - Motion((), rows)(own)).mean(axis=0).tolist()
-    about_origin = np.hypot(x, y) <= TOLERANCE * np.hypot(*own.mean(axis=0))
-    yield Motion((0.0, 0.0) if about_origin else (x, y), rows)
-
-
-def _groups(count: int, connections: Sequence[Connection]) -> list[list[int]]:
+def groups_of(count: int, connections: Sequence[Connection]) -> list[list[int]]:
     """Return the numbers of blocks that are connected, directly or through others."""
     label = list(range(count))
     for connection in connections:
@@ -235,11 +192,17 @@ def _several(
     number = {block: k for k, block in enumerate(group)}
     own = tuple(replace(each, block=number[each.block], donor=number[each.donor]) for each in connections)
     patches = tuple(replace(patch, block=k) for k, piece in enumerate(pieces) for patch in piece.patches)
-    titles = [piece.name for piece in pieces]
+    facts = facts_of_pieces([(piece.name, piece.iblank) for piece in pieces])
+    return Grid(with_equal_nodes(blocks, own), patches, own, name, facts)
+
+
+def facts_of_pieces(pieces: Sequence[tuple[str, Mapping[str, int]]]) -> dict[str, Any]:
+    """Return the provenance of a grid made of the blocks of a file: their names, and the counts of iblank."""
+    titles = [title for title, _ in pieces]
     facts: dict[str, Any] = {"zones": titles} if all(titles) and len(titles) > 1 else {}
     marks: Counter[str] = Counter()
-    for piece in pieces:
-        marks.update(piece.iblank)
+    for _, iblank in pieces:
+        marks.update(iblank)
     if marks:
         facts["iblank"] = dict(marks)
-    return Grid(with_equal_nodes(blocks, own), patches, own, name, facts)
+    return facts

@@ -5,8 +5,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias, get_args
 
+import numpy as np
+
+from meshonet.formats.mesh.axis_order import nodes_of
 from meshonet.formats.mesh.connection_text import connections_from, connections_text
 from meshonet.formats.mesh.recover_topology import known_topology, recovered, usable
+from meshonet.formats.mesh.slices import planar
 from meshonet.formats.source import printable
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.block import Block
@@ -15,6 +19,7 @@ from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.spatial_shape import in_space
 
 Facts: TypeAlias = Mapping[str, Sequence[str]]
 """Texts by the name of what they say."""
@@ -24,11 +29,15 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
     """Return the topology, name, parts and provenance of `grid` as lists of texts by name.
 
     `grid_with` makes a grid from them. A part reads ``side start stop name``; kinds are those of parts, where
-    names do not say them. What is empty is left out. Of a
-    grid of blocks they are those of one `block`, the first of which has the connections and the provenance;
-    with the grid's `number` in its file, by which its blocks know each other, `grid_of_blocks` makes a grid.
+    names do not say them, and across what they span along the second direction of a side. What is empty is
+    left out. Of a grid of blocks they are those of one `block`, the first of which has the connections and
+    the provenance; with the grid's `number` in its file, by which its blocks know each other,
+    `grid_of_blocks` makes a grid. Writers give the plane of an extruded grid (`plane_of_extruded`), so that
+    it is read as that again.
     """
-    several = grid.topology == "blocks"
+    space = in_space(grid)
+    of_blocks = grid.topology == "blocks"
+    several = of_blocks and (len(grid.blocks) > 1 or not space)
     first = block == 0
     provenance = json.dumps(dict(grid.provenance), default=plain) if grid.provenance and first else ""
     patches = [patch for patch in grid.patches if patch.block == block]
@@ -38,9 +47,11 @@ def facts_of(grid: Grid, block: int = 0, number: int = 0) -> dict[str, list[str]
         "name": [grid.name],
         "parts": [f"{p.side} {p.start} {p.stop} {p.name}" for p in patches],
         "kinds": [] if by_name else [patch.kind for patch in patches],
+        "across": [" ".join(map(str, patch.across or ())) for patch in patches],
+        "coordinates": ["3" if space else ""],
         "provenance": [provenance],
         "block": [f"{number} {block}" if several else ""],
-        "connections": [connections_text(grid.connections) if several and first else ""],
+        "connections": [connections_text(grid.connections) if of_blocks and first else ""],
     }
     return {name: texts for name, texts in facts.items() if any(texts)}
 
@@ -51,8 +62,23 @@ def number_of_grid(facts: Facts) -> int | None:
     return int(words[0]) if len(words) == 2 and all(w.isdecimal() and len(w) < 9 for w in words) else None
 
 
+def says_in_space(facts: Facts) -> bool:
+    """Say whether the facts of a block are those of one in space."""
+    return list(facts.get("coordinates", ())) == ["3"]
+
+
+def nodes_by_facts(coordinates: Sequence[Floats], facts: Facts) -> Floats:
+    """Return the nodes of a block of x, y[, z], each (n1, n2, n3), that its facts say is in space or a plane.
+
+    Raises InputError: it is no plane and not said to be in space.
+    """
+    if not says_in_space(facts):
+        return planar(coordinates)
+    return nodes_of([np.squeeze(values) for values in coordinates])
+
+
 def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Grid:
-    """Return the grid of blocks, each its nodes (ni, nj, 2) and facts, in the order that the facts say.
+    """Return the grid of blocks, each its nodes and facts, in the order that the facts say.
 
     Raises InputError: a block is missing or there twice; connections that do not fit the nodes.
     """
@@ -60,11 +86,15 @@ def grid_of_blocks(blocks: Sequence[tuple[Floats, Facts]], name: str = "") -> Gr
     if [k for k, _, _ in rows] != list(range(len(rows))):
         problem = f"has blocks {', '.join(str(k) for k, _, _ in rows[:9])} of a grid"
         raise InputError(problem, "keep all blocks of the grid in the file, once")
-    facts = rows[0][2]
+    return _grid([(nodes, facts) for _, nodes, facts in rows], name)
+
+
+def _grid(blocks: Sequence[tuple[Floats, Facts]], name: str) -> Grid:
+    facts = blocks[0][1]
     name = printable(facts["name"][0]) if facts.get("name") else name
     connections = connections_from(facts["connections"][0]) if facts.get("connections") else ()
-    patches = (replace(patch, block=k) for k, _, own in rows for patch in _parts(own))
-    made = tuple(Block(usable(nodes)) for _, nodes, _ in rows)
+    patches = (replace(patch, block=k) for k, (_, own) in enumerate(blocks) for patch in _parts(own))
+    made = tuple(Block(usable(nodes), finite=True) for nodes, _ in blocks)
     check_connections(connections, [block.counts for block in made])
     made = with_equal_nodes(made, connections)
     return Grid(made, tuple(patches), connections, name, _provenance(facts))
@@ -75,12 +105,15 @@ def _first(row: tuple[int, Floats, Facts]) -> int:
 
 
 def grid_with(nodes: Floats, facts: Facts, name: str = "") -> Grid:
-    """Return the grid of `nodes` (ni, nj, 2) and the facts of its file; without a topology it is recovered.
+    """Return the grid of `nodes` and the facts of its file; without a topology it is recovered, in the plane.
 
-    A block of a grid of several is one with four sides by itself.
+    A block of a grid of several is one by itself, without the connections.
 
     `name` is its name when the facts do not say; other facts than `facts_of` makes are passed over.
     """
+    if says_in_space(facts):
+        alone = number_of_grid(facts) is None
+        return _grid([(nodes, facts if alone else {**facts, "connections": []})], name)
     name = printable(facts["name"][0]) if facts.get("name") else name
     if not facts.get("topology"):
         return recovered(nodes, name)
@@ -107,10 +140,21 @@ def plain(value: object) -> object:
 def _parts(facts: Facts) -> list[Patch]:
     """Return the patches of a block, of the kinds that the facts say or else the names."""
     patches = [_part(text) for text in facts.get("parts", ())]
+    spans = facts.get("across", ())
+    if len(spans) == len(patches):
+        patches = [replace(patch, across=_across(text)) for patch, text in zip(patches, spans, strict=True)]
     kinds: list[Any] = list(facts.get("kinds", ()))
     if len(kinds) != len(patches) or not {*kinds} <= {*get_args(Kind)}:
         return patches
     return [replace(patch, kind=kind) for patch, kind in zip(patches, kinds, strict=True)]
+
+
+def _across(text: str) -> tuple[int, int] | None:
+    words = text.split()
+    try:
+        return (int(words[0]), int(words[1])) if words else None
+    except (ValueError, IndexError):
+        raise InputError(f"span {text[:60]!r} is not 'first last'", "remove the field 'across'") from None
 
 
 def _part(text: str) -> Patch:

@@ -1,10 +1,12 @@
-"""The periodic sides of a grid as pairs of named edges that face each other, row by row.
+"""The periodic sides of a grid as pairs of named faces that face each other, row by row.
 
 ::
 
     name      a ---> b        own edges, the domain on their left
                                   + motion
     partner   b' <-- a'       row k of the one goes with row k of the other, the other way round
+
+In space, rows are quadrilaterals a b c d whose normals point out of the domain, and a' d' c' b'.
 """
 
 from __future__ import annotations
@@ -15,54 +17,71 @@ from typing import NamedTuple
 
 import numpy as np
 
+from meshonet.formats.mesh.cell_faces import faces_of
 from meshonet.formats.mesh.names import unused
 from meshonet.geometry.blocks.block import face_of
 from meshonet.geometry.blocks.connection import Connection, Motion
-from meshonet.geometry.blocks.find_connections import AROUND
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.outer_patches import owners_of
 from meshonet.geometry.polygon.corners import Indices
 
-_WAYS = dict(AROUND)
 _SAME = 1e-9
 """Motions are the same when they differ by no more, shifts as part of their size."""
+_OPPOSITE = {2: [1, 0], 4: [0, 3, 2, 1]}
+"""Places in a row of the nodes that the partner's row, of so many nodes, has one after the other."""
+
+
+class Part(NamedTuple):
+    """Faces (k, 2 or 4) of node numbers, and the number (k,) of the cell behind each."""
+
+    faces: Indices
+    cells: Indices
 
 
 class PeriodicPair(NamedTuple):
-    """Edges (k, 2) of node numbers under a name, and those of the partner, to which `motion` carries them."""
+    """Faces under a name, and those of the partner, to which `motion` carries them."""
 
     name: str
     partner: str
     motion: Motion
-    edges: Indices
-    partner_edges: Indices
+    own: Part
+    opposite: Part
+
+    @property
+    def faces(self) -> Indices:
+        """Node numbers (k, 2 or 4) of the first side."""
+        return self.own.faces
 
     @property
     def nodes(self) -> Indices:
         """(n, 2) each node of the first side and its partner, once."""
-        rows = np.stack([self.edges.ravel(), self.partner_edges[:, ::-1].ravel()], axis=1)
+        opposite = self.opposite.faces[:, _OPPOSITE[self.faces.shape[1]]]
+        rows = np.stack([self.faces.ravel(), opposite.ravel()], axis=1)
         return np.asarray(np.unique(rows, axis=0))
 
 
-def periodic_pairs(grid: Grid, numbers: Sequence[Indices], taken: Iterable[str]) -> list[PeriodicPair]:
-    """Return the pairs of periodic sides of planar blocks whose nodes have `numbers` (ni, nj) each.
+def periodic_pairs(
+    grid: Grid, numbers: Sequence[Indices], cells: Sequence[Indices], taken: Iterable[str]
+) -> list[PeriodicPair]:
+    """Return the pairs of periodic sides of blocks whose nodes and `cells` have these numbers.
 
     Connections of one motion and one pair of names make one pair; without names they are called periodic1 and
-    periodic2, and so on, and never as those `taken` by other edges.
+    periodic2, and so on, and never as those `taken` by other faces.
     """
     motions: list[Motion] = []
-    found: dict[tuple[int, str, str], list[tuple[Indices, Indices]]] = {}
+    found: dict[tuple[int, str, str], list[tuple[Part, Part]]] = {}
     for connection in grid.connections:
         if connection.transform is None:
             continue
         number, backwards = _known(connection.transform, motions)
-        edges = _edges(connection, numbers)
-        names = _name(grid, connection), _name(grid, connection.reversed())
-        if backwards:
-            edges, names = edges[::-1], names[::-1]
-        found.setdefault((number, *names), []).append(edges)
+        ends = _parts(connection.reversed() if backwards else connection, numbers, cells)
+        names = patch_on(grid, connection), patch_on(grid, connection.reversed())
+        found.setdefault((number, *(names[::-1] if backwards else names)), []).append(ends)
     pairs, used = [], set(taken)
-    for count, ((number, *both), edges_of) in enumerate(found.items()):
-        own, partner = (np.concatenate(rows) for rows in zip(*edges_of, strict=True))
+    for count, ((number, *both), ends_of) in enumerate(found.items()):
+        own, partner = (
+            Part(*map(np.concatenate, zip(*ends, strict=True))) for ends in zip(*ends_of, strict=True)
+        )
         titles = []
         for k, name in enumerate(both, start=1):
             plain = f"{name}{k}" if both[0] == both[1] and name else name
@@ -82,21 +101,34 @@ def _known(motion: Motion, motions: list[Motion]) -> tuple[int, bool]:
     return len(motions) - 1, False
 
 
-def _edges(connection: Connection, numbers: Sequence[Indices]) -> tuple[Indices, Indices]:
-    """Return the edges (k, 2) of both sides, each with the domain on its left."""
+def _parts(connection: Connection, numbers: Sequence[Indices], cells: Sequence[Indices]) -> tuple[Part, Part]:
+    """Return the faces of both sides of a connection, the donor's the other way round, and the cells."""
+    faces = [faces_of(nodes, connection.side) for nodes in both_sides(connection, numbers)]
+    behind = [rows.ravel(order="F") for rows in both_sides(cellwise(connection), cells)]
+    return Part(faces[0], behind[0]), Part(faces[1][:, _OPPOSITE[faces[1].shape[1]]], behind[1])
+
+
+def both_sides(connection: Connection, numbers: Sequence[Indices]) -> tuple[Indices, Indices]:
+    """Return what `numbers` of all blocks are on both sides of a connection, in one order."""
     plain = replace(connection, transform=None)
-    own, donor = (nodes[:, 0] for nodes in plain.nodes(lambda b, side: face_of(numbers[b][..., None], side)))
-    if _WAYS[connection.side] < 0:
-        own, donor = own[::-1], donor[::-1]
-    return np.stack([own[:-1], own[1:]], axis=1), np.stack([donor[1:], donor[:-1]], axis=1)
+    own, donor = plain.nodes(lambda block, side: face_of(numbers[block][..., None], side))
+    return own[..., 0], donor[..., 0]
 
 
-def _name(grid: Grid, connection: Connection) -> str:
+def cellwise(connection: Connection) -> Connection:
+    """Return a connection with ranges of cells instead of nodes."""
+    own, donor = (
+        tuple((first, last - 1) for first, last in span)
+        for span in (connection.range, connection.donor_range)
+    )
+    return replace(connection, range=own, donor_range=donor)
+
+
+def patch_on(grid: Grid, connection: Connection) -> str:
     """Return the name that all patches on the first side of a connection share, if they cover it."""
-    ((first, last),) = connection.range
-    owners = [""] * (last - first)
-    for patch in grid.patches:
-        if (patch.block, patch.side) == (connection.block, connection.side):
-            start, stop = max(patch.start - first, 0), max(min(patch.stop - first, last - first), 0)
-            owners[start:stop] = [patch.name] * max(stop - start, 0)
-    return owners[0] if len(set(owners)) == 1 else ""
+    own = [patch for patch in grid.patches if patch.block == connection.block]
+    counts = grid.blocks[connection.block].counts
+    owners = owners_of(own, counts, (), connection.side)
+    part = owners[tuple(slice(first, last) for first, last in connection.range)]
+    names = {own[number].name if number >= 0 else "" for number in np.unique(part).tolist()}
+    return names.pop() if len(names) == 1 else ""

@@ -1,94 +1,174 @@
-"""A plane grid out of a three-dimensional file: one plane, or copies of one, in any index direction."""
+"""What the structured blocks of a three-dimensional file are: a grid in the plane, volumes, or surfaces.
+
+The rule, for all blocks of a file together:
+
+- A block of one plane of nodes in which a coordinate is constant, or of two planes that are copies of each
+  other shifted along one coordinate (a layer one cell thick), is a slice.
+- Where all blocks are slices across the same coordinate at the same places, the file holds a grid in the
+  plane: that coordinate and the index across are left out.
+- Else a block with one plane of nodes is a surface patch, any other one a volume, whose index i is reversed
+  where its directions are left-handed.
+"""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshonet.geometry.arrays import Floats, planar_nodes
-from meshonet.geometry.errors import InputError
+from meshonet.formats.mesh.axis_order import nodes_of
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.handedness import signed_volume
+from meshonet.geometry.errors import InputError, in_place
 
 _SAME = 1e-6
 """Two planes are copies, and a coordinate constant, to this part of the grid's size (float32 holds 1e-7)."""
 
-_ROWS = 16
+
+@dataclass(frozen=True)
+class Lattice:
+    """Nodes of a block (ni, nj, 2), (ni, nj, 3) or (ni, nj, nk, 3), and which index of its file i, j, k were.
+
+    `reversed` says that i runs against its index, counted from its last node.
+    """
+
+    nodes: Floats
+    axes: tuple[int, ...]
+    reversed: bool = False
+
+    @property
+    def dropped(self) -> int:
+        """The index of the file that is left out, -1 where none is."""
+        return next((axis for axis in range(3) if axis not in self.axes), -1)
+
+
+class _Slice(NamedTuple):
+    """The index across a slice, the coordinates within it, and where it is along the one across."""
+
+    axis: int
+    kept: tuple[int, ...]
+    flat: int
+    heights: tuple[float, ...]
+    size: float
+
+
+def lattices(blocks: Sequence[Sequence[Floats]], places: Sequence[str] = ()) -> list[Lattice]:
+    """Return the nodes of all blocks of a file by the rule above; `places` are what errors call them.
+
+    The coordinates x, y[, z] of a block are (n1, n2, n3) each, of any unit, number type and memory order;
+    they are copied once.
+
+    Raises InputError: a block without cells.
+    """
+    with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
+        slices = []
+        for coordinates, place in zip(blocks, places or [""] * len(blocks), strict=True):
+            with in_place(place):
+                slices.append(_slice_of(coordinates))
+        if _in_one_plane(slices):
+            return [_plane(block, each) for block, each in zip(blocks, slices, strict=True) if each]
+        return [_in_space(block) for block in blocks]
 
 
 def planar(coordinates: Sequence[Floats]) -> Floats:
-    """Return nodes (ni, nj, 2) of a plane grid, the constant index and the constant coordinate dropped.
+    """Return nodes (ni, nj, 2) of a block that its file calls plane, however many copies it is of a plane.
 
-    `coordinates` are x, y[, z], each (n1, n2, n3), any unit; memory order does not matter.
-
-    Raises InputError: the grid is truly three-dimensional, or its plane is curved.
+    Raises InputError: it is no slice.
     """
     return plane_of(coordinates)[0]
 
 
 def plane_of(coordinates: Sequence[Floats]) -> tuple[Floats, int]:
-    """Return the nodes as `planar` does, and which index was dropped: 0, 1 or 2."""
-    with np.errstate(all="ignore"):  # what is not finite is refused later, with its place
-        return _plane_of(coordinates)
-
-
-def _plane_of(coordinates: Sequence[Floats]) -> tuple[Floats, int]:
-    dims = coordinates[0].shape
-    counts = "x".join(str(n) for n in dims)
-    for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
-        first = [_plane(c, axis, 0) for c in coordinates]
-        if min(first[0].shape) < 2:
-            problem = f"a grid of {counts} nodes has no cells"
-            raise InputError(problem, "give at least 2 nodes in two directions")
-        if dims[axis] == 1:
-            return _nodes(_without_constant(first, counts)), axis
-        kept = list(range(len(coordinates)))
-        for index in range(1, dims[axis]):
-            if not kept:
-                break
-            kept = _unshifted(first, [_plane(c, axis, index) for c in coordinates], kept)
-        if kept:
-            return _nodes([first[k] for k in kept]), axis
+    """Return the nodes as `planar` does, and which index was left out: 0, 1 or 2."""
+    with np.errstate(all="ignore"):
+        cut = _slice_of(coordinates, most=max(coordinates[0].shape))
+        if cut:
+            return _plane(coordinates, cut).nodes, cut.axis
+    counts = "x".join(map(str, coordinates[0].shape))
+    if 1 in coordinates[0].shape:
+        problem = f"the {counts} nodes lie on a curved or tilted surface"
+        raise InputError(problem, "give a grid in a coordinate plane")
     remedy = "give a plane one: one plane, or copies of one, in some direction"
     raise InputError(f"a grid of {counts} nodes is three-dimensional", remedy)
 
 
-def _plane(values: Floats, axis: int, index: int) -> Floats:
+def _plane(coordinates: Sequence[Floats], cut: _Slice) -> Lattice:
+    within = [_at(coordinates[k], cut.axis, 0) for k in cut.kept]
+    return Lattice(nodes_of(within), tuple(axis for axis in range(3) if axis != cut.axis))
+
+
+def _in_space(coordinates: Sequence[Floats]) -> Lattice:
+    """Return a volume block or a surface patch."""
+    axes = tuple(axis for axis, count in enumerate(coordinates[0].shape) if count > 1)
+    coordinates = [np.squeeze(values) for values in coordinates]
+    left_handed = len(axes) == 3 and signed_volume(coordinates) < 0
+    if left_handed:
+        coordinates = [values[::-1] for values in coordinates]
+    return Lattice(nodes_of(coordinates), axes, left_handed)
+
+
+def _in_one_plane(slices: Sequence[_Slice | None]) -> bool:
+    """Say whether all blocks are slices at the same places."""
+    first, *rest = slices
+    if first is None:
+        return False
+    size = max(each.size if each else 0.0 for each in slices)
+    return all(
+        each is not None
+        and (each.flat, len(each.heights)) == (first.flat, len(first.heights))
+        and np.allclose(sorted(each.heights), sorted(first.heights), rtol=0, atol=_SAME * size)
+        for each in rest
+    )
+
+
+def _slice_of(coordinates: Sequence[Floats], most: int = 2) -> _Slice | None:
+    """Return how a block of at most so many planes is a slice, None where it is none."""
+    dims = coordinates[0].shape
+    if sum(count > 1 for count in dims) < 2:
+        problem = f"a grid of {'x'.join(map(str, dims))} nodes has no cells"
+        raise InputError(problem, "give at least 2 nodes in two directions")
+    for axis in sorted(range(3), key=lambda k: (dims[k], -k)):
+        if dims[axis] > most:
+            break
+        first = [_at(values, axis, 0) for values in coordinates]
+        cut = _flat(first, axis) if dims[axis] == 1 else None
+        for k in range(1, dims[axis]):
+            cut = _copies(first, [_at(values, axis, k) for values in coordinates], axis, cut)
+            if cut is None:
+                break
+        if cut or dims[axis] == 1:
+            return cut
+    return None
+
+
+def _at(values: NDArray[Any], axis: int, index: int) -> NDArray[Any]:
     """Return plane `index` of (n1, n2, n3) along `axis`, a view."""
     return values[(slice(None),) * axis + (index,)]
 
 
-def _nodes(coordinates: list[Floats]) -> Floats:
-    """Return (ni, nj, 2) float64 of x and y, each (ni, nj), in the layout that `Grid` keeps.
-
-    Files have i fastest and grids j, so this transposes; a few rows at a time stay in the cache.
-    """
-    ni, nj = coordinates[0].shape
-    nodes = planar_nodes(ni, nj)
-    for start in range(0, nj, _ROWS):
-        rows = slice(start, start + _ROWS)
-        for k, values in enumerate(coordinates):
-            nodes[:, rows, k] = values[:, rows]
-    return nodes
-
-
-def _without_constant(plane: list[Floats], counts: str) -> list[Floats]:
-    """Return the two coordinates of a plane that vary."""
+def _flat(plane: list[Floats], axis: int) -> _Slice | None:
+    """Return the slice that a plane of nodes is, the last of the coordinates that are constant left out."""
+    spans = [float(np.ptp(values)) for values in plane]
+    size = max(spans)
     if len(plane) == 2:
-        return plane
-    spans = [float(np.ptp(c)) for c in plane]
-    flat = [k for k in (2, 1, 0) if not spans[k] > _SAME * max(spans)]
-    if not flat:
-        problem = f"the {counts} nodes lie on a curved or tilted surface"
-        raise InputError(problem, "give a grid in a coordinate plane")
-    return [c for k, c in enumerate(plane) if k != flat[0]]
+        return _Slice(axis, (0, 1), 2, (), size)
+    for flat in (2, 1, 0):
+        if not spans[flat] > _SAME * size:
+            kept = tuple(k for k in range(3) if k != flat)
+            return _Slice(axis, kept, flat, (float(plane[flat].flat[0]),), size)
+    return None
 
 
-def _unshifted(first: list[Floats], next_plane: list[Floats], among: list[int]) -> list[int]:
-    """Return the two coordinates, `among` those in which earlier planes agreed, that two planes share."""
-    size = max(float(np.ptp(c)) for c in first)
-    for k in (2, 1, 0):
-        kept = [m for m in range(len(first)) if m != k]
-        if k >= len(first) or not set(kept) <= set(among):
+def _copies(first: list[Floats], next_plane: list[Floats], axis: int, before: _Slice | None) -> _Slice | None:
+    """Return the slice that planes of nodes are: all flat across one coordinate, the others the same."""
+    size = max(float(np.ptp(values)) for values in first)
+    for flat in (2, 1, 0):
+        if flat >= len(first) or (before and before.flat != flat):
             continue
-        flat = max(float(np.ptp(first[k])), float(np.ptp(next_plane[k]))) <= _SAME * size
-        if flat and all(np.allclose(first[m], next_plane[m], rtol=0, atol=_SAME * size) for m in kept):
-            return kept
-    return []
+        kept = tuple(k for k in range(len(first)) if k != flat)
+        thin = max(float(np.ptp(first[flat])), float(np.ptp(next_plane[flat]))) <= _SAME * size
+        if thin and all(np.allclose(first[k], next_plane[k], rtol=0, atol=_SAME * size) for k in kept):
+            heights = before.heights if before else (float(first[flat].flat[0]),)
+            return _Slice(axis, kept, flat, (*heights, float(next_plane[flat].flat[0])), size)
+    return None

@@ -1,11 +1,10 @@
 """Plot3D as bytes: C binary or Fortran records, either byte order, float32 or float64.
 
-Fortran frames each record with its length before and after. Once the frames are taken away, both kinds
-are the same stream: integers of 4 bytes, then floats, then the integers of iblank.
+Once the lengths of records are taken away, both kinds are the same stream: integers of 4 bytes, then floats,
+then the integers of iblank.
 """
 
 import itertools
-import struct
 from collections.abc import Sequence
 from math import prod
 from typing import Any
@@ -13,29 +12,31 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
-from meshonet.geometry.arrays import Floats
+from meshonet.formats.format import Options
+from meshonet.formats.plot3d.layouts import MOST_INTEGERS, Candidate, Layout, layouts
+from meshonet.formats.plot3d.stream import Stream, unframed
 from meshonet.geometry.errors import InputError
 
-_MOST_RECORDS = 400_000
-_NAMES = {"<": "little endian", ">": "big endian"}
+_ORDERS = {"<": "little", ">": "big"}
 
 
-def candidates(data: bytes) -> list[Candidate]:
-    """Return every layout whose length in bytes is exactly the file's.
+def candidates(data: memoryview, wanted: Options = frozenset()) -> list[Candidate]:
+    """Return every layout whose length in bytes is exactly the file's; planes only if they are `wanted`.
 
-    Raises InputError: none is.
+    Fortran records that are one a plane say themselves that they are.
+
+    Raises InputError: no layout is.
     """
     fitting: list[Candidate] = []
     tried: list[str] = []
     for order in "<>":
-        records = _unframed(data, order)
-        if records is not None:
-            fitting += _fitting(b"".join(records), order, "Fortran records", len(records), tried)
+        stream = unframed(data, order)
+        if stream is not None:
+            fitting += _fitting(stream, order, wanted, tried)
     if fitting:
         return fitting
     for order in "<>":
-        fitting += _fitting(data, order, "C binary", 0, tried)
+        fitting += _fitting(Stream([data]), order, wanted, tried)
     if not fitting:
         near = f" (a header could be dims {', '.join(tried[:3])})" if tried else ""
         raise InputError(
@@ -45,65 +46,74 @@ def candidates(data: bytes) -> list[Candidate]:
     return fitting
 
 
-def _fitting(stream: bytes, order: str, numbers: str, records: int, tried: list[str]) -> list[Candidate]:
-    integers = np.frombuffer(stream, np.dtype(order + "i4"), len(stream) // 4)
+def _fitting(stream: Stream, order: str, wanted: Options, tried: list[str]) -> list[Candidate]:
+    count = min(len(stream) // 4, MOST_INTEGERS)
+    integers = np.frombuffer(stream.take(0, 4 * count), np.dtype(order + "i4"))
 
     def integer(k: int) -> int | None:
-        return int(integers[k]) if k < len(integers) else None
+        return int(integers[k]) if k < count else None
 
     fitting = []
     for layout, size in itertools.product(layouts(integer), (8, 4)):
         if layout.length(size, 4) == len(stream):
-            words = f"{numbers}, {_NAMES[order]}, float{8 * size}"
-            fitting.append(_candidate(layout, stream, np.dtype(f"{order}f{size}"), words, records))
+            forms = [_Form(stream, layout, order, size, planes) for planes in _forms(stream, layout, wanted)]
+            fitting += [form.candidate() for form in forms]
         elif 2 <= max(map(max, layout.dims)) <= 100_000 and not layout.iblank and size == 8:
             tried.append("x".join(map(str, layout.dims[0])))
     return fitting
 
 
-def _candidate(layout: Layout, stream: bytes, dtype: np.dtype[Any], numbers: str, records: int) -> Candidate:
-    starts = layout.starts(dtype.itemsize, 4)
-    # one record a plane, x y z of each plane together: the "planes" form, which matters for two planes
-    headers = 2 if layout.counted else 1
-    by_planes = layout.axes == 3 and len(layout.dims) == 1 and layout.dims[0][2] == 2 == records - headers
-
-    def block(k: int) -> Sequence[Floats]:
-        nodes, at = prod(layout.dims[k]), starts[k]
-        values: NDArray[Any] = np.frombuffer(stream, dtype, layout.axes * nodes, at)
-        rows = values.reshape(layout.axes, -1)
-        if by_planes:
-            rows = values.reshape(2, 3, -1).swapaxes(0, 1).reshape(3, -1)
-        with np.errstate(invalid="ignore"):  # a wrong reading meets signalling NaN
-            arrays = list(rows.astype(np.float64))
-        if layout.iblank:
-            flags = np.frombuffer(stream, dtype.byteorder + "i4", nodes, at + values.nbytes)
-            arrays.append(flags.astype(np.float64))
-        return arrays
-
-    kind = {
-        "fortran" if records else "binary",
-        "big" if ", big" in numbers else "little",
-        f"float{8 * dtype.itemsize}",
-        "planes" if by_planes else "whole",
-    }
-    return Candidate(layout, block, numbers, frozenset(kind))
+def _forms(stream: Stream, layout: Layout, wanted: Options) -> list[bool]:
+    """Return whether the coordinates of a block may stand whole (False), or plane by plane (True)."""
+    if layout.axes < 3:
+        return [False]
+    # a record for each plane of a single block; of three planes it may as well be one for each coordinate
+    records = stream.records - (2 if layout.counted else 1)
+    if len(layout.dims) == 1 and records == layout.dims[0][2] > 1:
+        return [True, False] if records == 3 else [True]
+    return [False, True] if "planes" in wanted else [False]
 
 
-def _unframed(data: bytes, order: str) -> list[memoryview] | None:
-    """Return the records of a Fortran file, or None when the length words do not lead to its end.
+class _Form:
+    """One way to read a stream."""
 
-    gfortran splits a record of more than 2 GiB: a negative first word says that more follows.
-    """
-    view, at = memoryview(data), 0
-    records: list[memoryview] = []
-    word = struct.Struct(order + "i")
-    while at < len(view):
-        if at + 8 > len(view) or len(records) == _MOST_RECORDS:
-            return None
-        length = abs(word.unpack_from(view, at)[0])
-        end = at + 4 + length
-        if not length or end + 4 > len(view) or abs(word.unpack_from(view, end)[0]) != length:
-            return None
-        records.append(view[at + 4 : end])
-        at = end + 4
-    return records or None
+    def __init__(self, stream: Stream, layout: Layout, order: str, size: int, planes: bool) -> None:
+        self._stream, self._layout, self._order, self._planes = stream, layout, order, planes
+        self._dtype, self._starts = np.dtype(f"{order}f{size}"), layout.starts(size, 4)
+
+    def candidate(self) -> Candidate:
+        """Return it with its names."""
+        kind, name = ("fortran", "Fortran records") if self._stream.records else ("binary", "C binary")
+        order, real = _ORDERS[self._order], f"float{8 * self._dtype.itemsize}"
+        words = f"{name}, {order} endian, {real}"
+        traits = {kind, order, real, "planes" if self._planes else "whole"}
+        return Candidate(self._layout, self.coordinates, self.flags, words, frozenset(traits))
+
+    def coordinates(self, k: int) -> Sequence[NDArray[Any]]:
+        """Return the coordinates of block k, flat, in the file's own number type; views of whole ones."""
+        count, axes = prod(self._layout.dims[k]), self._layout.axes
+        if not self._planes:
+            size = count * self._dtype.itemsize
+            return [self._numbers(self._starts[k] + axis * size, count) for axis in range(axes)]
+        planes = self._layout.dims[k][2]
+        rows = [self._numbers(at, axes * count // planes).reshape(axes, -1) for at in self._plane_starts(k)]
+        return [np.concatenate([row[axis] for row in rows]) for axis in range(axes)]
+
+    def flags(self, k: int) -> NDArray[Any]:
+        """Return the iblank array of block k, flat."""
+        count, axes = prod(self._layout.dims[k]), self._layout.axes
+        starts = self._plane_starts(k) if self._planes else [self._starts[k]]
+        part = count // len(starts)
+        behind = axes * part * self._dtype.itemsize
+        kind = self._order + "i4"
+        flags = [np.frombuffer(self._stream.take(at + behind, 4 * part), kind) for at in starts]
+        return flags[0] if len(flags) == 1 else np.concatenate(flags)
+
+    def _plane_starts(self, k: int) -> list[int]:
+        """Return where the planes of block k start."""
+        size = self._starts[k + 1] - self._starts[k]
+        planes = self._layout.dims[k][2]
+        return [self._starts[k] + plane * (size // planes) for plane in range(planes)]
+
+    def _numbers(self, at: int, count: int) -> NDArray[Any]:
+        return np.frombuffer(self._stream.take(at, count * self._dtype.itemsize), self._dtype)

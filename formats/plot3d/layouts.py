@@ -10,11 +10,13 @@ import itertools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshonet.formats.mesh.slices import plane_of
-from meshonet.geometry.arrays import Floats
+from meshonet.formats.mesh.slices import lattices
+from meshonet.formats.plot3d.regular import regular_cells
 from meshonet.geometry.errors import InputError
 
 Dims = tuple[int, ...]
@@ -22,6 +24,10 @@ Header = Callable[[int], "int | None"]
 """Returns header integer k, or None past the end or where the number is no integer."""
 _MOST_BLOCKS = 100_000
 _MOST_FLAGS = 1000
+_JUDGED = 100
+_LESS_LIKELY = 0.1
+MOST_INTEGERS = 1 + 3 * _MOST_BLOCKS
+"""Integers of the longest header."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +85,13 @@ class Candidate:
 
     Parameters
     ----------
-    arrays : returns for block k its coordinate arrays (ni nj nk,) flat, and iblank when there is one.
+    arrays, flags : return for block k its coordinates, and its iblank array, flat in the file's number type.
     numbers, kind : the number type and byte order, for messages and as options of the format.
     """
 
     layout: Layout
-    arrays: Callable[[int], Sequence[Floats]]
+    arrays: Callable[[int], Sequence[NDArray[Any]]]
+    flags: Callable[[int], NDArray[Any]]
     numbers: str = ""
     kind: frozenset[str] = frozenset()
 
@@ -94,11 +101,16 @@ class Candidate:
         count = "multi" if self.layout.counted else "single"
         return self.kind | {count, f"{self.layout.axes}d", "iblank" if self.layout.iblank else "no-iblank"}
 
+    @property
+    def blocks(self) -> range:
+        """The numbers of its blocks, from 0 on."""
+        return range(len(self.layout.dims))
+
     def iblank(self, block: int) -> dict[str, int]:
         """Return how many nodes of a block have which value, nothing where there is no iblank array."""
         if not self.layout.iblank:
             return {}
-        values, counts = np.unique(self.arrays(block)[-1], return_counts=True)
+        values, counts = _tallied(self.flags(block))
         if len(values) > _MOST_FLAGS:
             problem = f"iblank has {len(values)} different values"
             raise InputError(problem, "write 0, 1, 2 or numbers of blocks")
@@ -109,31 +121,29 @@ class Candidate:
         ni, nj, nk = (*self.layout.dims[block], 1)[:3]
         return ni, nj, nk
 
-    def plane(self, block: int) -> tuple[Floats, int]:
-        """Return nodes (ni, nj, 2) of a block and the index left out; InputError where it is not plane."""
-        arrays = self.arrays(block)[: self.layout.axes]
-        return plane_of([np.asarray(values).reshape(self.size(block), order="F") for values in arrays])
+    def coordinates(self, block: int) -> list[NDArray[Any]]:
+        """Return x, y[, z] of a block, (ni, nj, nk) each."""
+        return [values.reshape(self.size(block), order="F") for values in self.arrays(block)]
 
     def regularity(self) -> float:
-        """Return the share of cells whose area has the prevailing sign; negative when it makes no sense.
+        """Return the share of cells that lie as the others do; negative when it makes no sense.
 
-        The right reading of a file has nearly all its cells one way round; a wrong one is noise.
+        The right reading of a file has nearly all its cells one way round; a wrong one is noise. Of readings
+        that are alike, one in the plane is the likelier: the iblank array of a plane grid makes a surface.
+        Large volumes are judged by their first nodes along each index.
         """
-        cells = good = 0
-        for block in range(len(self.layout.dims)):
-            values = self.arrays(block)[: self.layout.axes]
-            if not all(_sane(v) for v in values):
+        for block in self.blocks:
+            if not all(_sane(values) for values in self.arrays(block)):
                 return -2.0
-            if self.layout.iblank and not _is_iblank(self.arrays(block)[-1]):
+            if self.layout.iblank and not _is_iblank(self.flags(block)):
                 return -2.0
-            try:
-                nodes, _ = self.plane(block)
-            except InputError:
-                return -1.0
-            area = _areas(nodes)
-            cells += area.size
-            good += max(int((area > 0).sum()), int((area < 0).sum()))
-        return good / cells
+        some = slice(None, _JUDGED)
+        try:
+            blocks = lattices([[v[some, some, some] for v in self.coordinates(k)] for k in self.blocks])
+        except InputError:
+            return -1.0
+        good, cells = np.sum([regular_cells(block.nodes) for block in blocks], axis=0)
+        return float(good / cells) - (_LESS_LIKELY if blocks[0].nodes.shape[2:] == (3,) else 0.0)
 
 
 def best(candidates: list[Candidate]) -> Candidate:
@@ -141,16 +151,23 @@ def best(candidates: list[Candidate]) -> Candidate:
     return candidates[0] if len(candidates) == 1 else max(candidates, key=Candidate.regularity)
 
 
-def _sane(values: Floats) -> bool:
+def _sane(values: NDArray[Any]) -> bool:
     """Say whether `values` can be coordinates: finite, and no specks as integers read as floats are."""
-    largest = float(np.abs(values).max())
+    with np.errstate(invalid="ignore"):  # a wrong reading meets signalling NaN
+        largest = max(abs(float(values.min())), abs(float(values.max())))
     return bool(np.isfinite(largest)) and (largest == 0 or 1e-30 < largest < 1e30)
 
 
-def _is_iblank(values: Floats) -> bool:
-    return bool((values == np.round(values)).all() and np.abs(values).max() <= _MOST_BLOCKS)
+def _is_iblank(values: NDArray[Any]) -> bool:
+    most = max(abs(float(values.min())), abs(float(values.max())))
+    return most <= _MOST_BLOCKS and (values.dtype.kind == "i" or bool((values == np.round(values)).all()))
 
 
-def _areas(nodes: Floats) -> Floats:
-    rising, falling = nodes[1:, 1:] - nodes[:-1, :-1], nodes[:-1, 1:] - nodes[1:, :-1]
-    return rising[..., 0] * falling[..., 1] - rising[..., 1] * falling[..., 0]
+def _tallied(flags: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the values of an iblank array in ascending order, and how often each stands."""
+    low, high = float(flags.min()), float(flags.max())
+    if not high - low <= _MOST_BLOCKS:
+        return np.unique(flags, return_counts=True)
+    counts = np.bincount(np.asarray(flags - flags.min(), np.int64))
+    values = np.flatnonzero(counts)
+    return values + low, counts[values]

@@ -2,20 +2,18 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import replace
 from typing import NoReturn
 
 import numpy as np
 
 from meshonet.formats.format import Options
-from meshonet.formats.mesh.gather import Piece, grids_of
-from meshonet.formats.mesh.recover_topology import usable
+from meshonet.formats.mesh.structured import FileBlock, grids_of_file
 from meshonet.formats.plot3d import binary, text
 from meshonet.formats.plot3d.layouts import Candidate, best
-from meshonet.formats.plot3d.nmf_read import read_map
+from meshonet.formats.plot3d.nmf_read import Map, read_map
 from meshonet.formats.source import HEAD_BYTES, Source
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 _WRITTEN_ONLY = {"span-i", "span-j", "span-k"}
 _INTEGER_LINE = re.compile(rb"\s*(?:\d+(?:\*\d+)?[ \t,]*)+\r?\n")
@@ -25,30 +23,30 @@ _INTEGER_FIRST = re.compile(rb"\s*\d+(?:\*\d+)?[\s,]")
 def read_grids(source: Source, *, options: Options = frozenset()) -> Iterator[Grid]:
     """Yield the grids of the blocks, right-handed: those that touch are one, others one each.
 
-    Where blocks join, and what their sides are, stands in a neutral map file beside the file, or else is
-    found by position; of a block alone the topology is recovered from its nodes. Where there is an iblank
-    array, the provenance says how many nodes have which value. `options` say what is known of the layout.
-    Raises InputError where none fits the file's length, or a block is not plane.
+    `meshonet.formats.mesh.slices` says which files are grids in the plane; all surface patches of a file in
+    space are one grid. Where blocks join, and what their sides are, stands in a neutral map file beside the
+    file, or else is found by position; of a plane block alone the topology is recovered from its nodes. Where
+    there is an iblank array, the provenance says how many nodes have which value. `options` say what is known
+    of the layout.
+
+    Raises InputError where none fits the file's length, or a block has no cells.
     """
-    data = source.read_bytes()
-    every = text.candidates(data) if is_text(data[:HEAD_BYTES]) else binary.candidates(data)
     wanted = options - _WRITTEN_ONLY
+    if is_text(source.head()):
+        every = text.candidates(source.read_bytes(), wanted)
+    else:
+        every = binary.candidates(memoryview(source.buffer()), wanted)
     reading = best([candidate for candidate in every if wanted <= candidate.traits] or _misfit(every, wanted))
-    pieces, dropped = [], []
-    for block in range(len(reading.layout.dims)):
-        try:
-            nodes, axis = reading.plane(block)
-            pieces.append(Piece(usable(nodes), iblank=reading.iblank(block)))
-            dropped.append(axis)
-        except InputError as error:
-            error.place = error.place or f"block {block + 1}, read as {reading.numbers}"
-            raise
+    blocks = []
+    for k in reading.blocks:
+        place = f"block {k + 1}, read as {reading.numbers}"
+        with in_place(place):
+            blocks.append(FileBlock(reading.coordinates(k), "", place, reading.iblank(k)))
     beside = source.path.with_suffix(".nmf") if source.path else None
-    if beside is None or not beside.is_file():
-        return grids_of(pieces, [], source.stem)
-    known = read_map(beside, [reading.size(k) for k in range(len(pieces))], dropped)
-    named = [replace(piece, patches=tuple(own)) for piece, own in zip(pieces, known.patches, strict=True)]
-    return grids_of(named, known.joints, source.stem)
+    known = Map([], [])
+    if beside is not None and beside.is_file():
+        known = read_map(beside, [reading.size(k) for k in reading.blocks])
+    yield from grids_of_file(blocks, *known, source.stem)
 
 
 def _misfit(every: list[Candidate], wanted: Options) -> NoReturn:
@@ -65,7 +63,7 @@ def sniff(head: bytes) -> bool:
     if len(head) == HEAD_BYTES:
         return bool(_INTEGER_LINE.match(head)) if textual else _could_be_binary(head)
     try:
-        return bool(text.candidates(head) if textual else binary.candidates(head))
+        return bool(text.candidates(head) if textual else binary.candidates(memoryview(head)))
     except InputError:
         return False
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from meshonet.formats.format import Options
 from meshonet.formats.plot3d.layouts import Candidate, Layout, layouts
 from meshonet.formats.text.number_table import parsed
 from meshonet.geometry.arrays import Floats
@@ -17,8 +18,8 @@ _MOST_REPEATED = 4
 """Numbers a byte of file, repeats expanded; constant planes and iblank stay far below."""
 
 
-def candidates(data: bytes) -> list[Candidate]:
-    """Return every layout that has as many numbers as the file.
+def candidates(data: bytes, wanted: Options = frozenset()) -> list[Candidate]:
+    """Return every layout that has as many numbers as the file; planes only if they are `wanted`.
 
     Raises InputError: a word that is no number; no layout fits.
     """
@@ -32,16 +33,30 @@ def candidates(data: bytes) -> list[Candidate]:
     fitting = [layout for layout in tried if layout.length() == len(values)]
     if not fitting:
         raise _misfit(tried, len(values))
-    return [_candidate(layout, values) for layout in fitting]
+    whole = [_candidate(layout, values, planes=False) for layout in fitting]
+    if "planes" not in wanted:
+        return whole
+    return [*whole, *(_candidate(layout, values, planes=True) for layout in fitting if layout.axes == 3)]
 
 
-def _candidate(layout: Layout, values: Floats) -> Candidate:
+def _candidate(layout: Layout, values: Floats, *, planes: bool) -> Candidate:
     starts = layout.starts()
 
-    def block(k: int) -> Sequence[Floats]:
-        return list(values[starts[k] : starts[k + 1]].reshape(layout.axes + int(layout.iblank), -1))
+    def rows(k: int) -> Floats:
+        arrays = layout.axes + int(layout.iblank)
+        part = values[starts[k] : starts[k + 1]]
+        if not planes:
+            return part.reshape(arrays, -1)
+        return part.reshape(layout.dims[k][2], arrays, -1).swapaxes(0, 1).reshape(arrays, -1)
 
-    return Candidate(layout, block, "ASCII", frozenset({"ascii", "whole"}))
+    def coordinates(k: int) -> Sequence[Floats]:
+        return list(rows(k)[: layout.axes])
+
+    def flags(k: int) -> Floats:
+        return np.asarray(rows(k)[-1])
+
+    kind = frozenset({"ascii", "planes" if planes else "whole"})
+    return Candidate(layout, coordinates, flags, "ASCII", kind)
 
 
 def _misfit(tried: list[Layout], numbers: int) -> InputError:

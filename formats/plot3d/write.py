@@ -1,5 +1,9 @@
-"""Writing Plot3D: 17 significant digits or float64, so that no wall cell is lost to rounding."""
+"""Writing Plot3D: plane grids, volumes and surfaces.
 
+With 17 significant digits or float64, so that no wall cell is lost to rounding.
+"""
+
+import math
 import struct
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -8,64 +12,68 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Heights, Options
+from meshonet.formats.format import Options
+from meshonet.formats.mesh.axis_order import first_fastest
 from meshonet.formats.output import PART_SUFFIX, final_name, whole_file
 from meshonet.formats.plot3d.nmf import write_map
 from meshonet.formats.text.number_table import write_rows
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
+from meshonet.geometry.shapes.spatial_shape import in_space
 
 _LINE = 4
 """Numbers a line of text."""
 
 
 class Block:
-    """A plane block as Plot3D stores it: dims, and x, y[, z] the first index fastest; no heights, no z."""
+    """A block as Plot3D stores it: dims, and x, y[, z], the first index fastest.
 
-    def __init__(self, lattice: Floats, heights: Heights, options: Options) -> None:
-        self.lattice, self.heights, self.iblank = lattice, heights, "iblank" in options
-        self._span = _span(options)
-        dims = list(lattice.shape[:2])
-        if heights:
-            dims.insert(self._span, len(heights))
-        self.dims = tuple(dims)
+    In `space`, plane nodes (ni, nj, 2) have z = 0.
+    """
 
-    def arrays(self) -> Iterator[Floats]:
+    def __init__(self, nodes: Floats, options: Options, *, space: bool) -> None:
+        self._coordinates = list(np.moveaxis(nodes, -1, 0))
+        self.iblank, self._dtype, self.axes = "iblank" in options, _real(options), 2 + int(space)
+        dims = list(nodes.shape[:-1])
+        if space and len(dims) == 2:
+            dims.append(1)
+        if space:
+            dims.insert(_span(options), dims.pop())
+        self._span, self.dims = _span(options), tuple(dims)
+
+    def arrays(self) -> Iterator[NDArray[Any]]:
         """Yield each coordinate flat; one at a time, so that a second grid is never in memory."""
-        for axis in (0, 1):
-            plane = self.lattice[..., axis]
-            if len(self.heights) > 1:
-                plane = np.broadcast_to(np.expand_dims(plane, self._span), self.dims)
-            yield plane.ravel(order="F")
-        if self.heights:
-            shape = [1, 1, 1]
-            shape[self._span] = len(self.heights)
-            yield np.broadcast_to(np.array(self.heights).reshape(shape), self.dims).ravel(order="F")
+        for values in self._coordinates:
+            solid = values.ndim == 3
+            yield first_fastest(np.moveaxis(values, 2, self._span) if solid else values, self._dtype)
+        if len(self._coordinates) < self.axes:
+            yield np.zeros(self.nodes, self._dtype)
 
     @property
     def nodes(self) -> int:
-        """Nodes of all planes."""
-        return int(np.prod(self.dims))
+        """The count of nodes."""
+        return math.prod(self.dims)
 
 
-def write_grids(
-    path: Path, grids: Iterable[Grid], heights: Heights = (), *, options: Options = frozenset()
-) -> None:
-    """Write the blocks of `grids`: a plane of their nodes at each of `heights`, or one without z.
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
+    """Write the blocks of `grids`; plane ones without z, or with z = 0 if there are others.
 
-    Where a grid has several blocks, a neutral map file beside the file says where they join, and what is
-    what.
+    The third direction of volumes is the index of the file that `options` say. Where a grid has several
+    blocks, a neutral map file beside the file says where they join, and what is what.
 
     Raises InputError: there is no grid; several in a file without a count; a block that no Fortran record
-    can hold.
+    can hold; z where there is none.
     """
-    if not heights and "2d" not in options and ("3d" in options or "binary" in options):
-        heights = (0.0,)  # VTK takes a counted flat C binary file of float64 for a solid one of float32
     if "planes" in options:
         raise InputError("planes are read and not written", "leave the word out")
     grids = list(grids)
-    blocks = [Block(each.nodes, heights, options) for grid in grids for each in grid.blocks]
+    space = any(map(in_space, grids))
+    if space and "2d" in options:
+        raise InputError("nodes of a grid in space have z", "leave the word 2d out")
+    # VTK takes a counted flat C binary file of float64 for a solid one of float32
+    space = space or "3d" in options or ("binary" in options and "2d" not in options)
+    blocks = [Block(each.nodes, options, space=space) for grid in grids for each in grid.blocks]
     if not blocks:
         raise InputError("there is no grid to write", "check the input")
     if "single" in options and len(blocks) > 1:
@@ -78,11 +86,11 @@ def write_grids(
     beside = map_of(path)
     if beside is not None and any(grid.topology == "blocks" for grid in grids):
         with whole_file(str(beside)) as part:
-            write_map(part, grids, len(heights) or 1, _span(options) if heights else 2)
+            write_map(part, grids, _span(options) if space else 2)
 
 
 def _span(options: Options) -> int:
-    """Return the index that counts the planes in z."""
+    """Return the index of the file that the third direction of volumes is."""
     return 0 if "span-i" in options else 1 if "span-j" in options else 2
 
 
@@ -120,14 +128,17 @@ def _put_bytes(stream: BinaryIO, blocks: Sequence[Block], options: Options) -> N
 
     for record in _head(blocks, options):
         stream.write(frame(len(record)) + record + frame(len(record)))
-    for block in blocks:
-        size = block.nodes * (len(block.dims) * _real(options).itemsize + 4 * int(block.iblank))
+    for number, block in enumerate(blocks, start=1):
+        size = block.nodes * (block.axes * _real(options).itemsize + 4 * int(block.iblank))
         if framed and size >= 1 << 31:
-            problem = "a block of 2 GiB or more does not fit in a Fortran record"
-            raise InputError(problem, "write it as plot3d:binary")
+            dims = "x".join(map(str, block.dims))
+            problem = (
+                f"block {number} of {dims} nodes takes {size} bytes and a Fortran record less than 2 GiB"
+            )
+            raise InputError(problem, "write the stream form, plot3d:binary")
         stream.write(frame(size))
         for values in block.arrays():
-            stream.write(values.astype(_real(options), copy=False).data)
+            stream.write(values.data)
         if block.iblank:
             stream.write(np.ones(block.nodes, _order(options) + "i4").data)
         stream.write(frame(size))
@@ -146,4 +157,7 @@ def _order(options: Options) -> str:
 
 
 def _real(options: Options) -> np.dtype[Any]:
+    """Return the number type; text is made of float64."""
+    if not options & {"binary", "fortran"}:
+        return np.dtype(np.float64)
     return np.dtype(_order(options) + ("f4" if "float32" in options else "f8"))

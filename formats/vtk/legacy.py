@@ -13,13 +13,14 @@ from urllib.parse import unquote
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Heights, Options, only_one
-from meshonet.formats.mesh.metadata import facts_of, grid_with
-from meshonet.formats.mesh.slices import planar
+from meshonet.formats.format import Options, only_one
+from meshonet.formats.mesh.metadata import facts_of
+from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
 from meshonet.formats.text.number_table import write_rows
-from meshonet.formats.vtk.arrays import CUT, plane_points
+from meshonet.formats.vtk.arrays import CUT, points_of
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -32,24 +33,22 @@ _LINE = 4096
 _WORD = re.compile(rb"\S")
 
 
-def write_grids(
-    path: Path, grids: Iterable[Grid], heights: Heights = (0.0,), *, options: Options = frozenset()
-) -> None:
-    """Write the one grid of `grids`, a plane of its nodes at each of `heights`; text has 17 digits."""
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
+    """Write the one grid of `grids`, of one block; text has 17 digits."""
     grid, text = only_one(grids, "a .vtk file"), "ascii" in options
+    ni, nj, nk = (*grid.blocks[0].counts, 1)[:3]
     with path.open("wb") as stream:
         form = "ASCII" if text else "BINARY"
         head = f"# vtk DataFile Version 3.0\nstructured grid\n{form}\nDATASET STRUCTURED_GRID\n"
         stream.write(head.encode())
-        _write_facts(stream, grid, text=text)
-        stream.write(f"DIMENSIONS {grid.ni} {grid.nj} {len(heights)}\n".encode())
-        stream.write(f"POINTS {grid.ni * grid.nj * len(heights)} double\n".encode())
-        for height in heights:
-            for points in plane_points(grid.nodes, height, ">f8"):
-                if text:
-                    write_rows(stream, "%e %e %e", points)
-                else:
-                    stream.write(points.data)
+        _write_facts(stream, plane_of_extruded(grid) or grid, text=text)
+        stream.write(f"DIMENSIONS {ni} {nj} {nk}\n".encode())
+        stream.write(f"POINTS {ni * nj * nk} double\n".encode())
+        for points in points_of(grid.nodes, ">f8"):
+            if text:
+                write_rows(stream, "%e %e %e", points)
+            else:
+                stream.write(points.data)
         stream.write(b"\n")
 
 
@@ -103,21 +102,21 @@ class _Cursor:
 def read_grids(source: Source) -> Iterator[Grid]:
     """Yield the grid of a legacy ``.vtk`` file.
 
-    Raises InputError: not such a file, another dataset than STRUCTURED_GRID, damaged, three-dimensional.
+    Raises InputError: not such a file, another dataset than STRUCTURED_GRID, damaged.
     """
     cursor = _Cursor(source.read_bytes())
     try:
-        nodes, facts = _read(cursor)
+        coordinates, facts = _read(cursor)
     except (ValueError, OverflowError, IndexError) as error:
         problem = printable(str(error))[:100]
         raise InputError(problem, "write the file again", place=f"byte {cursor.at}") from None
     except InputError as error:
         error.place = error.place or f"byte {cursor.at}"
         raise
-    yield grid_with(nodes, facts, source.stem)
+    yield grid_of_block(coordinates, facts, source.stem)
 
 
-def _read(cursor: _Cursor) -> tuple[Floats, dict[str, list[str]]]:
+def _read(cursor: _Cursor) -> tuple[list[Floats], dict[str, list[str]]]:
     if not cursor.line().startswith("# vtk DataFile"):
         raise InputError("does not start with '# vtk DataFile'", "give a legacy VTK file")
     cursor.at = cursor.data.find(b"\n", cursor.at) + 1  # the title, which may be blank
@@ -140,7 +139,7 @@ def _read(cursor: _Cursor) -> tuple[Floats, dict[str, list[str]]]:
         shown = "x".join(map(str, dims))[:60]
         raise InputError(f"has {words[1][:20]!r} points and DIMENSIONS {shown}", "make them agree")
     points = _numbers(cursor, words[2], 3 * int(words[1]), text=text).reshape(*dims[::-1], 3)
-    return planar([points[..., k].T for k in range(3)]), facts
+    return [points[..., k].T for k in range(3)], facts
 
 
 def _field(cursor: _Cursor, count: int, *, text: bool) -> dict[str, list[str]]:

@@ -13,29 +13,34 @@ from typing import Any, NamedTuple, TypeAlias
 
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Heights
-from meshonet.formats.mesh.gather import Piece, grids_of
-from meshonet.formats.mesh.metadata import Facts, grid_of_blocks, grid_with, number_of_grid
+from meshonet.formats.mesh.metadata import (
+    Facts,
+    facts_of,
+    grid_of_blocks,
+    grid_with,
+    nodes_by_facts,
+    number_of_grid,
+)
 from meshonet.formats.mesh.recover_topology import usable
+from meshonet.formats.mesh.structured import FileBlock, grids_of_file
 from meshonet.formats.output import final_name, whole_folder
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import escaped
 from meshonet.formats.vtk.vts import write
 from meshonet.formats.vtk.vts_read import read_block
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import InputError
+from meshonet.geometry.errors import InputError, in_place
 
 CellData: TypeAlias = Callable[[Grid], Sequence[Mapping[str, NDArray[Any]]]]
-"""Gives values (ni-1, nj-1) of the cells by name, for each block of a grid."""
+"""Gives values of the cells of each block of a grid, by name (`meshonet.formats.vtk.vts.write`)."""
 _MOST_BYTES = 16 << 20
 _OURS = re.compile(r"block-\d+\.vts")
 
 
-def write_grids(
-    path: Path, grids: Iterable[Grid], heights: Heights = (0.0,), cell_data: CellData | None = None
-) -> None:
-    """Write every grid of `grids`, a plane of its nodes at each of `heights`, with data of its cells.
+def write_grids(path: Path, grids: Iterable[Grid], cell_data: CellData | None = None) -> None:
+    """Write every grid of `grids`, with data of its cells.
 
     Raises InputError: there is no grid; the folder of the blocks holds something else, which would be lost.
     """
@@ -47,14 +52,16 @@ def write_grids(
     files = count()
     with whole_folder(folder) as part:
         for number, grid in enumerate(grids):
-            several = grid.topology == "blocks"
+            described = plane_of_extruded(grid) or grid
+            several = described.topology == "blocks"
             title = escaped(grid.name or f"block-{number}")
             if several:
                 lines.append(f'    <Block index="{number}" name="{title}">')
             values = cell_data(grid) if cell_data else [{}] * len(grid.blocks)
             for block in range(len(grid.blocks)):
                 name = f"block-{next(files)}.vts"
-                write(part / name, grid, values[block], heights, block=block, number=number)
+                facts = facts_of(described, block, number)
+                write(part / name, grid, values[block], facts=facts, block=block)
                 place = f'index="{block if several else number}"'
                 told = f"block-{block}" if several else title
                 file = f"{escaped(folder.name)}/{name}"
@@ -90,7 +97,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
     if not any(names):
         raise InputError("names no files", "write the file again")
     blocks = (
-        _Block(*_read(source.path.parent, name), block.get("name", ""), Path(name).stem)
+        _read(source.path.parent, name, block.get("name", ""))
         for block in root.iter("DataSet")
         if (name := block.get("file", ""))
     )
@@ -98,17 +105,28 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 class _Block(NamedTuple):
-    """Nodes (ni, nj, 2), what their file says of them, the name in the index, that of the file."""
+    """x, y, z (ni, nj, nk) each, what their file says of them, the name in the index, that of the file."""
 
-    nodes: Floats
+    coordinates: Sequence[Floats]
     facts: Facts
     title: str
-    stem: str
+    file: str
 
     @property
     def name(self) -> str:
         """What to call it when its file does not say."""
-        return printable(self.title or self.stem)
+        return printable(self.title or PurePosixPath(self.file).stem)
+
+    @property
+    def nodes(self) -> Floats:
+        """Its nodes by what its file says of them."""
+        with in_place(self.shown):
+            return usable(nodes_by_facts(self.coordinates, self.facts))
+
+    @property
+    def shown(self) -> str:
+        """What messages call it."""
+        return printable(self.file)[:60]
 
 
 def _grids(blocks: Iterator[_Block], stem: str) -> Iterator[Grid]:
@@ -127,11 +145,11 @@ def _grids(blocks: Iterator[_Block], stem: str) -> Iterator[Grid]:
                 yield grid_with(block.nodes, block.facts, block.name)
         else:
             foreign += group
-    pieces = [Piece(block.nodes, block.name) for block in foreign]
-    yield from grids_of(pieces, [], pieces[0].name if len(pieces) == 1 else stem)
+    read = [FileBlock(block.coordinates, block.name, block.shown) for block in foreign]
+    yield from grids_of_file(read, (), (), read[0].name if len(read) == 1 else stem)
 
 
-def _read(folder: Path, name: str) -> tuple[Floats, Facts]:
+def _read(folder: Path, name: str, title: str) -> _Block:
     shown = printable(name)[:60]
     parts = PurePosixPath(name)
     if parts.is_absolute() or ".." in parts.parts or "\0" in name:
@@ -141,9 +159,5 @@ def _read(folder: Path, name: str) -> tuple[Floats, Facts]:
     path = folder / parts
     if not path.is_file():
         raise InputError(f"names {shown!r}, which is not there", "keep the blocks beside it")
-    try:
-        nodes, facts = read_block(Source(printable(str(path)), path=path))
-        return usable(nodes), facts
-    except InputError as error:
-        error.place = error.place or shown
-        raise
+    with in_place(shown):
+        return _Block(*read_block(Source(printable(str(path)), path=path)), title, name)

@@ -15,9 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshonet.formats.format import Heights, only_one
+from meshonet.formats.format import only_one
 from meshonet.formats.mesh.metadata import Facts, facts_of
-from meshonet.formats.vtk.arrays import escaped, plane_points
+from meshonet.formats.vtk.arrays import escaped, points_of
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.extrude import plane_of_extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
@@ -39,34 +41,33 @@ def write(
     path: Path,
     grid: Grid,
     cell_data: Mapping[str, NDArray[Any]] | None = None,
-    heights: Heights = (0.0,),
     *,
+    facts: Facts | None = None,
     block: int = 0,
-    number: int = 0,
 ) -> None:
-    """Write one block of a grid, a plane of its nodes at each of `heights`.
+    """Write one block of a grid.
 
-    `cell_data` has (ni-1, nj-1) values by name; `number` is the grid's in a set of files, by which its blocks
-    know each other.
+    `cell_data` has values (ni-1, nj-1) or (ni-1, nj-1, nk-1) by name; `facts` are those of a block of several
+    (`meshonet.formats.mesh.metadata.facts_of`).
     """
-    planes, nodes = len(heights), grid.blocks[block].nodes
-    ni, nj = nodes.shape[:2]
-    cells = {name: _cell_values(name, values, (ni - 1, nj - 1)) for name, values in (cell_data or {}).items()}
+    nodes = grid.blocks[block].nodes
+    cells = {name: _cell_values(name, values, nodes) for name, values in (cell_data or {}).items()}
+    facts = facts_of(plane_of_extruded(grid) or grid) if facts is None else facts
+    ni, nj, nk = (*grid.blocks[block].counts, 1)[:3]
     with path.open("wb") as stream:
-        stream.write(_head((ni, nj, planes), facts_of(grid, block, number), cells).encode())
-        stream.write(struct.pack("<Q", 24 * planes * ni * nj))
-        for height in heights:
-            for points in plane_points(nodes, height, "<f8"):
-                stream.write(points.data)
+        stream.write(_head((ni, nj, nk), facts, cells).encode())
+        stream.write(struct.pack("<Q", 24 * ni * nj * nk))
+        for points in points_of(nodes, "<f8"):
+            stream.write(points.data)
         for values in cells.values():
             stream.write(struct.pack("<Q", values.nbytes))
             stream.write(values.data)
         stream.write(b"\n  </AppendedData>\n</VTKFile>\n")
 
 
-def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = (0.0,)) -> None:
-    """Write the one grid of `grids`, a plane of its nodes at each of `heights`."""
-    write(path, only_one(grids, "a .vts file"), heights=heights)
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`, of one block."""
+    write(path, only_one(grids, "a .vts file"))
 
 
 def _head(dims: tuple[int, int, int], facts: Facts, cells: Mapping[str, NDArray[Any]]) -> str:
@@ -93,8 +94,9 @@ def _field_data(facts: Facts) -> list[str]:
     return [*lines, "    </FieldData>"]
 
 
-def _cell_values(name: str, values: NDArray[Any], cells: tuple[int, int]) -> NDArray[Any]:
-    """Return per-cell `values` as VTK lays them out: (nj-1, ni-1), i fastest, 8 bytes each."""
+def _cell_values(name: str, values: NDArray[Any], nodes: Floats) -> NDArray[Any]:
+    """Return per-cell `values` as VTK lays them out: the first index fastest, 8 bytes each."""
+    cells = tuple(count - 1 for count in nodes.shape[:-1])
     if values.shape != cells:
         raise InputError(f"cell array {name!r} has shape {values.shape}", f"give {cells}")
     return np.ascontiguousarray(values.T, dtype="<f8" if values.dtype.kind == "f" else "<i8")

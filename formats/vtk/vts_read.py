@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshonet.formats.mesh.metadata import Facts, grid_with
-from meshonet.formats.mesh.slices import planar
+from meshonet.formats.mesh.metadata import Facts
+from meshonet.formats.mesh.structured import grid_of_block
 from meshonet.formats.source import Source, printable
 from meshonet.formats.vtk.arrays import CUT, Encoded, Encoding, decode
 from meshonet.geometry.arrays import Floats
@@ -17,6 +17,7 @@ from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
+    from mmap import mmap
     from xml.etree.ElementTree import Element
 
 Extent = tuple[int, int, int, int, int, int]
@@ -24,17 +25,17 @@ _MOST_NODES = 1 << 40
 
 
 def read_grids(source: Source) -> Iterator[Grid]:
-    """Yield the grid of a ``.vts`` file.
+    """Yield the grid of a ``.vts`` file, in the plane or in space (`meshonet.formats.mesh.slices`).
 
-    Raises InputError: not such a file, damaged, compressed with LZ4, three-dimensional.
+    Raises InputError: not such a file, damaged, compressed with LZ4.
     """
-    nodes, facts = read_block(source)
-    yield grid_with(nodes, facts, source.stem)
+    coordinates, facts = read_block(source)
+    yield grid_of_block(coordinates, facts, source.stem)
 
 
-def read_block(source: Source) -> tuple[Floats, Facts]:
-    """Return the nodes (ni, nj, 2) of a ``.vts`` file and what it says of them; raises as `read_grids`."""
-    raw = source.read_bytes()
+def read_block(source: Source) -> tuple[list[Floats], Facts]:
+    """Return x, y, z (ni, nj, nk) each of a ``.vts`` file and what it says of them; raises as `read_grids`."""
+    raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
     pieces = dataset.findall("Piece")
@@ -47,10 +48,10 @@ def read_block(source: Source) -> tuple[Floats, Facts]:
     else:
         points = _assembled(pieces, whole, encoding)
     facts = {array.get("Name", ""): _texts(array, encoding) for array in dataset.iterfind("FieldData/Array")}
-    return planar([points[..., k].T for k in range(3)]), facts
+    return [points[..., k].T for k in range(3)], facts
 
 
-def _parsed(raw: bytes) -> tuple[Element, int, int]:
+def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
     """Return the XML and where the appended bytes, which are not XML, start and end."""
     from xml.etree.ElementTree import ParseError, fromstring
 
@@ -78,7 +79,7 @@ def _parsed(raw: bytes) -> tuple[Element, int, int]:
     return root, start, end
 
 
-def _encoding(root: Element, dataset: Element, raw: bytes, start: int, end: int) -> Encoding:
+def _encoding(root: Element, dataset: Element, raw: bytes | mmap, start: int, end: int) -> Encoding:
     header = root.get("header_type", "UInt32")
     if header not in ("UInt32", "UInt64"):
         raise InputError(f"header_type {header[:40]!r} is not known", "write UInt32 or UInt64")

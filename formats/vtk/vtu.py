@@ -9,16 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from meshonet.formats.format import Heights, only_one
-from meshonet.formats.mesh.unstructured import CELLS, extruded, in_space, unstructured
+from meshonet.formats.format import only_one
+from meshonet.formats.mesh.unstructured import CELLS, in_space, unstructured
 from meshonet.geometry.blocks.grid import Grid
 
 
-def write_grids(path: Path, grids: Iterable[Grid], heights: Heights = ()) -> None:
-    """Write the one grid of `grids`: quadrilaterals and lines, or repeated in z hexahedra and faces."""
+def write_grids(path: Path, grids: Iterable[Grid]) -> None:
+    """Write the one grid of `grids`: quads and lines, or of a volume hexahedra and quads."""
     import meshio
 
-    points, patches, inside = extruded(unstructured(only_one(grids, "a .vtu file")), heights)
-    cells = [(CELLS[nodes.shape[1]], nodes) for nodes in (inside, *patches.values())]
+    mesh = unstructured(only_one(grids, "a .vtu file"))
+    cells = [(CELLS[nodes.shape[1]], nodes) for nodes in (mesh.cells, *mesh.faces.values())]
     numbers = [np.full(len(nodes), k) for k, (_, nodes) in enumerate(cells)]
-    meshio.vtu.write(str(path), meshio.Mesh(in_space(points), cells, cell_data={"part": numbers}))
+    meshio.vtu.write(str(path), meshio.Mesh(in_space(mesh.points), cells, cell_data={"part": numbers}))

@@ -65,9 +65,10 @@ class Motion:
         return angle, np.linalg.solve(np.eye(2) - turn, self.translation) if angle else np.zeros(2)
 
     def alike(self, other: Motion, tolerance: float) -> bool:
-        """Return whether two motions in the plane carry nodes to the same place, to a part of the shifts."""
+        """Return whether two motions carry nodes to the same place, to a part of the shifts."""
         size = max(1e-300, *map(abs, (*self.shift, *other.shift, float(bool(self.turn or other.turn)))))
-        frame = size * np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        dimension = max(2, *(len(rows) for rows in (self.shift, self.turn, other.shift, other.turn)))
+        frame = size * np.concatenate([np.zeros((1, dimension)), np.eye(dimension)])
         return bool(np.abs(self(frame) - other(frame)).max() <= tolerance * size)
 
     def inverse(self) -> Motion:

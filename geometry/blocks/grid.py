@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side, Topology
-from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.block import Block, Form, Range, check_alike, form_of
 from meshonet.geometry.blocks.connection import (
     Connected,
     Connection,
@@ -31,7 +31,8 @@ from meshonet.geometry.blocks.connection import (
     topology_of,
     wake_cells,
 )
-from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches, outer_patches
+from meshonet.geometry.blocks.outer_patches import outer_patches
+from meshonet.geometry.blocks.patches import Patch, check_patches, default_patches
 from meshonet.geometry.errors import InputError
 
 if TYPE_CHECKING:
@@ -70,6 +71,7 @@ class Grid(Connected):
     def __post_init__(self) -> None:
         if not self.blocks:
             raise InputError("a grid without blocks", "give at least one")
+        check_alike(self.blocks)
         counts = [block.counts for block in self.blocks]
         check_patches(self.patches, counts)
         check_connections(self.connections, counts)
@@ -95,6 +97,9 @@ class Grid(Connected):
         """
         block = Block(nodes, finite)
         ni, nj = block.counts[:2]
+        if form_of(block.nodes) == "volume":
+            named = tuple(patches) or tuple(outer_patches((), block.counts, ()))
+            return cls((block,), named, (), name, provenance or {}, origin)
         if topology == "o" and not np.array_equal(block.nodes[0], block.nodes[-1]):
             j = int(np.argmax((block.nodes[0] != block.nodes[-1]).any(axis=-1)))
             open_at = f"column ni-1 differs from column 0 at j={j}"
@@ -106,7 +111,14 @@ class Grid(Connected):
     @cached_property
     def topology(self) -> Topology:  # type: ignore[override]
         """``quad``, ``o`` or ``c`` for a single planar block connected in that way, else ``blocks``."""
+        if self.form != "plane":
+            return "blocks"
         return topology_of([block.counts for block in self.blocks], self.connections)
+
+    @property
+    def form(self) -> Form:
+        """``plane`` of blocks (ni, nj, 2), ``surface`` of (ni, nj, 3), ``volume`` of (ni, nj, nk, 3)."""
+        return form_of(self.blocks[0].nodes)
 
     @cached_property
     def nodes(self) -> Floats:
@@ -146,18 +158,23 @@ class Grid(Connected):
         return self.blocks[block].face(side)
 
     def outer_patches(self) -> list[Patch]:
-        """Return the outer boundary of planar blocks, each of its edges in one patch (`outer_patches`)."""
+        """Return the outer boundary, each cell at it in one patch (`outer_patches`)."""
         named: list[list[Patch]] = [[] for _ in self.blocks]
-        inside: list[list[tuple[Side, int, int]]] = [[] for _ in self.blocks]
         for patch in self.patches:
             named[patch.block].append(patch)
-        for each in self.connections:
-            for number in {each.block, each.donor}:
-                inside[number] += each.stretches(number)
+        inside = self.joined_ranges()
         outer: list[Patch] = []
         for number, block in enumerate(self.blocks):
             outer += outer_patches(named[number], block.counts, inside[number], number)
         return outer
+
+    def joined_ranges(self) -> list[list[tuple[Side, Range]]]:
+        """Return for every block the sides and ranges of nodes that are connected."""
+        inside: list[list[tuple[Side, Range]]] = [[] for _ in self.blocks]
+        for each in self.connections:
+            inside[each.block].append((each.side, each.range))
+            inside[each.donor].append((each.donor_side, each.donor_range))
+        return inside
 
     def walls(self) -> list[Patch]:
         """Return patches named as walls; without these, a body's or south's and north's unnamed stretches.

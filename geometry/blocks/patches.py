@@ -1,8 +1,7 @@
 """Named stretches of a boundary: what flow solvers call patches, markers or boundary conditions."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import groupby
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 from meshonet.geometry.arrays import SIDES, Side, Topology
@@ -106,34 +105,3 @@ def check_patches(patches: Iterable[Patch], counts: Sequence[tuple[int, ...]]) -
                 raise InputError(
                     f"{what} runs from node {start} to {stop} of a side with {count} nodes", remedy
                 )
-
-
-def outer_patches(
-    patches: Sequence[Patch],
-    counts: tuple[int, ...],
-    inside: Iterable[tuple[Side, int, int]],
-    block: int = 0,
-) -> list[Patch]:
-    """Return the outer boundary of planar block number `block`, each of its edges in one patch.
-
-    Where patches overlap the later one counts; edges without one are called by their side. `counts` are the
-    nodes along xi and eta, `inside` the side, first and last node of stretches that are connected.
-    """
-    outer: list[Patch] = []
-    inside = list(inside)
-    for side in SIDES:
-        unnamed = Patch(side, side, 0, 1, block=block)
-        owners: list[Patch | None] = [unnamed] * (face_counts(counts, side)[0] - 1)
-        for patch in patches:
-            if patch.side == side and patch.block == block:
-                owners[patch.start : patch.stop] = [patch] * (patch.stop - patch.start)
-        for connected, start, stop in inside:
-            if connected == side:
-                owners[start:stop] = [None] * (stop - start)
-        stop = 0
-        for _, cells in groupby(owners, key=id):
-            owner, *others = cells
-            start, stop = stop, stop + 1 + len(others)
-            if owner is not None:
-                outer.append(replace(owner, start=start, stop=stop))
-    return outer

@@ -1,6 +1,8 @@
 """How good a grid is: folded cells, and the metrics of `meshonet.geometry.quality.metrics` summarised.
 
-A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is.
+A cell is folded when any of its four corner Jacobians is not positive; a grid is valid when none is. Cells of
+volumes have eight (`meshonet.geometry.quality.volumes`); those of surface patches are measured against their
+own normals (`meshonet.geometry.quality.surfaces`).
 """
 
 from collections.abc import Sequence
@@ -10,32 +12,61 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshonet.geometry.arrays import Floats, as_planar
+from meshonet.geometry.blocks.block import form_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.errors import BadCell, InputError
-from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
-from meshonet.geometry.quality.percentiles import PERCENTS, no_run, prepared
+from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric, metric_of
+from meshonet.geometry.quality.percentiles import FEW, PERCENTS, no_run, prepared
 from meshonet.geometry.quality.summary import Quality, Summary
 from meshonet.kernels import _native
 
-FEW = 1 << 18
-"""Cells up to which percentiles come from the values of all cells."""
-
 
 def count_folded(nodes: Floats) -> int:
-    """Return how many cells of `nodes` (ni, nj, 2) are folded.
+    """Return how many cells of `nodes` (ni, nj, 2), (ni, nj, nk, 3) or (ni, nj, 3) are folded.
 
     Fastest, and free of copies, in the planar layout of `meshonet.geometry.arrays`.
     """
+    form = form_of(nodes)
+    if form == "volume":
+        from meshonet.geometry.quality.volumes import count_folded_solids
+
+        return count_folded_solids(nodes)
+    if form == "surface":
+        return len(folded_cells(nodes))
     return _native.count_folded(*_planes(nodes))
 
 
 def folded_cells(nodes: Floats) -> NDArray[np.int64]:
-    """Return (n, 2) indices (i, j) of the folded cells of `nodes` (ni, nj, 2), in order of i, then j."""
+    """Return the indices of the folded cells of `nodes`, in their order.
+
+    They are (n, 2), i and j, for nodes (ni, nj, 2) or (ni, nj, 3), and (n, 3) for (ni, nj, nk, 3).
+    """
+    form = form_of(nodes)
+    if form == "volume":
+        from meshonet.geometry.quality.volumes import folded_solids
+
+        return folded_solids(nodes)
+    if form == "surface":
+        from meshonet.geometry.quality.surfaces import folded_quads
+
+        return folded_quads(nodes)
     return _native.folded_cells(*_planes(nodes))
 
 
 def worst_cells(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes` (ni, nj, 2), `limit` at the most, least scaled Jacobian first."""
+    """Return the folded cells of `nodes`, as `count_folded` takes them, the worst first.
+
+    They are `limit` at the most, the least scaled Jacobian first.
+    """
+    form = form_of(nodes)
+    if form == "volume":
+        from meshonet.geometry.quality.volumes import worst_solids
+
+        return worst_solids(nodes, limit)
+    if form == "surface":
+        from meshonet.geometry.quality.surfaces import worst_quads
+
+        return worst_quads(nodes, limit)
     x, y = _planes(nodes)
     i, j = folded_cells(nodes).T
     corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)]
@@ -65,10 +96,12 @@ def measure(grid: Grid, *, percentiles: bool = False) -> Quality:
 
     The 1st and 99th `percentiles` of every metric, by linear interpolation between cells, take about a third
     of the time of the rest (`meshonet.geometry.quality.percentiles`). All cells of several
-    blocks count together (`meshonet.geometry.quality.measure_blocks`).
-
-    Raises InputError: a block that is not in the plane.
+    blocks count together (`meshonet.geometry.quality.measure_blocks`), as do volumes and surface patches.
     """
+    if grid.form == "volume":
+        from meshonet.geometry.quality.volumes import measure_volumes
+
+        return measure_volumes(grid, percentiles=percentiles)
     if grid.topology == "blocks":
         from meshonet.geometry.quality.measure_blocks import measure_blocks
 
@@ -124,7 +157,7 @@ def _angle_table(nodes: Floats) -> tuple[Floats, NDArray[np.int64]]:
 
 def per_cell(grid: Grid, name: str) -> Floats:
     """Return the metric `name` of every cell, (ni-1, nj-1); raise InputError when there is none."""
-    metric = METRICS[_number(name)]
+    metric = metric_of(grid, name)
     if metric.cells:
         return metric.cells(grid)
     cells = np.empty((1, grid.ni - 1, grid.nj - 1))
@@ -133,19 +166,20 @@ def per_cell(grid: Grid, name: str) -> Floats:
 
 
 def per_cell_of_blocks(grid: Grid, name: str) -> list[Floats]:
-    """Return the metric `name` of every cell, (ni-1, nj-1) for each block; raise InputError as `per_cell`."""
+    """Return the metric `name` of every cell, (ni-1, nj-1) or (ni-1, nj-1, nk-1) for each block.
+
+    Raises InputError: no such metric of these cells.
+    """
+    metric_of(grid, name)
+    if grid.form == "volume":
+        from meshonet.geometry.quality.volumes import solid_metric
+
+        return solid_metric(grid, name)
     if grid.topology != "blocks":
         return [per_cell(grid, name)]
     from meshonet.geometry.quality.measure_blocks import metrics_of_blocks
 
-    number = _number(name)
-    return [cells[number] for cells in metrics_of_blocks(grid)]
-
-
-def _number(name: str) -> int:
-    if name not in NAMES:
-        raise InputError(f"metric {name!r} is not known", "use one of " + ", ".join(NAMES))
-    return NAMES.index(name)
+    return [cells[NAMES.index(name)] for cells in metrics_of_blocks(grid)]
 
 
 def _planes(nodes: Floats) -> Sequence[Floats]:

@@ -1,16 +1,20 @@
-"""The metrics of a grid of many blocks: all cells as one grid's, neighbours across connections included."""
+"""The metrics of a grid of many blocks, or of surface patches: all cells as one grid's.
+
+Neighbours across connections are neighbours.
+"""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.across import across, planar
+from meshonet.geometry.blocks.across import across
 from meshonet.geometry.blocks.block import PLACES
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.metrics import COMPILED, METRICS, NAMES, Metric
 from meshonet.geometry.quality.percentiles import PERCENTS, no_run
 from meshonet.geometry.quality.summary import Quality, Summary
+from meshonet.geometry.quality.surfaces import areas, folded_quads, quad_metrics
 from meshonet.kernels import _native
 
 _TINY, _LARGE = 1e-300, 1e30
@@ -18,12 +22,9 @@ _TINY, _LARGE = 1e-300, 1e30
 
 
 def measure_blocks(grid: Grid, *, percentiles: bool = False) -> Quality:
-    """Return the quality of all cells of planar blocks; worst cells are (block, i, j).
-
-    Raises InputError: a block that is not in the plane.
-    """
+    """Return the quality of all cells of planar blocks or surface patches; worst cells are (block, i, j)."""
     values = metrics_of_blocks(grid)
-    folded = sum(_native.count_folded(block.nodes[..., 0], block.nodes[..., 1]) for block in grid.blocks)
+    folded = sum(_folded(block.nodes) for block in grid.blocks)
     metrics = {
         metric.name: _summary(metric, [cells[k] for cells in values], percentiles)
         for k, metric in enumerate(METRICS)
@@ -33,9 +34,11 @@ def measure_blocks(grid: Grid, *, percentiles: bool = False) -> Quality:
 
 def metrics_of_blocks(grid: Grid) -> list[Floats]:
     """Return every metric of `METRICS` of every cell, (metrics, ni-1, nj-1) for each block."""
-    planar(grid)
     values = []
     for block in grid.blocks:
+        if grid.form == "surface":
+            values.append(quad_metrics(block.nodes))
+            continue
         ni, nj = block.counts
         cells = np.empty((len(METRICS), ni - 1, nj - 1))
         no_run().over(block.nodes[..., 0], block.nodes[..., 1], cells[: len(COMPILED)])
@@ -50,7 +53,7 @@ def metrics_of_blocks(grid: Grid) -> list[Floats]:
 def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
     """Raise the area ratios (ni-1, nj-1) of cells beside connections to those with the cells beyond."""
     for each in grid.connections:
-        own, donor = (_areas(rows) for rows in across(grid, each, 2))
+        own, donor = (areas(rows)[0] for rows in across(grid, each, 2))
         large, small = np.maximum(own, donor), np.maximum(np.minimum(own, donor), _TINY)
         ratio = np.minimum(large / small, _LARGE)
         for block, side, span, values in (
@@ -62,10 +65,10 @@ def _area_ratios_across(grid: Grid, ratios: Sequence[Floats]) -> None:
             np.maximum(beside, values, out=beside)
 
 
-def _areas(rows: Floats) -> Floats:
-    """Return the areas (n-1,) of the cells between two rows of nodes (2, n, 2)."""
-    first, second = rows[1, 1:] - rows[0, :-1], rows[1, :-1] - rows[0, 1:]
-    return np.asarray(0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]))
+def _folded(nodes: Floats) -> int:
+    if nodes.shape[-1] == 2:
+        return _native.count_folded(nodes[..., 0], nodes[..., 1])
+    return len(folded_quads(nodes))
 
 
 def _summary(metric: Metric, blocks: Sequence[Floats], percentiles: bool) -> Summary:

@@ -20,8 +20,35 @@ area_ratio          greatest ratio, larger over smaller, of the areas of a cell 
                     j, across the seam of an ``o`` grid and the wake of a ``c`` grid too
 ==================  ========================================================================================
 
+A cell of a surface patch is measured as such a quadrilateral in space, against its own normal at its centre.
+
+A cell of a volume has three edges u, v, w at each of its 8 corners, in the direction of their indices, and
+the corner Jacobian u . (v x w). A corner at which an edge has no length, at a pole for instance, is left out.
+
+==================  ========================================================================================
+max_angle           greatest of the 24 angles between two edges at a corner, degrees
+min_angle           least of them
+skewness            max((max_angle - 90)/90, (90 - min_angle)/90) (Verdict: equiangle skew, faces without a
+                    reflex angle)
+deviation           greatest deviation of the three angles at a corner from 90 degrees, its mean over the
+                    corners
+scaled_jacobian     least over the corners, and the centre with the principal axes, of the Jacobian over the
+                    lengths of its three vectors (Verdict: scaled Jacobian)
+jacobian_ratio      least corner Jacobian over the greatest magnitude of them (Verdict: nodal Jacobian ratio;
+                    the quality that pyHyp prints)
+bezier_ratio        least of the 27 Bezier coefficients of the Jacobian over the greatest magnitude of a
+                    corner Jacobian: where it is positive so is the Jacobian everywhere in the cell
+aspect_ratio        longest over shortest principal axis (Verdict: maximum edge ratio)
+orthogonality       least angle between the three families of grid lines at the centre of the cell, 0 to 90
+                    degrees (Verdict: the arc cosine of skew)
+volume_ratio        greatest ratio, larger over smaller, of the volumes of a cell and of one beside it in i,
+                    j or k, across connections too; the volume is that of the trilinear cell (Verdict:
+                    volume)
+==================  ========================================================================================
+
 Sources: C. J. Stimpson et al., The Verdict Geometric Quality Library, SAND2007-1751 (2007); its code in
-VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp.
+VTK, ThirdParty/verdict/vtkverdict/V_QuadMetric.cpp and V_HexMetric.cpp; A. Johnen, J.-F. Remacle, C.
+Geuzaine, Geometrical validity of curvilinear finite elements, J. Comput. Phys. 233 (2013) 359-372.
 """
 
 from collections.abc import Callable
@@ -30,6 +57,7 @@ from typing import Literal
 
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -57,3 +85,39 @@ METRICS: tuple[Metric, ...] = (
 
 NAMES: tuple[str, ...] = tuple(metric.name for metric in METRICS)
 COMPILED = tuple(metric for metric in METRICS if metric.cells is None)
+
+# those of kernels/solids/solids.h, in its order
+SOLID_METRICS: tuple[Metric, ...] = (
+    Metric("max_angle", "deg", "max", "greatest angle of two edges at a corner"),
+    Metric("min_angle", "deg", "min", "least angle of two edges at a corner"),
+    Metric("skewness", "", "max", "equiangle skewness, 0 to 1"),
+    Metric("deviation", "deg", "max", "deviation of corner angles from 90"),
+    Metric("scaled_jacobian", "", "min", "least Jacobian of unit edges, -1 to 1"),
+    Metric("jacobian_ratio", "", "min", "least over greatest corner Jacobian"),
+    Metric("bezier_ratio", "", "min", "least Bezier coefficient over greatest Jacobian"),
+    Metric("aspect_ratio", "", "max", "longest over shortest axis"),
+    Metric("orthogonality", "deg", "min", "angle between grid lines, 90 at best"),
+    Metric("volume_ratio", "", "max", "volume against the neighbours'"),
+)
+
+SOLID_NAMES: tuple[str, ...] = tuple(metric.name for metric in SOLID_METRICS)
+ALL_NAMES = tuple(dict.fromkeys((*NAMES, *SOLID_NAMES)))
+"""Names of the metrics of planes, surfaces and volumes."""
+
+
+def metrics_of(grid: Grid) -> tuple[Metric, ...]:
+    """Return the metrics that cells of `grid` have: those of volumes, or those of quadrilaterals."""
+    return SOLID_METRICS if grid.form == "volume" else METRICS
+
+
+def metric_of(grid: Grid, name: str) -> Metric:
+    """Return the metric called `name`; raise InputError when cells of `grid` have none of that name."""
+    metrics = metrics_of(grid)
+    for metric in metrics:
+        if metric.name == name:
+            return metric
+    what = f"metric {name!r} is not known"
+    if name in ALL_NAMES:
+        cells = "volumes" if grid.form == "volume" else "quadrilaterals"
+        what = f"metric {name!r} is none of {cells}"
+    raise InputError(what, "use one of " + ", ".join(metric.name for metric in metrics))

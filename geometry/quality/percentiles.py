@@ -19,6 +19,9 @@ from meshonet.kernels._native import measure_cells
 PERCENTS = (1.0, 99.0)
 """Those that are asked for."""
 
+FEW = 1 << 18
+"""Cells up to which percentiles come from the values of all cells."""
+
 TILES, TILE = 4096, 8
 """Tiles of the sample, and their cells along each direction."""
 

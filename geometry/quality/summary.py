@@ -12,18 +12,23 @@ class Summary:
     mean: float
     max: float
     worst: tuple[int, ...]
-    """The cell (i, j) with the worst value, the first of them; (block, i, j) in a grid of blocks."""
+    """The first cell (i, j) with the worst value; (block, i, j) or (block, i, j, k) in a grid of blocks."""
     p01: float | None = None
     p99: float | None = None
 
 
 @dataclass(frozen=True)
 class Quality:
-    """Quality of a grid: how many cells it has, how many are folded, and every metric by name."""
+    """Quality of a grid: how many cells it has, how many are folded, and every metric by name.
+
+    `bezier_folded` counts the cells of volumes of which a Bezier coefficient of the Jacobian is not positive:
+    those of folded corners, and those that may be folded inside. None in the plane and on surfaces.
+    """
 
     cells: int
     folded: int
     metrics: Mapping[str, Summary]
+    bezier_folded: int | None = None
 
     def __getitem__(self, name: str) -> Summary:
         """Return the summary of one metric."""

@@ -1,4 +1,4 @@
-"""What a file in space holds: blocks of volume, or patches of surface, before a method makes a volume of it."""
+"""What a file in space holds, blocks or patches of surface, before a method makes a volume of it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class SpatialShape:
         """Whether all its blocks are surface patches."""
         return all(len(block.counts) == 2 for block in self.grid.blocks)
 
-    def boundary(self, sampling: Sampling) -> Boundary:
+    def boundary(self, sampling: Sampling) -> Boundary:  # noqa: ARG002 - as all shapes have it
         """Raise InputError: a shape in space has no four edges."""
         problem = "its nodes have three coordinates and the boundary of a plane grid is asked for"
         raise InputError(problem, "use a command that makes volumes: tfi, solve-pde or infer")
@@ -38,4 +38,4 @@ class SpatialShape:
 
 def in_space(grid: Grid) -> bool:
     """Say whether the nodes of a grid have three coordinates."""
-    return any(block.nodes.shape[-1] == 3 for block in grid.blocks)
+    return grid.form != "plane"

@@ -1,5 +1,6 @@
 """The settings that turn a shape into edges of nodes."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
@@ -24,12 +25,14 @@ class Sampling:
     ----------
     ni, nj : nodes along xi (around the body) and eta (away from it); None means what the shape has, and
         for a curve `DEFAULT_NI` and `DEFAULT_NJ`.
+    nk : nodes of a volume along zeta; None for grids in the plane, and for what a volume has.
     topology : ``auto`` lets the shape choose.
     spacing : law of the nodes along a wall. ``auto`` is ``conformal`` around airfoils and smooth bodies
         (``tanh`` where a cell is asked for), and ``uniform`` elsewhere.
     le_spacing, te_spacing : wall cell at the leading and at the trailing edge, in chords.
     far_field : radius of the outer boundary, in chords or, around other bodies, in their largest extent;
-        None is `DEFAULT_FAR_FIELD`, and all that shapes without one take.
+        None is `DEFAULT_FAR_FIELD`, and all that shapes without one take. Off a surface in space the distance
+        to march, in its unit.
     corners : the points, counted from 0, that become the corners of a quad domain.
     te : blunt trailing edges of airfoils as they are (``exact``), with their corners rounded (``round``) or
         closed by a wedge behind them (``wedge``); ``auto`` is ``wedge`` for a C boundary, which needs a sharp
@@ -55,9 +58,10 @@ class Sampling:
     wake: float | None = None
     wake_nodes: int | None = None
     viscous: bool = False
+    nk: int | None = None
 
     def __post_init__(self) -> None:
-        for name, count in (("ni", self.ni), ("nj", self.nj)):
+        for name, count in (("ni", self.ni), ("nj", self.nj), ("nk", self.nk)):
             if count is not None and not 2 <= count <= MOST_NODES:
                 raise InputError(f"{name} is {count} nodes", f"use 2 to {MOST_NODES}")
         for what, name, known in (
@@ -70,8 +74,8 @@ class Sampling:
         for name, size in (("le_spacing", self.le_spacing), ("te_spacing", self.te_spacing)):
             if size is not None and not 1e-9 <= size <= 0.2:
                 raise InputError(f"{size:g} chords", "use 1e-9 to 0.2", parameter=name)
-        if not 1.0 < self.radius <= 1e6:
-            raise InputError(f"the far field is at {self.radius:g} chords", "use more than 1 and at most 1e6")
+        if self.far_field is not None and not 0.0 < self.far_field < math.inf:
+            raise InputError(f"{self.far_field:g} is no distance", "give e.g. 20", parameter="far_field")
         if self.wake is not None and not 0.5 <= self.wake <= 1e6:
             raise InputError(f"the wake is {self.wake:g} chords long", "use 0.5 to 1e6")
         if self.wake_nodes is not None and not 3 <= self.wake_nodes <= MOST_NODES:
@@ -82,5 +86,11 @@ class Sampling:
 
     @property
     def radius(self) -> float:
-        """Radius of the far field in chords."""
-        return DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
+        """Radius of the far field in chords.
+
+        Raises InputError: it is not outside of a body of one chord.
+        """
+        radius = DEFAULT_FAR_FIELD if self.far_field is None else self.far_field
+        if not 1.0 < radius <= 1e6:
+            raise InputError(f"the far field is at {radius:g} chords", "use more than 1 and at most 1e6")
+        return radius

@@ -10,10 +10,9 @@
    is enough here. */
 #pragma once
 #include "clones.h"
+#include "panel.h"
 #include "variational.h"
 #include <string.h>
-
-#define PANEL 32 /* columns of a product at a time: two vectors of 512 bits */
 
 #define LANES 16
 #define VECTORS (PANEL / LANES)

@@ -141,9 +141,15 @@ void steps_place(Steps *s, ptrdiff_t n, double *gradient, double *fresh, float *
 
 void steps_start(Steps *s)
 {
-    s->count = s->idle = 0;
+    s->idle = 0;
     s->value = s->attempt(s->problem, 0.0, &s->smallest);
     memcpy(s->gradient, s->fresh, (size_t)s->n * sizeof *s->gradient);
+    steps_forget(s);
+}
+
+void steps_forget(Steps *s)
+{
+    s->count = 0;
     s->precondition(s->problem, s->gradient, s->steepest);
 }
 

@@ -33,5 +33,8 @@ void steps_place(Steps *s, ptrdiff_t n, double *gradient, double *fresh, float *
 void steps_start(Steps *s);
 int steps_take(Steps *s);
 
+/* Forget what is remembered, after the preconditioner has changed. */
+void steps_forget(Steps *s);
+
 /* The factor to the minimum of the parabola through both values and the slope, .1 to .5. */
 double shorter(double rise, double slope);

@@ -68,3 +68,44 @@ def put_rows(out, rows, bytes text, at):
     with nogil:
         count = c_put_rows(to, values, n, form, powers)
     return count
+
+
+cdef extern from "formats/faces.h":
+    ctypedef struct cell_block:
+        const int32_t *nodes
+        const int32_t *beyond[6]
+        ptrdiff_t ni
+        ptrdiff_t nj
+        ptrdiff_t nk
+        int32_t first
+    ctypedef struct face_lists:
+        int32_t *nodes
+        int32_t *owner
+        int32_t *neighbour
+        ptrdiff_t room
+    ptrdiff_t c_inner_faces "inner_faces"(const cell_block *block, face_lists out) nogil
+
+
+def inner_faces(nodes, beyond, int32_t first, faces, owner, neighbour):
+    """Write the faces whose owner is a cell of a block, in upper-triangular order, and return how many there are.
+
+    `nodes` (nk+1, nj+1, ni+1) and `beyond`, of west to top, are numbers as faces.h says; `faces` (f, 4), `owner` (f,) and
+    `neighbour` (f,) have room for six faces of the cells of a row more than there are.
+    """
+    cdef cell_block block
+    cdef face_lists out
+    cdef ptrdiff_t count
+    block.nk, block.nj, block.ni = (n - 1 for n in nodes.shape)
+    block.nodes, block.first = <const int32_t *>numbers(nodes, b"i", 4, nodes.shape, False), first
+    shapes = (block.nk, block.nj), (block.nk, block.ni), (block.nj, block.ni)
+    for side in range(6):
+        block.beyond[side] = <const int32_t *>numbers(beyond[side], b"i", 4, shapes[side // 2], False)
+    out.room = len(owner)
+    out.nodes = <int32_t *>numbers(faces, b"i", 4, (out.room, 4), True)
+    out.owner = <int32_t *>numbers(owner, b"i", 4, (out.room,), True)
+    out.neighbour = <int32_t *>numbers(neighbour, b"i", 4, (out.room,), True)
+    with nogil:
+        count = c_inner_faces(&block, out)
+    if count < 0:
+        raise ValueError("too little room for faces")
+    return count

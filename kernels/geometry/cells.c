@@ -1,6 +1,7 @@
 #include "cells.h"
 
-#include "exponential.h"
+#include "angles.h"
+#include "tally.h"
 
 /* A cell and its edges; i runs along e0, j against e3:
 
@@ -14,43 +15,7 @@
 
 #define LARGE 1e30 /* what Verdict puts in place of infinity */
 #define SMALL 1e-300 /* keeps a cell without area or edges from a division by 0 */
-#define DEGREES 57.295779513082320876798154814105170332
-#define LANES 16
 #define BLOCK 128
-
-/* The sign of a corner Jacobian decides what is folded, so it must not depend on the processor: no fused
-   multiply-add, whose one rounding less gives three nodes in a line a Jacobian that is not 0. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define SAME_EVERYWHERE __attribute__((optimize("fp-contract=off", "no-associative-math")))
-#else
-#define SAME_EVERYWHERE
-#pragma STDC FP_CONTRACT OFF
-#endif
-
-MESHONET_INLINE double magnitude(double value) { return value < 0 ? -value : value; }
-MESHONET_INLINE double larger(double a, double b) { return a > b ? a : b; }
-MESHONET_INLINE double smaller(double a, double b) { return a < b ? a : b; }
-
-/* asin(s)/s as a polynomial in z = s*s on [0, 1/4]: Chebyshev interpolation of degree 12, relative error 3e-17. */
-MESHONET_INLINE double asin_over_s(double z)
-{
-    static const double c[13] = {1.0, 0.16666666666664945, 0.07500000000384784, 0.044642856806216,
-                                 0.030381959691850167, 0.02237174983251582, 0.017359778450540774, 0.013884853387846141,
-                                 0.012170069419059097, 0.006529622403221694, 0.01951249342600702, -0.016185667777976222,
-                                 0.03187828814012674};
-    return polynomial(c, 13, z);
-}
-
-/* Angle in degrees of a cosine. acos in the C library is a call, which would stop vectorisation. */
-MESHONET_INLINE double angle(double cosine)
-{
-    double u = smaller(magnitude(cosine), 1.0);
-    double z = smaller(0.5 * (1.0 - u), u * u); /* half-angle formula beyond 1/2, where the series would be slow */
-    double s = __builtin_sqrt(z);
-    double inner = s * asin_over_s(z) * DEGREES;
-    double acute = u > 0.5 ? 2.0 * inner : 90.0 - inner; /* acos(|cosine|) */
-    return cosine < 0 ? 180.0 - acute : acute;
-}
 
 /* Folded cells of one row of cells: any corner Jacobian <= 0, or not a number. x, y point at node (i, 0). */
 MESHONET_CLONES SAME_EVERYWHERE
@@ -181,68 +146,6 @@ static void cells_row(const double *restrict x, const double *restrict y, ptrdif
     }
 }
 
-/* Least, greatest and sum of one metric over a row. */
-MESHONET_CLONES
-static void cells_reduce(const double *restrict row, ptrdiff_t cells, double *low, double *high, double *sum)
-{
-    double lows[LANES], highs[LANES], sums[LANES];
-    ptrdiff_t j = 0;
-    for (int lane = 0; lane < LANES; ++lane) {
-        lows[lane] = highs[lane] = row[0];
-        sums[lane] = 0;
-    }
-    for (; j + LANES <= cells; j += LANES)
-        for (int lane = 0; lane < LANES; ++lane) {
-            double value = row[j + lane];
-            lows[lane] = smaller(value, lows[lane]);
-            highs[lane] = larger(value, highs[lane]);
-            sums[lane] += value;
-        }
-    for (; j < cells; ++j) {
-        lows[0] = smaller(row[j], lows[0]);
-        highs[0] = larger(row[j], highs[0]);
-        sums[0] += row[j];
-    }
-    for (int lane = 1; lane < LANES; ++lane) {
-        lows[0] = smaller(lows[lane], lows[0]);
-        highs[0] = larger(highs[lane], highs[0]);
-        sums[0] += sums[lane];
-    }
-    *low = lows[0];
-    *high = highs[0];
-    *sum = sums[0];
-}
-
-/* Rank the values of a row against two of them: adds to counts how many are < from, <= from, < to, <= to, and
-   puts those between (neither end) into caught, `room` at the most; returns how many there are. */
-MESHONET_CLONES
-static ptrdiff_t cells_catch(const double *restrict row, ptrdiff_t cells, double from, double to, int64_t counts[4],
-                      double *restrict caught, ptrdiff_t room)
-{
-    ptrdiff_t found = 0;
-    for (ptrdiff_t start = 0; start < cells; start += BLOCK) {
-        const ptrdiff_t count = cells - start < BLOCK ? cells - start : BLOCK;
-        int64_t a = 0, b = 0, c = 0, d = 0;
-        for (ptrdiff_t j = start; j < start + count; ++j) {
-            a += row[j] < from;
-            b += row[j] <= from;
-            c += row[j] < to;
-            d += row[j] <= to;
-        }
-        counts[0] += a;
-        counts[1] += b;
-        counts[2] += c;
-        counts[3] += d;
-        for (ptrdiff_t j = start; c > b && j < start + count; ++j)
-            if (row[j] > from && row[j] < to) {
-                if (found < room)
-                    caught[found] = row[j];
-                ++found;
-            }
-    }
-    return found;
-}
-
 /* Store where in row i `value` stands first. */
 static void first_place(const double *row, ptrdiff_t cells, double value, ptrdiff_t i, int64_t *where)
 {
@@ -260,7 +163,7 @@ static void take_row(const CellRun *run, const double *rows, ptrdiff_t i, ptrdif
     for (ptrdiff_t k = 0; k < METRICS; ++k) {
         const double *row = rows + k * cells;
         double *summary = run->summary + 3 * k;
-        cells_reduce(row, cells, &low, &high, &sum);
+        values_reduce(row, cells, &low, &high, &sum);
         if (i == 0 || low < summary[0]) {
             summary[0] = low;
             first_place(row, cells, low, i, run->where + 4 * k);
@@ -273,7 +176,7 @@ static void take_row(const CellRun *run, const double *rows, ptrdiff_t i, ptrdif
         for (ptrdiff_t m = k * run->n_brackets; m < (k + 1) * run->n_brackets; ++m) {
             int64_t *counts = run->counts + 4 * m, had = counts[2] - counts[1];
             const ptrdiff_t kept = had < run->room ? (ptrdiff_t)had : run->room;
-            cells_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts,
+            values_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts,
                         run->caught + m * run->room + kept, run->room - kept);
         }
     }

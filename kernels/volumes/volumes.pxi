@@ -1,1 +1,153 @@
-# Grids from six faces: transfinite, elliptic, variational.
+cdef extern from "volumes/tfi.h":
+    ctypedef struct Volume:
+        ptrdiff_t n1, n2, n3, plane
+    ctypedef struct Faces:
+        Read west, east, south, north, bottom, top
+    ctypedef struct Laws:
+        Read xi, eta, zeta
+    ctypedef struct Spline3:
+        Read coefficients
+        ptrdiff_t m1, m2, m3
+        const ptrdiff_t *first[3]
+        Read weights[3]
+    int c_tfi_volume "tfi_volume"(double *nodes, const Volume *volume, const Faces *faces, const Laws *laws,
+                                  const Spline3 *spline, int threads) nogil
+
+cdef extern from "volumes/energy.h":
+    ctypedef struct Functional3:
+        ptrdiff_t n1, n2, n3
+        double over[3]
+        double shape, smoothness, epsilon
+        int power, threads
+    size_t volume_energy_room(const Functional3 *f) nogil
+    double c_volume_energy "volume_energy"(const Functional3 *f, const double *x, double *g, double *smallest,
+                                           double *room) nogil
+
+cdef extern from "volumes/descent.h":
+    ctypedef struct Descent3:
+        Functional3 f
+        ptrdiff_t m[3]
+        double *x
+        Steps steps
+    void descent3_sizes(Descent3 *d, size_t *doubles, size_t *floats) nogil
+    void descent3_place(Descent3 *d, double *doubles, float *floats) nogil
+    void descent3_start(Descent3 *d) nogil
+    void descent3_renew(Descent3 *d) nogil
+    int descent3_take(Descent3 *d) nogil
+
+cdef extern from "energy/steps.h":
+    void steps_forget(Steps *s) nogil
+
+
+cdef const ptrdiff_t *reads_places(array, tuple shape, ptrdiff_t limit) except NULL:
+    """Return indices, all of them from 0 to `limit` - 1."""
+    if array.size and (array.min() < 0 or array.max() >= limit):
+        raise ValueError("indices out of range")
+    return reads_indices(array, shape)
+
+
+def tfi_volume(nodes, tuple faces, tuple laws, int threads, spline=None):
+    """Fill the planes `nodes` (3, n1, n2, n3) from six faces.
+
+    `faces`: west, east (3, n2, n3), south, north (3, n1, n3), bottom, top (3, n1, n2). `laws`: (4, n) of each
+    direction, from 0 to 1, of its edges at the (low, low), (high, low), (low, high) and (high, high) ends of the other
+    directions. `spline`: coefficients (3, m1, m2, m3) and, of each direction, the first (n,) of four that reach a
+    node; then their weights, (n, 4) of the first two directions and (4, n) of the last. It is added inside.
+    """
+    cdef ptrdiff_t n1, n2, n3
+    cdef Volume volume
+    cdef Faces f
+    cdef Laws l
+    cdef Spline3 s
+    cdef const Spline3 *added = NULL
+    cdef int failed
+    n1, n2, n3 = nodes.shape[1:]
+    volume.n1, volume.n2, volume.n3, volume.plane = n1, n2, n3, n1 * n2 * n3
+    cdef Written to = fills(nodes, (3, n1, n2, n3))
+    f.west, f.east = reads(faces[0], (3, n2, n3)), reads(faces[1], (3, n2, n3))
+    f.south, f.north = reads(faces[2], (3, n1, n3)), reads(faces[3], (3, n1, n3))
+    f.bottom, f.top = reads(faces[4], (3, n1, n2)), reads(faces[5], (3, n1, n2))
+    l.xi, l.eta, l.zeta = reads(laws[0], (4, n1)), reads(laws[1], (4, n2)), reads(laws[2], (4, n3))
+    if spline is not None:
+        coefficients, first, weights = spline
+        s.m1, s.m2, s.m3 = coefficients.shape[1:]
+        s.coefficients = reads(coefficients, (3, s.m1, s.m2, s.m3))
+        s.first[0], s.first[1] = reads_places(first[0], (n1,), s.m1 - 3), reads_places(first[1], (n2,), s.m2 - 3)
+        s.first[2] = reads_places(first[2], (n3,), s.m3 - 3)
+        s.weights[0], s.weights[1] = reads(weights[0], (n1, 4)), reads(weights[1], (n2, 4))
+        s.weights[2] = reads(weights[2], (4, n3))
+        added = &s
+    with nogil:
+        failed = c_tfi_volume(to, &volume, &f, &l, added, threads)
+    if failed:
+        raise MemoryError
+
+
+cdef Functional3 functional3(tuple counts, tuple over, tuple weights, double epsilon, int threads) except *:
+    """Return the functional of (shape, smoothness, power), on so many nodes."""
+    cdef Functional3 f
+    f.n1, f.n2, f.n3 = counts
+    f.over[0], f.over[1], f.over[2] = over
+    f.shape, f.smoothness, f.power = weights
+    f.epsilon, f.threads = epsilon, min(max(threads, 1), 64)
+    if min(counts) < 3 or f.power not in (1, 2):
+        raise ValueError("a functional of no inner nodes, or of another power")
+    return f
+
+
+def volume_energy(x, tuple over, tuple weights, double epsilon, int threads, gradient):
+    """Return (value, smallest corner Jacobian) at the planes x (3, n1, n2, n3); fill `gradient` at inner nodes.
+
+    `over`: 1 / length of edges along each direction; `weights`: (shape, smoothness, power) of ``volumes/energy.h``.
+    """
+    cdef Functional3 f = functional3(x.shape[1:], over, weights, epsilon, threads)
+    cdef Read nodes = reads(x, (3, f.n1, f.n2, f.n3))
+    cdef Written g = fills(gradient, x.shape)
+    room = np.empty(volume_energy_room(&f))
+    cdef Written work = fills(room, room.shape)
+    cdef double value, smallest = 0.0
+    with nogil:
+        value = c_volume_energy(&f, nodes, g, &smallest, work)
+    return value, smallest
+
+
+cdef class VolumeDescent:
+    """Descents of the functional over inner nodes of volumes of one shape, (n1, n2, n3)."""
+
+    cdef Descent3 state
+    cdef object held
+
+    def __init__(self, tuple counts, int threads):
+        cdef size_t doubles = 0, floats = 0
+        self.state.f = functional3(counts, (1.0, 1.0, 1.0), (0.5, 1.0, 2), 0.0, threads)
+        descent3_sizes(&self.state, &doubles, &floats)
+        room, small = np.empty(doubles), np.empty(floats, np.float32)
+        descent3_place(&self.state, fills(room, room.shape), fills_single(small))
+        self.held = (room, small)
+
+    def run(self, x, tuple over, tuple weights, double epsilon, int most, int renew, double still, double reach,
+            double gain):
+        """Descend from the planes x (3, n1, n2, n3), in place; return (value, smallest Jacobian, iterations).
+
+        The preconditioner follows the nodes after each `renew` iterations. It stops after `most` of them, or where
+        two on end move no node by more than `still` of its cell and gain less than `gain` of the value. No node moves
+        by more than `reach` cells in a first step.
+        """
+        cdef int done = 0, state = GOES_ON
+        cdef Functional3 *f = &self.state.f
+        self.state.x = fills(x, (3, f.n1, f.n2, f.n3))
+        f[0] = functional3((f.n1, f.n2, f.n3), over, weights, epsilon, f.threads)
+        self.state.steps.still, self.state.steps.reach, self.state.steps.gain = still, reach, gain
+        self.state.steps.farthest = 1e30
+        with nogil:
+            descent3_start(&self.state)
+        while done < most and state == GOES_ON:
+            PyErr_CheckSignals()
+            if done and done % renew == 0:
+                with nogil:
+                    descent3_renew(&self.state)
+                    steps_forget(&self.state.steps)
+            with nogil:
+                state = descent3_take(&self.state)
+            done += 1
+        return self.state.steps.value, self.state.steps.smallest, done

@@ -22,11 +22,10 @@ from meshonet.geometry.shapes.polygon_shape import domain_or_body
 from meshonet.geometry.shapes.shape import Shape, edges_of
 from meshonet.geometry.spacing.sampling import Sampling
 from meshonet.solvers.pipeline.make_grid import make_grid
-from meshonet.solvers.pipeline.request import grid_request, sampling_of
+from meshonet.solvers.pipeline.parameters import Counts, grid_request, sampling_of
 
 AnyShape: TypeAlias = str | Path | Floats | Shape | Grid | Domain
 """A path, a designation ``naca:2412``, points (n, 2) of an outline, or what the library makes of these."""
-Counts: TypeAlias = int | tuple[int, int]
 
 
 def grid(

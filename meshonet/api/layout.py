@@ -6,7 +6,7 @@ from typing import Any
 from meshonet.api.grid import AnyShape, domain_parameters, shape_of
 from meshonet.geometry.layout.layout import Layout
 from meshonet.solvers.pipeline.blocks import make_layout
-from meshonet.solvers.pipeline.request import grid_request
+from meshonet.solvers.pipeline.parameters import grid_request
 
 
 def layout(shape: AnyShape | Sequence[AnyShape], *, assemble: bool = False, **parameters: Any) -> Layout:

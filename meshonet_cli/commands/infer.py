@@ -43,14 +43,17 @@ DeviceName = Annotated[Literal["cpu", "cuda"] | None, _option(
 def infer(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
     domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions, printing: o.PrintOptions,
+    volume: o.VolumeOptions,
     blocks: o.BlocksName = "auto", walls: o.Walls = None, model: ModelName = None, polish: Polish = "auto",
     answer: Answer = "valid", device: DeviceName = None, refine: o.Refine = 0, jobs: o.Jobs = 1,
+    threads: o.Threads = None,
 ) -> int:  # fmt: skip
     """Make the grid that measures best: conformal, marched or variational.
 
     Around a body, this is an O grid by a conformal map, or a grid marched from the wall for C grids and where
     a first cell is given. In a four-sided domain the variational method makes it. Any other domain is split
-    into blocks. A neural operator is used where --model, --polish or --device asks for one.
+    into blocks. In space, six faces are filled by the variational method, and surfaces with a first cell are
+    marched off. A neural operator is used where --model, --polish or --device asks for one.
     """
     from meshonet_cli.grid_batch import request_of, write_grids
 
@@ -60,9 +63,11 @@ def infer(
         sampling,
         checks,
         first,
+        volume,
         settings=settings,
         refine=refine,
         blocks=blocks,
+        threads=threads,
         **domain.parameters(walls),
     )
     session = printing.session()

@@ -68,21 +68,26 @@ History = Annotated[str | None, o.option_of(o.IO)(
 def solve_pde(
     boundary: o.Boundaries, output: o.Output, sampling: o.SamplingOptions, first: o.LayerOptions,
     sides: o.SideOptions, domain: o.DomainOptions, checks: o.CheckOptions, files: o.FileOptions,
-    printing: o.PrintOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None,
+    printing: o.PrintOptions, volume: o.VolumeOptions, blocks: o.BlocksName = "auto", walls: o.Walls = None,
     method: Method = "auto", tol: Tolerance = None, max_cycles: MaxCycles = None, coarse: Coarse = "auto",
     refine: o.Refine = 0, initial: Initial = None, history: History = None, slide: o.Slide = None,
     wall_angle: o.WallAngle = None, repair_margin: RepairMargin = None, jobs: o.Jobs = 1,
+    threads: o.Threads = None,
 ) -> int:  # fmt: skip
-    """Make grids by elliptic equations, a variational method, or marching."""
+    """Make grids by elliptic equations, a variational method, or marching.
+
+    In space, six faces (of a grid, or six patches that enclose a volume) are filled, the patches of a surface
+    are marched off by --method hyperbolic, and several blocks are smoothed across their interfaces.
+    """
     from meshonet_cli.grid_batch import initial_grid, request_of, write_grids
 
     request = request_of(
-        method, sampling, checks, first, sides,
+        method, sampling, checks, first, sides, volume,
         settings={"tol": tol, "max_cycles": max_cycles},
         coarse=o.coarse_nodes(coarse), refine=refine, initial=initial_grid(initial),
         history=history is not None,
         slide=slide, wall_angle=wall_angle, repair_margin=repair_margin,
-        blocks=blocks, **domain.parameters(walls),
+        blocks=blocks, threads=threads, **domain.parameters(walls),
     )  # fmt: skip
     session = printing.session()
     return write_grids(

@@ -29,10 +29,13 @@ def tfi(
         help="Blend the edges by their arc length, or linearly by index.",
     )] = "arclength",
     jobs: o.Jobs = 1,
+    threads: o.Threads = None,
 ) -> int:
     """Make grids by transfinite interpolation."""
     from meshonet_cli.grid_batch import request_of, write_grids
 
-    request = request_of("tfi", sampling, checks, first, sides, settings={"blending": blending})
+    request = request_of(
+        "tfi", sampling, checks, first, sides, settings={"blending": blending}, threads=threads
+    )
     return write_grids(boundary, output, request, checks, files, printing.session(), jobs=jobs)
 # fmt: on

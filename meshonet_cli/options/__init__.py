@@ -14,9 +14,11 @@ from meshonet_cli.options.groups import DOMAIN as DOMAIN
 from meshonet_cli.options.groups import IO as IO
 from meshonet_cli.options.groups import METHOD as METHOD
 from meshonet_cli.options.groups import SAMPLING as SAMPLING
+from meshonet_cli.options.groups import VOLUME as VOLUME
 from meshonet_cli.options.groups import bad_value as bad_value
 from meshonet_cli.options.groups import only_with as only_with
 from meshonet_cli.options.groups import option_of as option_of
 from meshonet_cli.options.io import *  # noqa: F403
 from meshonet_cli.options.method import *  # noqa: F403
 from meshonet_cli.options.sampling import *  # noqa: F403
+from meshonet_cli.options.volume import *  # noqa: F403

@@ -7,8 +7,9 @@ from typing import Any
 import typer
 
 IO, SAMPLING, BOUNDARY_LAYER = "Input and output", "Sampling", "Boundary layer"
-DOMAIN, METHOD, CHECKS = "Domains of many blocks", "Method", "Checks"
-GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, METHOD, CHECKS)  # in the order of the help text
+DOMAIN, VOLUME = "Domains of many blocks", "Volumes from surfaces"
+METHOD, CHECKS = "Method", "Checks"
+GROUPS = (IO, SAMPLING, BOUNDARY_LAYER, DOMAIN, VOLUME, METHOD, CHECKS)  # in the order of the help text
 
 
 def option_of(group: str) -> Callable[..., Any]:

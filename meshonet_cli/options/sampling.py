@@ -18,9 +18,9 @@ _option = option_of(SAMPLING)
 
 # fmt: off
 Resolution = Annotated[str | None, _option(
-    "--res", metavar="N|NIxNJ",
-    help="Nodes: N x N, or NI along xi (around a body) by NJ along eta (away from it). [default: the nodes "
-    "of the input, or 200x100 around a curve]",
+    "--res", metavar="N|NIxNJ[xNK]",
+    help="Nodes: N along every direction, or NI along xi (around a body) by NJ along eta (away from it), and "
+    "NK along zeta of a volume. [default: the nodes of the input, or 200x100 around a curve]",
 )]
 
 
@@ -51,7 +51,9 @@ class SamplingOptions:
         "base heights long. auto is wedge for a C grid, else exact.",
     )] = "auto"
     far_field: Annotated[float | None, _option(
-        "--far-field", metavar="R", help="Distance of the far field, in chords. [default: 15]",
+        "--far-field", metavar="R",
+        help="Distance of the far field, in chords; off a surface in space, in its unit. [default: 15; of a "
+        "surface, 15 times its largest extent]",
     )] = None
     wake: Annotated[float | None, _option(
         "--wake", metavar="L",
@@ -76,22 +78,24 @@ class SamplingOptions:
         from meshonet.geometry.spacing.sampling import Sampling
 
         rest = {name: value for name, value in vars(self).items() if name not in ("res", "corners")}
-        ni, nj = (None, None) if self.res is None else resolution(self.res)
-        return Sampling(ni, nj, corners=four_corners(self.corners), **rest)
+        ni, nj, nk = (None, None, None) if self.res is None else resolution(self.res)
+        return Sampling(ni, nj, corners=four_corners(self.corners), nk=nk, **rest)
 # fmt: on
 
 
-def resolution(text: str) -> tuple[int, int]:
-    """Return the node counts (ni, nj) of ``N`` or ``NIxNJ``, or raise InputError.
+def resolution(text: str) -> tuple[int, int, int | None]:
+    """Return the node counts (ni, nj, nk) of ``N``, ``NIxNJ`` or ``NIxNJxNK``, or raise InputError.
 
-    >>> resolution("200"), resolution("400x100")
-    ((200, 200), (400, 100))
+    >>> resolution("200"), resolution("400x100"), resolution("33x33x65")
+    ((200, 200, None), (400, 100, None), (33, 33, 65))
     """
-    match = re.fullmatch(r"\s*(\d{1,9})\s*(?:[xX]\s*(\d{1,9})\s*)?", text, re.ASCII)
+    count = r"\s*(\d{1,9})\s*"
+    match = re.fullmatch(rf"{count}(?:[xX]{count}(?:[xX]{count})?)?", text, re.ASCII)
     if match is None:
-        raise bad_value(text, "a number of nodes", "use N or NIxNJ, e.g. 200 or 400x100", "res")
+        remedy = "use N, NIxNJ or NIxNJxNK, e.g. 200 or 400x100"
+        raise bad_value(text, "a number of nodes", remedy, "res")
     ni = int(match[1])
-    return ni, int(match[2] or ni)
+    return ni, int(match[2] or ni), int(match[3]) if match[3] else None
 
 
 def four_corners(text: str) -> tuple[int, int, int, int] | None:

@@ -16,10 +16,13 @@ from meshonet.geometry.errors import NoValidGridError
 from meshonet.geometry.quality.measure import measure, worst_cells_of
 from meshonet.geometry.quality.summary import Quality
 from meshonet.geometry.shapes.shape import Shape, edges_of
+from meshonet.geometry.shapes.spatial_shape import SpatialShape
 from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.geometry.threads import limited_to
 from meshonet.solvers.method import Method
 from meshonet.solvers.pipeline.fallback import guard, refuse_folded
 from meshonet.solvers.pipeline.request import GridRequest
+from meshonet.solvers.pipeline.volumes import check_plane, make_volume
 from meshonet.solvers.progress import History, Row, listening
 from meshonet.solvers.solution import Outcome, Solution
 
@@ -28,6 +31,9 @@ if TYPE_CHECKING:
 
 MOST_TOGETHER = 64  # shapes that are solved together at the most
 MOST_NODES = 1 << 22  # nodes of grids from which no more are solved together: some hundred MB
+
+
+_OTHER_METHODS = "try {method} variational, or {allow_invalid}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +100,7 @@ def make_grids(shapes: Iterable[Shape], request: GridRequest) -> Iterator[Result
 class _Member:
     """A shape on its way: its boundary or what went wrong, and its solution once it was made with others."""
 
-    boundary: Boundary | DomainShape | Exception
+    boundary: Boundary | DomainShape | SpatialShape | Exception
     seconds: dict[str, float] = field(default_factory=dict)
     solution: Solution | None = None
 
@@ -105,7 +111,7 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
     for shape in islice(shapes, most):
         begun = time.perf_counter()
         try:
-            boundary: Boundary | DomainShape | Exception = _sampled(shape, request)
+            boundary: Boundary | DomainShape | SpatialShape | Exception = _sampled(shape, request)
         except Exception as error:
             boundary = error
         group.append(_Member(boundary, {"boundary": time.perf_counter() - begun}))
@@ -115,8 +121,11 @@ def _group(shapes: Iterator[Shape], request: GridRequest, most: int) -> deque[_M
     return group
 
 
-def _sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape:
-    """Return the boundary of a shape, or the domain that it is where many blocks are made of it."""
+def _sampled(shape: Shape, request: GridRequest) -> Boundary | DomainShape | SpatialShape:
+    """Return the boundary of a shape, or the shape itself in space and where many blocks are made of it."""
+    if isinstance(shape, SpatialShape):
+        return shape
+    check_plane(request)
     if request.asks_for_blocks or getattr(shape, "many", False):
         from meshonet.solvers.pipeline.blocks import as_blocks
 
@@ -158,7 +167,8 @@ def _solve_together(group: Iterable[_Member], method: Method) -> None:
 
 def _finished_or_error(member: _Member, method: Method, request: GridRequest) -> Result | Exception:
     try:
-        return _finished(member, method, request)
+        with limited_to(request.threads):
+            return _finished(member, method, request)
     except Exception as error:
         return error
 
@@ -168,6 +178,8 @@ def _finished(member: _Member, method: Method, request: GridRequest) -> Result:
     boundary, solution, seconds = member.boundary, member.solution, member.seconds
     if isinstance(boundary, Exception):
         raise boundary
+    if isinstance(boundary, SpatialShape):
+        return _of_volume(boundary, request, seconds)
     if not isinstance(boundary, Boundary):
         return _of_blocks(boundary, request, seconds)
     history = History()
@@ -211,6 +223,33 @@ def _of_blocks(shape: DomainShape, request: GridRequest, seconds: dict[str, floa
     seconds["quality"] = time.perf_counter() - begun
     if quality.folded and not request.allow_invalid:
         problem = f"{quality.folded} of {quality.cells} cells of the blocks are folded; use more {{cells}}"
+        raise NoValidGridError(problem, worst_cells_of(solution.grid))
+    return Result(solution, quality, seconds, solution.notes)
+
+
+def _of_volume(shape: SpatialShape, request: GridRequest, seconds: dict[str, float]) -> Result:
+    """Return the volume grid of a shape in space, measured."""
+    begun = time.perf_counter()
+    solution = make_volume(shape, request)
+    _add_times(seconds, solution, time.perf_counter() - begun)
+    return judged(
+        solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
+        remedy=_OTHER_METHODS,
+    )  # fmt: skip
+
+
+def judged(
+    solution: Solution, seconds: dict[str, float], *, percentiles: bool, allow_invalid: bool, remedy: str
+) -> Result:
+    """Return a solution with its quality, whose time is added to `seconds` by stage.
+
+    Raises NoValidGridError: cells are folded, which is not allowed; `remedy` says what to try.
+    """
+    begun = time.perf_counter()
+    quality = measure(solution.grid, percentiles=percentiles)
+    seconds["quality"] = time.perf_counter() - begun
+    if quality.folded and not allow_invalid:
+        problem = f"{quality.folded} of {quality.cells} cells are folded; {remedy}"
         raise NoValidGridError(problem, worst_cells_of(solution.grid))
     return Result(solution, quality, seconds, solution.notes)
 

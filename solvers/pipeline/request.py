@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from meshonet.geometry.arrays import SIDES, TOPOLOGIES
@@ -20,6 +20,9 @@ from meshonet.solvers.pipeline.sequence import Sequenced
 if TYPE_CHECKING:
     from meshonet.geometry.layout.layout import Layout
     from meshonet.solvers.pipeline.layered import FirstCells
+
+OF_VOLUMES = ("layers", "symmetry")
+"""Parameters that only grids in space have a use for."""
 
 OPERATOR_SETTINGS = ("model", "polish", "device")  # settings any of which asks for a network
 
@@ -66,6 +69,9 @@ class GridRequest:
     blocks : ``single`` for one block also where many would be made.
     cells, cell_size, walls, pitch, inlet, outlet, layout : of a grid of many blocks, which these ask for
         (`meshonet.solvers.blocking.request.BlockRequest`).
+    layers, symmetry : of a volume marched from a surface: nodes along its lines, the wall's included, and the
+        axis that its open edges lie across, or ``none``.
+    threads : that kernels work with; None: all there are.
 
     Raises InputError: a value out of its range; parameters that need or exclude each other.
     """
@@ -101,6 +107,9 @@ class GridRequest:
     inlet: float | None = None
     outlet: float | None = None
     layout: Layout | None = None
+    layers: int | None = None
+    symmetry: Literal["x", "y", "z", "none"] | None = None
+    threads: int | None = None
 
     def __post_init__(self) -> None:
         if self.method not in ("best", "auto") and self.method.partition(":")[0] not in METHODS:
@@ -125,6 +134,10 @@ class GridRequest:
         tol = self.settings.get("tol")
         if tol is not None and not 0 < tol < 1:
             raise InputError(f"{tol:g} is not between 0 and 1", "use e.g. 1e-8", parameter="tol")
+        for name, least in (("threads", 1), ("layers", 3)):
+            value = getattr(self, name)
+            if value is not None and value < least:
+                raise InputError(f"{value} is too few", f"give {least} or more", parameter=name)
         if self.blocks not in ("auto", "single"):
             raise InputError(f"blocks {self.blocks!r} is not known", "use auto or single")
         if self.asks_for_blocks:
@@ -264,36 +277,3 @@ class GridRequest:
         """What was given and is not so by default, in the order in which it is refused."""
         values = {**self.settings, "initial": self.initial, "coarse": self.coarse, "refine": self.refine}
         return tuple(name for name, value in values.items() if value != DEFAULTS.get(name))
-
-
-def grid_request(
-    method: str = "best", *, res: int | tuple[int, int] | None = None, **parameters: Any
-) -> GridRequest:
-    """Return the request with the parameters, of the sampling, the request or the method.
-
-    `res`: nodes along xi and eta; one number for both. `parameters`: fields of `Sampling` and `GridRequest`,
-    settings of the method; None leaves a setting out. ``wall_spacing`` is another name of ``first_cell``.
-    Raises InputError: as `GridRequest`, or a parameter that the method does not have.
-
-    >>> request = grid_request("winslow", res=(80, 40), topology="o", tol=1e-8)
-    >>> request.sampling.ni, request.sampling.topology, request.settings
-    (80, 'o', {'tol': 1e-08})
-    """
-    if "wall_spacing" in parameters:
-        parameters["first_cell"] = parameters.pop("wall_spacing")
-    sampling = sampling_of(res, parameters)
-    of_request = {name: parameters.pop(name) for name in REQUESTED if name in parameters}
-    settings = {name: value for name, value in parameters.items() if value is not None}
-    return GridRequest(sampling, method, settings, **of_request)
-
-
-def sampling_of(res: int | tuple[int, int] | None, parameters: dict[str, Any]) -> Sampling:
-    """Return the sampling with counts `res` and its fields among `parameters`, which are taken out."""
-    ni, nj = (res, res) if isinstance(res, int) else res or (None, None)
-    return Sampling(ni, nj, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
-
-
-SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in ("ni", "nj", "viscous"))
-REQUESTED = tuple(
-    each.name for each in fields(GridRequest) if each.name not in ("sampling", "method", "settings")
-)

@@ -13,6 +13,7 @@ from vtkmodules.vtkIOCGNSReader import vtkCGNSReader
 from meshonet.formats.cgns.read import read_grids
 from meshonet.formats.cgns.write import write_grids
 from meshonet.formats.source import open_source
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.errors import InputError
@@ -25,7 +26,7 @@ MAKES = [channel, ring, c_grid]
 def test_vtk_reads_every_zone_bit_for_bit(make: type[Grid], thick: bool, tmp_path: Path) -> None:
     grids = [make(name="first"), make(name="second")]  # type: ignore[call-arg]
     if thick:
-        write_grids(tmp_path / "g.cgns", grids, (0.0, 0.25))
+        write_grids(tmp_path / "g.cgns", [extruded(grid, (0.0, 0.25)) for grid in grids])
     else:
         write_grids(tmp_path / "g.cgns", grids)
     reader = vtkCGNSReader()
@@ -53,7 +54,7 @@ def test_cgnscheck_has_neither_errors_nor_warnings(make: type[Grid], thick: bool
     path = tmp_path / "g.cgns"
     grids = [make(), make()]
     if thick:
-        write_grids(path, grids, (0.0, 0.25))
+        write_grids(path, [extruded(grid, (0.0, 0.25)) for grid in grids])
     else:
         write_grids(path, grids)
     done = subprocess.run(["cgnscheck", "-v", str(path)], capture_output=True, text=True, timeout=60)

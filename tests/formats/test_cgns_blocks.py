@@ -21,11 +21,17 @@ from meshonet.formats.registry import read_grids as read_any
 from meshonet.formats.source import open_source
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 
 Make = Callable[[], Grid]
 FACTS = ("topology", "parts", "name", "provenance", "block", "connections")
+
+
+def thick(grid: Grid, heights: tuple[float, ...]) -> Grid:
+    """Return a grid repeated in z where there are heights."""
+    return extruded(grid, heights) if heights else grid
 
 
 def back(path: Path) -> list[Grid]:
@@ -45,7 +51,7 @@ def without(path: Path, *names: str) -> None:
 @pytest.mark.parametrize("make", MANY)
 def test_a_grid_comes_back_to_the_last_bit(make: Make, heights: tuple[float, ...], tmp_path: Path) -> None:
     grid = make()
-    write_grids(tmp_path / "g.cgns", [channel(), grid, ring(), grid], heights)
+    write_grids(tmp_path / "g.cgns", [thick(each, heights) for each in (channel(), grid, ring(), grid)])
     one, two, three, four = back(tmp_path / "g.cgns")
     assert (one.topology, three.topology) == ("quad", "o")
     for found in (two, four):
@@ -63,7 +69,7 @@ def test_a_grid_comes_back_to_the_last_bit(make: Make, heights: tuple[float, ...
 def test_cgnscheck_has_neither_errors_nor_warnings(
     make: Make, heights: tuple[float, ...], tmp_path: Path
 ) -> None:
-    write_grids(tmp_path / "g.cgns", [make()], heights)
+    write_grids(tmp_path / "g.cgns", [thick(make(), heights)])
     done = subprocess.run(
         ["cgnscheck", "-v", str(tmp_path / "g.cgns")], capture_output=True, text=True, timeout=60
     )
@@ -115,15 +121,15 @@ def test_a_file_of_others_comes_in_with_interfaces_and_names(
     make: Make, heights: tuple[float, ...], tmp_path: Path
 ) -> None:
     grid = make()
-    write_grids(tmp_path / "g.cgns", [grid], heights)
+    write_grids(tmp_path / "g.cgns", [thick(grid, heights)])
     without(tmp_path / "g.cgns", *FACTS)
     (found,) = back(tmp_path / "g.cgns")
     assert len(found.connections) == len(grid.connections)
     assert {p.name for p in found.patches} >= {p.name.replace(" ", "_") for p in grid.patches}
     merged, wanted = unstructured(found), unstructured(grid)
     assert len(merged.points) == len(wanted.points)
-    assert {n: len(e) for n, e in merged.edges.items()} == {
-        n.replace(" ", "_"): len(e) for n, e in wanted.edges.items()
+    assert {n: len(e) for n, e in merged.faces.items()} == {
+        n.replace(" ", "_"): len(e) for n, e in wanted.faces.items()
     }
     if make not in (passage, sector):
         assert sorted_joints(found.connections) == sorted_joints(grid.connections)
@@ -217,8 +223,8 @@ def test_left_handed_and_turned_zones_are_joined(tmp_path: Path) -> None:
     assert len(grid.connections) == 1
     mesh = unstructured(grid)
     assert len(mesh.points) == 28
-    assert mesh.points[mesh.edges["low"]][..., 1].max() == 0
-    assert mesh.points[mesh.edges["out"]][..., 0].min() == 6
+    assert mesh.points[mesh.faces["low"]][..., 1].max() == 0
+    assert mesh.points[mesh.faces["out"]][..., 0].min() == 6
     kinds = {patch.name: patch.kind for patch in grid.patches}
     assert (kinds["low"], kinds["out"]) == ("wall", "outlet")
 
@@ -349,8 +355,8 @@ def test_what_gmsh_writes_of_transfinite_surfaces_is_one_grid(ending: str, tmp_p
     gmsh.write(str(tmp_path / f"g.{ending}"))
     (grid,) = read_any(str(tmp_path / f"g.{ending}"))
     mesh = unstructured(grid)
-    assert (len(grid.blocks), len(grid.connections), len(mesh.points), len(mesh.quads)) == (3, 2, 74, 56)
-    sizes = {name: len(edges) for name, edges in mesh.edges.items()}
+    assert (len(grid.blocks), len(grid.connections), len(mesh.points), len(mesh.cells)) == (3, 2, 74, 56)
+    sizes = {name: len(edges) for name, edges in mesh.faces.items()}
     assert sizes == ({"wall": 9, "outlet": 5, "outer": 20} if ending == "cgns" else {"outer": 34})
 
 

@@ -11,6 +11,7 @@ from format_shapes import c_grid, channel, ring
 from meshonet.formats.gmsh.geo import write_grids as write_geo
 from meshonet.formats.gmsh.msh import write_grids
 from meshonet.formats.registry import format_named
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
@@ -63,7 +64,7 @@ def test_gmsh_sees_layers_of_right_handed_hexahedra(
     grid = make()
     writer = format_named(version).write_grids
     assert writer is not None
-    writer(tmp_path / "g.msh", [grid], tuple(0.5 * k for k in range(layers + 1)))
+    writer(tmp_path / "g.msh", [extruded(grid, [0.5 * k for k in range(layers + 1)])])
     gmsh.open(str(tmp_path / "g.msh"))
     nodes, cells, parts = COUNTS[grid.topology]
     assert len(gmsh.model.mesh.getNodes()[0]) == (layers + 1) * nodes

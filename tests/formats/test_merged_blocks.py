@@ -18,10 +18,11 @@ from meshonet.formats.cgns.write import write_grids as write_cgns
 from meshonet.formats.gmsh.geo import write_grids as write_geo
 from meshonet.formats.gmsh.msh import write_grids as write_msh
 from meshonet.formats.mesh.unstructured import unstructured
-from meshonet.formats.openfoam import write_grids as write_foam
+from meshonet.formats.openfoam.write import write_grids as write_foam
 from meshonet.formats.registry import format_named, formats
 from meshonet.formats.su2 import write_grids as write_su2
 from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.errors import InputError
 from meshonet.geometry.polygon.area import polygon_area
@@ -39,18 +40,18 @@ def test_nodes_stand_once_and_every_cell_is_there_counter_clockwise(make: Make) 
     grid = make()
     mesh = unstructured(grid)
     assert len(np.unique(mesh.points, axis=0)) == len(mesh.points)
-    assert len(mesh.quads) == sum((b.counts[0] - 1) * (b.counts[1] - 1) for b in grid.blocks)
-    areas = [polygon_area(mesh.points[quad]) for quad in mesh.quads]
+    assert len(mesh.cells) == sum((b.counts[0] - 1) * (b.counts[1] - 1) for b in grid.blocks)
+    areas = [polygon_area(mesh.points[quad]) for quad in mesh.cells]
     assert min(areas) > 0
-    sides = np.concatenate([mesh.quads[:, [k, (k + 1) % 4]] for k in range(4)])
+    sides = np.concatenate([mesh.cells[:, [k, (k + 1) % 4]] for k in range(4)])
     every, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     outer = {tuple(edge) for edge in every[counts == 1].tolist()}
-    named = np.concatenate(list(mesh.edges.values()))
+    named = np.concatenate(list(mesh.faces.values()))
     assert counts.max() == 2
     assert {tuple(sorted(edge)) for edge in named.tolist()} == outer
     assert len(named) == len(outer)
     assert {tuple(edge) for edge in named.tolist()} <= {tuple(edge) for edge in sides.tolist()}
-    assert names(grid) <= set(mesh.edges)
+    assert names(grid) <= set(mesh.faces)
     ring = np.concatenate([mesh.points[edge] for edge in named]).reshape(-1, 2, 2)
     enclosed = 0.5 * (ring[:, 0, 0] * ring[:, 1, 1] - ring[:, 1, 0] * ring[:, 0, 1]).sum()
     assert sum(areas) == pytest.approx(enclosed, rel=1e-12)
@@ -67,7 +68,7 @@ def test_periodic_edges_face_each_other_row_by_row(make: Make) -> None:
     mesh = unstructured(make())
     (pair,) = mesh.periodic
     assert (pair.name, pair.partner) == ("periodic low", "periodic high")
-    own, partner = mesh.points[mesh.edges[pair.name]], mesh.points[mesh.edges[pair.partner]]
+    own, partner = mesh.points[mesh.faces[pair.name]], mesh.points[mesh.faces[pair.partner]]
     np.testing.assert_array_equal(pair.motion(own), partner[:, ::-1])
     np.testing.assert_array_equal(pair.motion(mesh.points[pair.nodes[:, 0]]), mesh.points[pair.nodes[:, 1]])
     assert len(pair.nodes) == len(own) + 1
@@ -76,7 +77,7 @@ def test_periodic_edges_face_each_other_row_by_row(make: Make) -> None:
 def test_periodic_sides_without_names_or_with_one_name_get_two() -> None:
     grid = passage()
     plain = tuple(patch for patch in grid.patches if "periodic" not in patch.name)
-    assert set(unstructured(Grid(grid.blocks, plain, grid.connections)).edges) == {
+    assert set(unstructured(Grid(grid.blocks, plain, grid.connections)).faces) == {
         "inlet", "outlet", "periodic1", "periodic2"
     }  # fmt: skip
     turned = tuple(
@@ -84,7 +85,7 @@ def test_periodic_sides_without_names_or_with_one_name_get_two() -> None:
     )
     assert len(unstructured(Grid(grid.blocks, plain, grid.connections)).periodic) == 1
     (pair,) = unstructured(_unchecked(grid, turned)).periodic
-    assert len(pair.edges) == 12
+    assert len(pair.faces) == 12
 
 
 def _unchecked(grid: Grid, connections: tuple[object, ...]) -> Grid:
@@ -98,7 +99,7 @@ def _unchecked(grid: Grid, connections: tuple[object, ...]) -> Grid:
 @pytest.mark.parametrize("heights", [(0.0, 0.5), THICK])
 @pytest.mark.parametrize("make", MANY)
 def test_check_mesh_finds_nothing(make: Make, heights: tuple[float, ...], tmp_path: Path) -> None:
-    write_foam(tmp_path / "case.foam", [make()], heights)
+    write_foam(tmp_path / "case.foam", [extruded(make(), heights)])
     done = subprocess.run(
         ["checkMesh", "-case", str(tmp_path), "-allTopology"],
         capture_output=True,
@@ -161,7 +162,11 @@ def test_gmsh_knows_groups_and_partners(
     import gmsh
 
     grid = make()
-    write_msh(tmp_path / "g.msh", [grid], heights, options=frozenset(words.split(",")))
+    write_msh(
+        tmp_path / "g.msh",
+        [extruded(grid, heights) if heights else grid],
+        options=frozenset(words.split(",")),
+    )
     gmsh.open(str(tmp_path / "g.msh"))
     dim = 3 if heights else 2
     groups = {
@@ -200,7 +205,7 @@ def test_a_geo_file_is_meshed_with_the_same_nodes_on_all_lines(make: Make, tmp_p
     mesh = unstructured(grid)
     assert len(gmsh.model.mesh.getNodes()[0]) == len(mesh.points)
     kinds, cells, _ = gmsh.model.mesh.getElements(2)
-    assert (kinds.tolist(), len(cells[0])) == ([3], len(mesh.quads))
+    assert (kinds.tolist(), len(cells[0])) == ([3], len(mesh.cells))
 
 
 @pytest.mark.parametrize("ending", ["vtu", "stl", "ply", "obj", "off", "inp", "med"])
@@ -217,7 +222,7 @@ def test_meshio_reads_one_mesh(ending: str, tmp_path: Path) -> None:
         if block.type in ("quad", "triangle"):
             area += sum(polygon_area(mesh.points[cell, :2]) for cell in block.data)
     outline = unstructured(butterfly())
-    wanted = sum(polygon_area(outline.points[quad]) for quad in outline.quads)
+    wanted = sum(polygon_area(outline.points[quad]) for quad in outline.cells)
     assert area == pytest.approx(wanted, rel=1e-6)
 
 
@@ -233,9 +238,10 @@ def test_a_format_of_one_block_names_those_of_many(name: str, tmp_path: Path) ->
         told = f"{name} files hold one block and the grid has 5; write one of hdf5, .*openfoam.*su2"
         with pytest.raises(InputError, match=told):
             record.write_grids(path, [butterfly()])
-    if name != "hdf5":
-        space = Grid((Block(np.random.default_rng(0).random((3, 3, 3, 3))),))
-        with pytest.raises(
-            InputError, match=f"{name} files hold grids in the plane and this one is in space"
-        ):
+    space = Grid((Block(np.random.default_rng(0).random((3, 3, 3, 3))),))
+    if "volumes" in record.space:
+        record.write_grids(path, [space])
+    else:
+        told = f"{name} files hold grids in the plane and this grid has volumes in space; write one of hdf5"
+        with pytest.raises(InputError, match=told):
             record.write_grids(path, [space])

@@ -33,6 +33,6 @@ def test_the_cells_cover_the_grid(
         assert own.min() > 0
         area += float(own.sum())
     flat = unstructured(grid)
-    x, y = np.moveaxis(flat.points[flat.quads], -1, 0)
+    x, y = np.moveaxis(flat.points[flat.cells], -1, 0)
     wanted = 0.5 * (x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y).sum()
     assert area == pytest.approx(wanted, rel=1e-5)

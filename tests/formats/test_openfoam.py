@@ -12,7 +12,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOGeometry import vtkOpenFOAMReader
 
 from meshonet.formats.mesh.unstructured import unstructured
-from meshonet.formats.openfoam import write_grids
+from meshonet.formats.openfoam.write import write_grids
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
@@ -50,7 +51,7 @@ def test_cells_are_closed_and_faces_point_out_of_owners_in_order(
     make: type[Grid], layers: int, tmp_path: Path
 ) -> None:
     grid = make()
-    write_grids(tmp_path / "case.foam", [grid], tuple(0.5 * k for k in range(layers + 1)))
+    write_grids(tmp_path / "case.foam", [extruded(grid, [0.5 * k for k in range(layers + 1)])])
     mesh = tmp_path / "constant" / "polyMesh"
     points, faces = numbers(mesh / "points"), numbers(mesh / "faces").astype(int)
     owner = numbers(mesh / "owner").astype(int).ravel()
@@ -69,7 +70,7 @@ def test_cells_are_closed_and_faces_point_out_of_owners_in_order(
         np.add.at(volume, cell, sign * (area[part] * centre[part]).sum(axis=1) / 3)
     assert np.abs(closed).max() < 1e-14
     mesh2d = unstructured(grid)
-    x, y = np.moveaxis(mesh2d.points[mesh2d.quads], -1, 0)
+    x, y = np.moveaxis(mesh2d.points[mesh2d.cells], -1, 0)
     plane = 0.5 * ((x[:, 2] - x[:, 0]) * (y[:, 3] - y[:, 1]) - (x[:, 3] - x[:, 1]) * (y[:, 2] - y[:, 0]))
     assert np.allclose(volume, np.tile(0.5 * plane, layers), rtol=1e-12)
     assert volume.min() > 0
@@ -95,7 +96,7 @@ def test_patches_are_named_typed_and_cover_the_outer_faces(make: type[Grid], tmp
 @pytest.mark.parametrize("make", MAKES)
 def test_vtk_opens_the_case(make: type[Grid], tmp_path: Path) -> None:
     grid = make()
-    write_grids(tmp_path / "case.foam", [grid], (0.0, 0.5))
+    write_grids(tmp_path / "case.foam", [extruded(grid, (0.0, 0.5))])
     reader = vtkOpenFOAMReader()
     reader.SetFileName(str(tmp_path / "case.foam"))
     reader.UpdateInformation()
@@ -112,7 +113,9 @@ def test_vtk_opens_the_case(make: type[Grid], tmp_path: Path) -> None:
 
 def test_the_planes_of_several_layers_are_symmetry_planes(tmp_path: Path) -> None:
     parts = (Patch("front", "south", 0, 12), Patch("far", "north", 0, 12))
-    write_grids(tmp_path / "case.foam", [Grid.from_nodes(ring().nodes, "o", parts)], (0.0, 1.0, 2.0))
+    write_grids(
+        tmp_path / "case.foam", [extruded(Grid.from_nodes(ring().nodes, "o", parts), (0.0, 1.0, 2.0))]
+    )
     found = patches(tmp_path / "constant" / "polyMesh")
     assert {name: told[:2] for name, told in found.items()} == {
         "front-2": ("wall", 24), "far": ("patch", 24),
@@ -125,7 +128,7 @@ def test_the_planes_of_several_layers_are_symmetry_planes(tmp_path: Path) -> Non
 @pytest.mark.parametrize("make", MAKES)
 def test_check_mesh_finds_nothing(make: type[Grid], heights: tuple[float, ...], tmp_path: Path) -> None:
     grid = make(33, 17) if make is not c_grid else make(33, 33, 17)  # type: ignore[call-arg]
-    write_grids(tmp_path / "case.foam", [grid], heights)
+    write_grids(tmp_path / "case.foam", [extruded(grid, heights)])
     done = subprocess.run(
         ["checkMesh", "-case", str(tmp_path), "-allTopology"],
         capture_output=True,

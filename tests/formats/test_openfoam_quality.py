@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from format_shapes import c_grid, ring
 
-from meshonet.formats.openfoam import write_grids
+from meshonet.formats.openfoam.write import write_grids
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.quality.checkmesh import faces
 
@@ -25,7 +26,7 @@ def shaken() -> Grid:
 @pytest.mark.parametrize("name", ["quad", "o", "c"])
 def test_check_mesh_says_the_same(tmp_path: Path, name: str) -> None:
     grid = {"quad": shaken, "o": lambda: ring(33, 17), "c": lambda: c_grid(33, 33, 17)}[name]()
-    write_grids(tmp_path / "case.foam", [grid], (0.0, 0.1))
+    write_grids(tmp_path / "case.foam", [extruded(grid, (0.0, 0.1))])
     done = subprocess.run(
         ["checkMesh", "-case", str(tmp_path)],
         capture_output=True,

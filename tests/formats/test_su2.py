@@ -9,6 +9,7 @@ from format_shapes import c_grid, channel, ring
 
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.su2 import write_grids
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 from meshonet.geometry.blocks.patches import Patch
 
@@ -63,7 +64,7 @@ def test_the_lines_of_a_marker_are_edges_of_its_part(tmp_path: Path) -> None:
 
 def test_a_layer_has_hexahedra_and_its_planes_as_markers(tmp_path: Path) -> None:
     grid = ring()
-    write_grids(tmp_path / "g.su2", [grid], (0.0, 0.5))
+    write_grids(tmp_path / "g.su2", [extruded(grid, (0.0, 0.5))])
     mesh = meshio.su2.read(tmp_path / "g.su2")
     assert len(mesh.cells_dict["hexahedron"]) == 48
     assert mesh.points[:, 2].max() == 0.5
@@ -72,7 +73,7 @@ def test_a_layer_has_hexahedra_and_its_planes_as_markers(tmp_path: Path) -> None
 
 
 def test_several_layers_have_their_outermost_planes_as_markers(tmp_path: Path) -> None:
-    write_grids(tmp_path / "g.su2", [ring()], (0.0, 0.5, 1.0, 1.5))
+    write_grids(tmp_path / "g.su2", [extruded(ring(), (0.0, 0.5, 1.0, 1.5))])
     mesh = meshio.su2.read(tmp_path / "g.su2")
     hexahedra = mesh.points[mesh.cells_dict["hexahedron"]]
     assert len(hexahedra) == 3 * 48

@@ -21,7 +21,7 @@ def test_no_two_nodes_are_the_same_point(make: type[Grid]) -> None:
 def test_the_quads_are_the_cells_in_order(make: type[Grid]) -> None:
     grid = make()
     mesh = unstructured(grid)
-    corner = mesh.points[mesh.quads]
+    corner = mesh.points[mesh.cells]
     cells = [grid.nodes[:-1, :-1], grid.nodes[1:, :-1], grid.nodes[1:, 1:], grid.nodes[:-1, 1:]]
     for k, cell in enumerate(cells):
         assert np.array_equal(corner[:, k], cell.swapaxes(0, 1).reshape(-1, 2))
@@ -30,10 +30,10 @@ def test_the_quads_are_the_cells_in_order(make: type[Grid]) -> None:
 @pytest.mark.parametrize("make", [channel, ring, c_grid])
 def test_the_named_edges_are_all_edges_that_one_cell_has(make: type[Grid]) -> None:
     mesh = unstructured(make())
-    sides = np.concatenate([mesh.quads[:, [k, (k + 1) % 4]] for k in range(4)])
+    sides = np.concatenate([mesh.cells[:, [k, (k + 1) % 4]] for k in range(4)])
     every, counts = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     outer = {tuple(edge) for edge in every[counts == 1].tolist()}
-    named = np.concatenate(list(mesh.edges.values()))
+    named = np.concatenate(list(mesh.faces.values()))
     assert {tuple(sorted(edge)) for edge in named.tolist()} == outer
     assert len(named) == len(outer)
     # as in its cell: the domain lies on the left
@@ -41,14 +41,14 @@ def test_the_named_edges_are_all_edges_that_one_cell_has(make: type[Grid]) -> No
 
 
 def test_parts_keep_their_names_and_what_has_none_is_called_by_its_side() -> None:
-    edges = unstructured(channel()).edges
+    edges = unstructured(channel()).faces
     assert {name: len(edge) for name, edge in edges.items()} == {
         "no-slip wall": 3, "south": 3, "out let": 4, "north": 6, "inlet": 4,
     }  # fmt: skip
 
 
 def test_the_cut_and_the_wake_belong_to_no_part() -> None:
-    assert set(unstructured(ring()).edges) == {"airfoil", "far"}
-    edges = unstructured(c_grid()).edges
+    assert set(unstructured(ring()).faces) == {"airfoil", "far"}
+    edges = unstructured(c_grid()).faces
     assert set(edges) == {"plate", "far side"}
     assert len(edges["plate"]) == 8

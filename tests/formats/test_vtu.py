@@ -10,6 +10,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from meshonet.formats.mesh.unstructured import unstructured
 from meshonet.formats.vtk.vtu import write_grids
+from meshonet.geometry.blocks.extrude import extruded
 from meshonet.geometry.blocks.grid import Grid
 
 
@@ -20,7 +21,7 @@ def test_vtk_reads_cells_points_and_the_numbers_of_parts(
 ) -> None:
     mesh = unstructured(make())
     if thick:
-        write_grids(tmp_path / "g.vtu", [make()], (0.0, 0.5))
+        write_grids(tmp_path / "g.vtu", [extruded(make(), (0.0, 0.5))])
     else:
         write_grids(tmp_path / "g.vtu", [make()])
     reader = vtkXMLUnstructuredGridReader()
@@ -29,8 +30,8 @@ def test_vtk_reads_cells_points_and_the_numbers_of_parts(
     read = reader.GetOutput()
     points = vtk_to_numpy(read.GetPoints().GetData())
     assert np.array_equal(points[: len(mesh.points), :2], mesh.points)
-    counts = [len(mesh.quads), *(len(edges) for edges in mesh.edges.values())]
+    counts = [len(mesh.cells), *(len(edges) for edges in mesh.faces.values())]
     if thick:
-        counts += [len(mesh.quads)] * 2
+        counts += [len(mesh.cells)] * 2
         assert points[len(mesh.points) :, 2].tolist() == [0.5] * len(mesh.points)
     assert np.bincount(vtk_to_numpy(read.GetCellData().GetArray("part"))).tolist() == counts

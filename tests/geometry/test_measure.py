@@ -242,10 +242,12 @@ def test_a_metric_with_a_function_of_its_own_is_measured_like_the_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from meshonet.geometry.quality import measure as module
+    from meshonet.geometry.quality import metrics
     from meshonet.geometry.quality.metrics import METRICS, Metric
 
     extent = Metric("extent", "", "max", "i plus j", lambda grid: grid.x[:-1, :-1] + grid.y[:-1, :-1])
-    monkeypatch.setattr(module, "METRICS", (*METRICS, extent))
+    for room in (module, metrics):
+        monkeypatch.setattr(room, "METRICS", (*METRICS, extent))
     monkeypatch.setattr(module, "NAMES", (*(metric.name for metric in METRICS), "extent"))
     nodes = np.stack(np.meshgrid(np.arange(4.0), np.arange(6.0), indexing="ij"), axis=-1)
     grid = Grid.from_nodes(nodes)

@@ -11,7 +11,8 @@ from meshonet.solvers.method import METHODS, Each, method_named
 from meshonet.solvers.pipeline.coarse import Coarse
 from meshonet.solvers.pipeline.fallback import guard
 from meshonet.solvers.pipeline.make_grid import make_grid, make_grids
-from meshonet.solvers.pipeline.request import GridRequest, grid_request
+from meshonet.solvers.pipeline.parameters import grid_request
+from meshonet.solvers.pipeline.request import GridRequest
 from meshonet.solvers.pipeline.sequence import Sequenced
 from meshonet.solvers.solution import Outcome, Solution
 

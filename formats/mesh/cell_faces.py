@@ -1,0 +1,67 @@
+"""Cells and faces of a lattice of node numbers, in the orders that mesh formats have in common.
+
+::
+
+      3-----2        7-----6        faces point out of the block: with j right of i and k up,
+      |     |       /|    /|        0 1 2 3 of a side runs counter-clockwise seen from outside
+      0-----1      4-----5 |
+                   | 3---|-2
+                   |/    |/
+                   0-----1
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES
+
+Indices = NDArray[np.int64]
+
+
+def cells_of(number: Indices) -> Indices:
+    """Return the nodes (m, 4 or 8) of the cells of a block of node numbers (ni, nj) or (ni, nj, nk)."""
+    if number.ndim == 2:
+        return _flat(_around(number))
+    below, above = _around(number[:, :, :-1]), _around(number[:, :, 1:])
+    return _flat([*below, *above])
+
+
+def cell_numbers(counts: Sequence[tuple[int, ...]]) -> list[Indices]:
+    """Return numbers from 0 on for the cells of blocks with so many nodes along each direction, i fastest."""
+    shapes = [tuple(n - 1 for n in count) for count in counts]
+    ends = np.cumsum([0, *(int(np.prod(shape)) for shape in shapes)])
+    return [
+        np.arange(first, last).reshape(shape, order="F")
+        for first, last, shape in zip(ends, ends[1:], shapes, strict=False)
+    ]
+
+
+def faces_of(side_numbers: Indices, side: Side) -> Indices:
+    """Return the edges (k, 2) or quadrilaterals (k, 4) of a part of a side, of node numbers (n,) or (n, m).
+
+    The domain is on the left of edges; the normals of quadrilaterals point out of it.
+    """
+    if side_numbers.ndim == 1:
+        rows = np.stack([side_numbers[:-1], side_numbers[1:]], axis=-1)
+        return rows[:, ::-1] if side in ("north", "west") else rows
+    faces = _flat(_around(side_numbers))
+    return faces if points_out(side) else faces[:, [0, 3, 2, 1]]
+
+
+def points_out(side: Side) -> bool:
+    """Say whether the first direction of a side of a volume times its second points out of the block."""
+    axis, end = PLACES[side]
+    return (axis == 1) == (end == 0)
+
+
+def _around(number: Indices) -> list[Indices]:
+    """Return the four nodes of each cell along the first two directions of a lattice, one after the other."""
+    return [number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]]
+
+
+def _flat(corners: list[Indices]) -> Indices:
+    """Return one row for each cell, the first index fastest."""
+    return np.stack([corner.ravel(order="F") for corner in corners], axis=-1)

@@ -1,0 +1,87 @@
+"""What carries the nodes of one joined side to those of the other: nothing, a shift, a rotation.
+
+It is found from the nodes, since conventions of files differ in its sign.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.find_connections import TOLERANCE
+from meshonet.geometry.errors import InputError
+
+LOOSE = 1e-3
+"""Joined nodes may differ by this part of the shortest edge along their side."""
+_DIGITS = range(1, 18)
+
+
+def matched(connection: Connection, blocks: Sequence[Block]) -> Connection:
+    """Return a connection of `blocks` with the motion between its sides, if there is any.
+
+    Raises InputError: sides of other counts, nodes that no shift or rotation makes the same.
+    """
+    own, donor = connection.nodes(lambda block, side: blocks[block].face(side))
+    if own.shape != donor.shape:
+        counts = (" x ".join(str(n - 1) for n in nodes.shape[:-1]) for nodes in (own, donor))
+        raise InputError(f"{connection} joins {' cells to '.join(counts)}", "join equal counts, one to one")
+    edges = [np.linalg.norm(np.diff(own, axis=k), axis=-1) for k in range(own.ndim - 1)]
+    edge = min(float(lengths.min()) for lengths in edges)
+    own, donor = (nodes.reshape(-1, nodes.shape[-1]) for nodes in (own, donor))
+    reach = max(LOOSE * edge, TOLERANCE * float(np.ptp(own, axis=0).max()))
+    for motion in _motions(own, donor):
+        if np.abs(motion(own) - donor).max() <= reach:
+            return replace(connection, transform=motion if motion.shift or motion.turn else None)
+    problem = f"{connection} joins nodes that no shift or rotation makes the same"
+    raise InputError(problem, "correct its ranges, or leave it out")
+
+
+def like_others(connection: Connection, motions: list[Motion]) -> Connection:
+    """Return a periodic connection with one of `motions` where its own is alike, or else add it to them.
+
+    Periodic sides of one motion, or its inverse, have the very same one, so that they agree where they meet.
+    """
+    for known in motions:
+        for each in (connection, connection.reversed()):
+            if each.transform and known.alike(each.transform, LOOSE):
+                return replace(each, transform=known)
+    motions.append(connection.transform or Motion())
+    return connection
+
+
+def _motions(own: Floats, donor: Floats) -> Iterator[Motion]:
+    """Yield what may carry nodes (n, d) to others: nothing, a shift, a rotation."""
+    yield Motion()
+    shift = (donor - own).mean(axis=0).tolist()
+    for digits in _DIGITS:  # one that was meant makes the very nodes
+        motion = Motion(tuple(float(f"{x:.{digits}g}") for x in shift))
+        if np.array_equal(motion(own), donor):
+            yield motion
+    yield Motion(tuple(shift))
+    rows = _turn(own, donor)
+    if rows:
+        shift = (donor - Motion((), rows)(own)).mean(axis=0).tolist()
+        about_origin = np.linalg.norm(shift) <= TOLERANCE * np.linalg.norm(own.mean(axis=0))
+        yield Motion((0.0,) * len(shift) if about_origin else tuple(shift), rows)
+
+
+def _turn(own: Floats, donor: Floats) -> tuple[tuple[float, ...], ...]:
+    """Return the rows of the rotation matrix between two sides of nodes (n, d), none of sides of no size.
+
+    In space the rotation of least squares: Kabsch, Acta Crystallographica A32 (1976) 922.
+    """
+    if own.shape[1] == 2:
+        here, there = (nodes[-1] - nodes[0] for nodes in (own, donor))
+        if not here.any():
+            return ()
+        turn = complex(*there) / complex(*here)
+        turn /= abs(turn) or 1.0
+        return (turn.real, -turn.imag), (turn.imag, turn.real)
+    u, _, v = np.linalg.svd((own - own.mean(axis=0)).T @ (donor - donor.mean(axis=0)))
+    sign = np.diag([1.0, 1.0, np.sign(np.linalg.det(v.T @ u.T)) or 1.0])
+    return tuple(map(tuple, (v.T @ sign @ u.T).tolist()))

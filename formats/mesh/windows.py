@@ -1,0 +1,113 @@
+"""Parts of the faces of blocks in the indices of a file, as parts of the sides of the blocks they became.
+
+A file counts the nodes of a block by three indices. The block that was read may have an index less, and may
+have the first one reversed (`meshonet.formats.mesh.slices`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+from meshonet.formats.mesh.slices import Lattice
+from meshonet.geometry.arrays import Side
+from meshonet.geometry.blocks.block import PLACES, Range
+from meshonet.geometry.blocks.connection import Connection
+from meshonet.geometry.blocks.patches import Kind, Patch
+
+Triple: TypeAlias = tuple[int, int, int]
+_SIDES: dict[tuple[int, int], Side] = {place: side for side, place in PLACES.items()}
+
+
+class Window(NamedTuple):
+    """A part of a face of a block: its first and last node, counted from 0 by the three indices of the file.
+
+    The last node may come before the first one, as files have it where two windows are joined.
+    """
+
+    block: int
+    first: Triple
+    last: Triple
+
+
+class Face(NamedTuple):
+    """A part of a face that is called something."""
+
+    window: Window
+    name: str
+    kind: Kind
+
+
+class Pair(NamedTuple):
+    """Two parts of faces that are joined, and what the file calls that.
+
+    `partner` has the index of the donor that lies along each index of the own block.
+    """
+
+    own: Window
+    donor: Window
+    partner: Triple
+    name: str = ""
+
+
+class Part(NamedTuple):
+    """A part of a side: for each of its directions also the index of the file, and 1 or -1 for the way it ran."""
+
+    side: Side
+    range: Range
+    axes: tuple[int, ...]
+    ways: tuple[int, ...]
+
+
+def part_of(window: Window, lattices: Sequence[Lattice]) -> Part | None:
+    """Return the part of a side that a window is, None where it is none: an edge, or all of a plane block.
+
+    Raises ValueError: there is no such block, or it does not reach so far.
+    """
+    if not 0 <= window.block < len(lattices):
+        raise ValueError(f"there is no block {window.block + 1}")
+    lattice = lattices[window.block]
+    fixed: list[tuple[int, int]] = []
+    along: list[tuple[int, int, int]] = []
+    for direction, axis in enumerate(lattice.axes):
+        count = lattice.nodes.shape[direction]
+        first, last = window.first[axis], window.last[axis]
+        if not 0 <= min(first, last) <= max(first, last) < count:
+            raise ValueError(f"block {window.block + 1} has no node {max(first, last) + 1}")
+        if lattice.reversed and direction == 0:
+            first, last = count - 1 - first, count - 1 - last
+        if first != last:
+            along.append((axis, first, last))
+        elif first in (0, count - 1):
+            fixed.append((direction, 0 if first == 0 else -1))
+    if len(fixed) != 1 or len(along) != len(lattice.axes) - 1:
+        return None
+    span = tuple((min(first, last), max(first, last)) for _, first, last in along)
+    ways = tuple(1 if first < last else -1 for _, first, last in along)
+    return Part(_SIDES[fixed[0]], span, tuple(axis for axis, _, _ in along), ways)
+
+
+def patch_of(face: Face, lattices: Sequence[Lattice]) -> Patch | None:
+    """Return the patch that a face is; None and raises as `part_of`."""
+    part = part_of(face.window, lattices)
+    if part is None:
+        return None
+    (start, stop), *across = part.range
+    place = across[0] if across else None, face.window.block
+    return Patch(face.name, part.side, start, stop, *place, face.kind)
+
+
+def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
+    """Return the connection that a pair is, without a motion; None and raises as `part_of`.
+
+    Also raises ValueError: indices that do not lie on each other.
+    """
+    here, there = part_of(pair.own, lattices), part_of(pair.donor, lattices)
+    if here is None or there is None:
+        return None
+    orientation = []
+    for axis, way in zip(here.axes, here.ways, strict=True):
+        place = there.axes.index(pair.partner[axis])
+        orientation.append((place + 1) * way * there.ways[place])
+    ends = pair.own.block, here.side, here.range, pair.donor.block, there.side, there.range
+    return Connection(*ends, tuple(orientation))

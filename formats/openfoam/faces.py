@@ -1,0 +1,96 @@
+"""All faces of the cells of a grid in the order that OpenFOAM wants.
+
+Those between cells come first, by their owner, the lower cell, and then by the neighbour: upper-triangular
+order. Outer faces follow, patch by patch. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.formats.mesh.cell_faces import cell_numbers
+from meshonet.formats.mesh.periodic import Part, both_sides, cellwise
+from meshonet.geometry.blocks.block import PLACES, face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.errors import InputError
+from meshonet.kernels._native import inner_faces
+
+Labels = NDArray[np.int32]
+Indices = NDArray[np.int64]
+_LEAST = 3
+"""Nodes of a face."""
+MOST_LABELS = 2**31 - 1
+"""Labels are of 32 bits, and so is the count of the nodes of all faces."""
+
+
+class Faces(NamedTuple):
+    """Faces of cells.
+
+    Parameters
+    ----------
+    nodes : (f, 4) point numbers; the normal points out of the owner. Two that follow each other may be one.
+    owner : (f,) cell behind each face; the lower of two.
+    neighbour : (g,) cell before each of the g inner faces, which come first.
+    """
+
+    nodes: Labels
+    owner: Labels
+    neighbour: Labels
+
+
+def all_faces(grid: Grid, numbers: Sequence[Indices], parts: Mapping[str, Part]) -> Faces:
+    """Return the faces of a grid of volumes whose nodes have these `numbers`, outer ones as `parts` has them.
+
+    Raises InputError: more than 32 bits count; a cell that is its own neighbour.
+    """
+    cells = cell_numbers([block.counts for block in grid.blocks])
+    count = sum(each.size for each in cells)
+    outer = sum(len(part.cells) for part in parts.values())
+    inner = (6 * count - outer) // 2
+    if 4 * (inner + outer) > MOST_LABELS:
+        problem = f"{count} cells have more faces than labels of 32 bits count"
+        raise InputError(problem, "write a coarser grid, or blocks of it")
+    slack = 6 * max(each.shape[0] for each in cells)
+    nodes = np.empty((inner + outer + slack, 4), np.int32)
+    owner, neighbour = np.empty(len(nodes), np.int32), np.empty(len(nodes), np.int32)
+    at = 0
+    beyond = _beyond(grid, cells)
+    for number, own, sides in zip(numbers, cells, beyond, strict=True):
+        flat = np.ascontiguousarray(number.T, np.int32)
+        at += inner_faces(flat, sides, int(own.flat[0]), nodes[at:], owner[at:], neighbour[at:])
+    if at != inner:
+        problem = "a cell is its own neighbour, across a connection of a block one cell wide"
+        raise InputError(problem, "make the grid with more cells around")
+    for part in parts.values():
+        nodes[at : at + len(part.cells)], owner[at : at + len(part.cells)] = part
+        at += len(part.cells)
+    return Faces(nodes[:at], owner[:at], neighbour[:inner])
+
+
+def whole(nodes: NDArray[np.integer[Any]]) -> NDArray[np.bool_]:
+    """Say which faces (f, 4) have an area: at least three nodes, and none that lie across on each other."""
+    several = (nodes != np.roll(nodes, -1, axis=1)).sum(axis=1) >= _LEAST
+    return np.asarray(several & (nodes[:, 0] != nodes[:, 2]) & (nodes[:, 1] != nodes[:, 3]))
+
+
+def without_collapsed(faces: Faces, parts: Mapping[str, Part]) -> tuple[Faces, dict[str, Part]]:
+    """Return faces and parts without those that are no more than a line, and without parts that lose all."""
+    keep, inner = whole(faces.nodes), len(faces.neighbour)
+    kept = {name: (part, whole(part.faces)) for name, part in parts.items()}
+    left = Faces(faces.nodes[keep], faces.owner[keep], faces.neighbour[keep[:inner]])
+    return left, {name: Part(p.faces[at], p.cells[at]) for name, (p, at) in kept.items() if at.any()}
+
+
+def _beyond(grid: Grid, cells: Sequence[Indices]) -> list[list[Labels]]:
+    """Return the cell beyond each face of the sides of each block, -1 where there is none, i or j fastest."""
+    table = [[np.full(face_of(own, side).shape, -1) for side in PLACES] for own in cells]
+    sides = list(PLACES)
+    for each in grid.connections:
+        if each.transform is None:
+            for way in (each, each.reversed()):
+                _, donor = both_sides(cellwise(way), cells)
+                part = tuple(slice(*span) for span in way.range)
+                table[way.block][sides.index(way.side)][part] = donor
+    return [[np.ascontiguousarray(side.T, np.int32) for side in block] for block in table]

@@ -1,0 +1,105 @@
+"""The patches of a case: names, types, and how cyclic ones come together."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from meshonet.formats.mesh.names import kinds, words
+from meshonet.formats.mesh.periodic import Part, PeriodicPair
+from meshonet.formats.openfoam.files import head
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Kind
+from meshonet.geometry.blocks.screw import screw_of
+
+PLANES = ""
+"""Key, which no name is, of the part that the two planes of a grid one cell thick make."""
+EMPTY = "frontAndBack"
+"""Title of their patch, of type ``empty``."""
+_TYPES: dict[Kind, str] = {"wall": "wall", "symmetry": "symmetry"}
+_FLAT = 1e-15
+"""A symmetry plane is one whose unit normals differ by no more, squared (symmetryPlanePolyPatch.C)."""
+
+
+class Patch(NamedTuple):
+    """Outer faces that lie behind each other in the list of faces; `more` are further entries."""
+
+    name: str
+    kind: str
+    size: int
+    more: tuple[str, ...] = ()
+
+
+def with_empty_planes(grid: Grid, parts: Mapping[str, Part]) -> dict[str, Part]:
+    """Return `parts` with bottoms and tops as one, `PLANES`, the last, where the grid is a plane's.
+
+    That is so where all blocks are one cell thick between symmetry planes: solvers then leave k out.
+    """
+    outer = grid.outer_patches()
+    ends = {patch.name for patch in outer if patch.side in ("bottom", "top")}
+    flat = (
+        all(block.counts[2] == 2 for block in grid.blocks)
+        and all((patch.side in ("bottom", "top")) == (patch.name in ends) for patch in outer)
+        and all(patch.kind == "symmetry" for patch in outer if patch.name in ends)
+        and not any(each.side in ("bottom", "top") for each in grid.connections)
+    )
+    if not flat:
+        return dict(parts)
+    planes = [parts[name] for name in parts if name in ends]
+    rest = {name: part for name, part in parts.items() if name not in ends}
+    return {**rest, PLANES: Part(*map(np.concatenate, zip(*planes, strict=True)))}
+
+
+def patches_of(
+    grid: Grid, parts: Mapping[str, Part], pairs: Sequence[PeriodicPair], points: Floats
+) -> list[Patch]:
+    """Return title, type and further entries of the patch of each part; periodic sides are ``cyclic``."""
+    kind = kinds(grid, grid.outer_patches())
+    word = words((name for name in parts if name != PLANES), taken=[EMPTY], letter=True)
+    found = {PLANES: Patch(EMPTY, "empty", 0)}
+    for name, title in word.items():
+        type_ = _TYPES.get(kind.get(name, "other"), "patch")
+        if type_ == "symmetry" and _is_flat(points[parts[name].faces]):
+            type_ = "symmetryPlane"
+        found[name] = Patch(title, type_, 0)
+    for pair in pairs:
+        ends = (pair.name, pair.partner, pair.motion), (pair.partner, pair.name, pair.motion.inverse())
+        for name, partner, motion in ends:
+            more = f"neighbourPatch  {word[partner]};", *_transform(motion)
+            found[name] = Patch(word[name], "cyclic", 0, more)
+    return [found[name]._replace(size=len(part.cells)) for name, part in parts.items()]
+
+
+def write_boundary(path: Path, patches: Sequence[Patch], start: int) -> None:
+    """Write names, types and face counts of the patches, whose faces begin at number `start`."""
+    text = f"{head('polyBoundaryMesh', 'boundary')}{len(patches)}\n(\n"
+    for patch in patches:
+        entries = "".join(f"        {entry}\n" for entry in patch.more)
+        text += f"    {patch.name}\n    {{\n        type            {patch.kind};\n{entries}"
+        text += f"        nFaces          {patch.size};\n        startFace       {start};\n    }}\n"
+        start += patch.size
+    path.write_text(f"{text})\n", encoding="ascii")
+
+
+def _is_flat(corners: Floats) -> bool:
+    """Say whether the normals of faces (k, 4, 3) are the same."""
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    length = np.sqrt((normal**2).sum(axis=1))
+    unit = normal / np.where(length > 0, length, 1.0)[:, None]
+    return bool(((unit - unit[0]) ** 2).sum(axis=1).max() <= _FLAT)
+
+
+def _transform(motion: Motion) -> tuple[str, ...]:
+    """Return how the faces of a cyclic patch come to its neighbour's."""
+    screw = screw_of(motion)
+    if screw.angle:
+        axis = "transform       rotational;", f"rotationAxis    {_vector(screw.axis)};"
+        return *axis, f"rotationCentre  {_vector(screw.centre)};"
+    return "transform       translational;", f"separationVector {_vector(screw.shift)};"
+
+
+def _vector(values: Floats) -> str:
+    return "(" + " ".join(f"{value + 0.0:.17g}" for value in values) + ")"

@@ -1,0 +1,63 @@
+"""OpenFOAM's mesh of a case: ``constant/polyMesh`` of a grid of volumes, or of a plane one, one cell thick.
+
+The file named, ``case/case.foam``, is the empty one by which ParaView opens a case; the mesh goes into the
+folder around it. Where ``system`` lacks one of the three dictionaries without which no tool of OpenFOAM
+looks at a mesh, a bare one is written. https://doc.openfoam.com/2312/tools/processing/mesh/polyMesh/
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from meshonet.formats.format import Options, only_one
+from meshonet.formats.mesh.collapsed import with_collapsed
+from meshonet.formats.mesh.outer_parts import outer_parts
+from meshonet.formats.mesh.unstructured import node_numbers, points_of
+from meshonet.formats.openfoam.faces import all_faces, without_collapsed
+from meshonet.formats.openfoam.files import head, write_mesh
+from meshonet.formats.openfoam.patches import patches_of, with_empty_planes, write_boundary
+from meshonet.formats.output import whole_file, whole_folder
+from meshonet.geometry.blocks.extrude import extruded
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.shapes.spatial_shape import in_space
+
+_DICTIONARIES = {
+    "controlDict": "startFrom latestTime;\nstartTime 0;\nstopAt endTime;\nendTime 1000;\ndeltaT 1;\n"
+    "writeControl timeStep;\nwriteInterval 1000;\n",
+    "fvSchemes": "gradSchemes {}\ndivSchemes {}\nlaplacianSchemes {}\n",
+    "fvSolution": "",
+}
+_SMALL = 1 << 16
+"""Cells up to which a mesh is text, which people can read, unless options say otherwise."""
+
+
+def write_grids(path: Path, grids: Iterable[Grid], *, options: Options = frozenset()) -> None:
+    """Write the one grid of `grids` around `path`, which is left empty.
+
+    A plane one, or one that is one cell thick between symmetry planes, has these as a patch ``empty``. Cells
+    at sides that are a line or a point are prisms and pyramids. The mesh that is there is replaced when the
+    new one is whole.
+    """
+    grid = only_one(grids, "a case")
+    if not in_space(grid):
+        grid = extruded(grid, (0.0, 1.0))
+    apart = node_numbers(grid)
+    numbers = with_collapsed(grid, apart)
+    points = points_of(grid, numbers)
+    parts, pairs = outer_parts(grid, numbers)
+    parts = with_empty_planes(grid, parts)
+    faces = all_faces(grid, numbers, parts)
+    if numbers is not apart:
+        faces, parts = without_collapsed(faces, parts)
+    patches = patches_of(grid, parts, pairs, points)
+    binary = "binary" in options or (len(points) > _SMALL and "ascii" not in options)
+    for name in ("constant", "system"):
+        (path.parent / name).mkdir(exist_ok=True)
+    with whole_folder(path.parent / "constant" / "polyMesh") as folder:
+        write_mesh(folder, points, faces, binary=binary)
+        write_boundary(folder / "boundary", patches, len(faces.neighbour))
+    for name, entries in _DICTIONARIES.items():
+        dictionary = path.parent / "system" / name
+        if not dictionary.exists():
+            with whole_file(str(dictionary)) as part:
+                part.write_text(head("dictionary", name, place="system") + entries, encoding="ascii")
+    path.write_bytes(b"")

@@ -1,0 +1,166 @@
+"""Planar blocks repeated along z to blocks of volume, and the plane that such blocks are copies of.
+
+::
+
+      +--------+      top of each block: the patch front, at the last height
+     /   /   / |
+    +--------+ |      patches and connections of the plane run over all heights
+    |  xi    | +
+    |  eta   |/       bottom of each block: the patch back, at the first height
+    +--------+
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import count
+from typing import TypeAlias
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.across import planar
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection, Motion
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Kind, Patch, kind_of
+from meshonet.geometry.errors import InputError
+
+End: TypeAlias = tuple[str, Kind]
+"""Name and kind of the patch that a plane becomes."""
+BACK, FRONT = "back", "front"
+"""Names of the planes at the first and at the last height, symmetry planes."""
+
+
+def extruded(grid: Grid, heights: Sequence[float]) -> Grid:
+    """Return planar `grid` with its nodes at each z of `heights`, two or more that increase, in its unit.
+
+    Patches and connections run over all heights; a body that is a wall by its place is one by its kind then.
+    Bottoms are the patch `BACK` and tops `FRONT`, symmetry planes, so that a patch of such a name gets
+    another one.
+
+    Raises InputError: blocks that are not planar, fewer than two heights, heights that do not increase.
+    """
+    planar(grid)
+    z = np.asarray(heights, dtype=np.float64)
+    if len(z) < 2 or not (np.diff(z) > 0).all():
+        raise InputError(f"heights {z.tolist()} do not increase", "give two or more that do")
+    nodes = [_repeated(block.nodes, z) for block in grid.blocks]
+    return thickened(grid, nodes, ((BACK, "symmetry"), (FRONT, "symmetry")))
+
+
+def thickened(grid: Grid, nodes: Sequence[Floats], ends: tuple[End, End] | None) -> Grid:
+    """Return a planar grid as blocks of volume, given the nodes (ni, nj, nk, 3) of each.
+
+    Patches and connections run over all planes. `ends` are name and kind of the patches at the first and at
+    the last plane; None connects the last plane of each block with its first. The nodes are finite.
+
+    Raises InputError: blocks that are not planar; nodes that part where blocks are connected.
+    """
+    planar(grid)
+    planes = nodes[0].shape[2]
+    connections = [_thick(each, planes) for each in grid.connections]
+    patches = _renamed(_with_walls(grid), [name for name, _ in ends or ()])
+    for number, block in enumerate(grid.blocks):
+        i, j = (n - 1 for n in block.counts)
+        if ends is None:
+            whole = ((0, i), (0, j))
+            connections.append(Connection(number, "bottom", whole, number, "top", whole, (1, 2)))
+            continue
+        for side, (name, kind) in zip(("bottom", "top"), ends, strict=True):
+            patches.append(Patch(name, side, 0, i, (0, j), number, kind))  # type: ignore[arg-type]
+    blocks = tuple(Block(each, finite=True) for each in nodes)
+    return replace(grid, blocks=blocks, patches=tuple(patches), connections=tuple(connections))
+
+
+def plane_of_extruded(grid: Grid) -> Grid | None:
+    """Return the planar grid that `extruded` makes this one of; None of any other."""
+    if any(block.nodes.shape[3:] != (3,) for block in grid.blocks):
+        return None
+    z = grid.blocks[0].nodes[0, 0, :, 2]
+    ends = {(p.block, p.side): p for p in grid.patches if p.side in ("bottom", "top")}
+    for number, block in enumerate(grid.blocks):
+        back, front = ends.get((number, "bottom")), ends.get((number, "top"))
+        if not back or not front or (back.name, front.name) != (BACK, FRONT):
+            return None
+        if block.counts[2] != len(z) or not np.array_equal(
+            block.nodes[..., 2], np.broadcast_to(z, block.counts)
+        ):
+            return None
+        if (block.nodes[..., :2] != block.nodes[:, :, :1, :2]).any():
+            return None
+    whole = (0, len(z) - 1)
+    if any(each.range[1:] != (whole,) or each.orientation[1:] != (2,) for each in grid.connections):
+        return None
+    blocks = tuple(Block(block.nodes[:, :, 0, :2], finite=True) for block in grid.blocks)
+    patches = [replace(p, across=None) for p in grid.patches if p.side not in ("bottom", "top")]
+    connections = tuple(_flat(each) for each in grid.connections)
+    flat = replace(grid, blocks=blocks, patches=(), connections=connections)
+    if flat.around_body:
+        patches = [_by_name(p) if p.side == "south" and p.kind == "wall" else p for p in patches]
+        patches = [p for p in patches if p != Patch("south", "south", p.start, p.stop)]
+    return replace(flat, patches=tuple(patches))
+
+
+def _repeated(plane: Floats, z: Floats) -> Floats:
+    """Return nodes (ni, nj, nk, 3) of a plane's (ni, nj, 2), in planar layout."""
+    ni, nj = plane.shape[:2]
+    nodes = np.empty((3, ni, nj, len(z)))
+    nodes[:2] = np.moveaxis(plane, -1, 0)[..., None]
+    nodes[2] = z
+    return np.moveaxis(nodes, 0, -1)
+
+
+def _with_walls(grid: Grid) -> list[Patch]:
+    """Return the patches of a planar grid, those of a body walls, which in space nothing else would say."""
+    if not grid.around_body:
+        return list(grid.patches)
+    body = [p for p in grid.outer_patches() if p.side == "south"]
+    walls = {p.name for p in body if p.kind in ("other", "interface")}
+    patches = [replace(p, kind="wall") if p.side == "south" and p.name in walls else p for p in grid.patches]
+    named = {p.name for p in grid.patches}
+    return [*patches, *(replace(p, kind="wall") for p in body if p.name not in named)]
+
+
+def _by_name(patch: Patch) -> Patch:
+    return replace(patch, kind=kind_of(patch.name))
+
+
+def _renamed(patches: Sequence[Patch], ends: Sequence[str]) -> list[Patch]:
+    """Return `patches`, none of them called as the planes at the `ends` are."""
+    taken = {*ends, *(patch.name for patch in patches)}
+    new = {name: next(word for k in count(2) if (word := f"{name}-{k}") not in taken) for name in ends}
+    return [replace(patch, name=new.get(patch.name, patch.name)) for patch in patches]
+
+
+def _thick(each: Connection, planes: int) -> Connection:
+    """Return a connection of planar blocks over all planes."""
+    whole = (0, planes - 1)
+    ranges = (*each.range, whole), (*each.donor_range, whole)
+    motion = each.transform and Motion(_longer(each.transform.shift), _with_axis(each.transform.turn))
+    return replace(
+        each, range=ranges[0], donor_range=ranges[1], orientation=(*each.orientation, 2), transform=motion
+    )
+
+
+def _longer(shift: tuple[float, ...]) -> tuple[float, ...]:
+    return (*shift, 0.0) if shift else ()
+
+
+def _with_axis(turn: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
+    return (*((*row, 0.0) for row in turn), (0.0, 0.0, 1.0)) if turn else ()
+
+
+def _flat(each: Connection) -> Connection:
+    """Return a connection of extruded blocks in their plane."""
+    motion = each.transform
+    if motion is not None:
+        motion = Motion(motion.shift[:2], tuple(row[:2] for row in motion.turn[:2]))
+    return replace(
+        each,
+        range=each.range[:1],
+        donor_range=each.donor_range[:1],
+        orientation=each.orientation[:1],
+        transform=motion,
+    )

@@ -1,0 +1,35 @@
+"""On which side of each other the directions of a volume block run, by the sign of its volume."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+
+
+def signed_volume(coordinates: Sequence[Floats]) -> float:
+    """Return the volume of a block of x, y, z, each (ni, nj, nk); it is negative where i, j, k are left-handed.
+
+    By the divergence theorem, V = 1/3 ∮ r·n dA, each quadrilateral of the six faces as its centre and half
+    the cross product of its diagonals: exact but for the curvature of the faces' cells. Unit L³ of nodes in
+    L.
+    """
+    centre = [float(values[0, 0, 0]) for values in coordinates]
+    total = 0.0
+    for axis in range(3):
+        for end, sign in ((0, -1.0), (-1, 1.0)):
+            at = (slice(None),) * axis + (end,)
+            face = np.stack(
+                [values[at].astype(np.float64) - x for values, x in zip(coordinates, centre, strict=True)]
+            )
+            # the directions of a face follow its own: (j, k), (k, i), (i, j)
+            total += sign * _through(face if axis != 1 else face.swapaxes(1, 2))
+    return total / 3.0
+
+
+def _through(face: Floats) -> float:
+    """Return ∮ r·n dA over a face (3, n, m) of nodes."""
+    a, b, c, d = face[:, :-1, :-1], face[:, 1:, :-1], face[:, 1:, 1:], face[:, :-1, 1:]
+    (x, y, z), (u, v, w) = c - a, d - b
+    area = 0.5 * np.stack([y * w - z * v, z * u - x * w, x * v - y * u])
+    return float((0.25 * (a + b + c + d) * area).sum())

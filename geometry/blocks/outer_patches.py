@@ -1,0 +1,90 @@
+"""The outer boundary of blocks, cell by cell: which patch has each of them, and stretches of these.
+
+::
+
+    side of a block       owners of its cells         patches that cover it
+    +--+--+--+--+--+
+    |     |joined  |      0  0 -2 -2 -2     0 0 . . .     the first from cell 0 to 2 and 0 to 1,
+    |wall +--+--+--+      0  0 -1 -1 -1     0 0 1 1 1     then one called by its side
+    +--+--+--+--+--+
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import SIDES, Side
+from meshonet.geometry.blocks.block import PLACES, Range, face_counts
+from meshonet.geometry.blocks.patches import Patch
+
+JOINED, UNNAMED = -2, -1
+"""Owners of cells that are joined to others, and of those that no patch has."""
+
+
+def sides_of(counts: tuple[int, ...]) -> tuple[Side, ...]:
+    """Return the sides of a block with `counts` nodes, in the order in which its patches are listed."""
+    return SIDES if len(counts) == 2 else (*SIDES, *tuple(PLACES)[4:])
+
+
+def owners_of(
+    patches: Sequence[Patch], counts: tuple[int, ...], inside: Iterable[tuple[Side, Range]], side: Side
+) -> NDArray[np.intp]:
+    """Return which of a block's `patches` has each cell (n,) or (n, m) at a side; where several, the last.
+
+    `inside` are sides and ranges that are connected, whose cells are `JOINED`.
+    """
+    nodes = face_counts(counts, side)
+    owners = np.full([n - 1 for n in nodes], UNNAMED, dtype=np.intp)
+    for number, patch in enumerate(patches):
+        if patch.side == side:
+            owners[_cells(patch.range(nodes))] = number
+    for connected, span in inside:
+        if connected == side:
+            owners[_cells(span)] = JOINED
+    return owners
+
+
+def outer_patches(
+    patches: Sequence[Patch],
+    counts: tuple[int, ...],
+    inside: Iterable[tuple[Side, Range]],
+    block: int = 0,
+) -> list[Patch]:
+    """Return the outer boundary of block number `block`, each cell at it in one of its `patches`.
+
+    Where patches overlap the later one counts; cells without one are called by their side. `counts` are the
+    nodes along each direction, `inside` the sides and ranges that are connected.
+    """
+    own = [patch for patch in patches if patch.block == block]
+    inside = list(inside)
+    outer: list[Patch] = []
+    for side in sides_of(counts):
+        for number, (first, *rest) in rectangles(owners_of(own, counts, inside, side)):
+            patch = own[number] if number >= 0 else Patch(side, side, 0, 1, block=block)
+            outer.append(replace(patch, start=first[0], stop=first[1], across=rest[0] if rest else None))
+    return outer
+
+
+def rectangles(owners: NDArray[np.intp]) -> Iterator[tuple[int, Range]]:
+    """Yield owner and nodes of rectangles that cover the cells (n,) or (n, m), but for joined ones."""
+    cells = owners.reshape(len(owners), -1)
+    left = cells != JOINED
+    while left.any():
+        i, j = np.unravel_index(int(np.argmax(left)), left.shape)
+        same = left & (cells == cells[i, j])
+        width = _run(same[i, j:])
+        height = _run(same[i:, j : j + width].all(axis=1))
+        left[i : i + height, j : j + width] = False
+        span: Range = ((int(i), int(i) + height),)
+        yield int(cells[i, j]), span if owners.ndim == 1 else (*span, (int(j), int(j) + width))
+
+
+def _run(flags: NDArray[np.bool_]) -> int:
+    """Return how many `flags` are set before the first that is not."""
+    return len(flags) if flags.all() else int(np.argmin(flags))
+
+
+def _cells(span: Range) -> tuple[slice, ...]:
+    return tuple(slice(first, last) for first, last in span)

@@ -1,0 +1,64 @@
+"""A rigid motion in space as the ways in which solvers want periodic sides to be described."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.connection import Motion
+
+_NEARLY_HALF = 3.1
+"""Angles beyond which the part that is not symmetric is too small to have a direction."""
+
+
+class Screw(NamedTuple):
+    """A turn by `angle`, in radians, about `axis` (3,), of length 1, through `centre` (3,), then `shift` (3,).
+
+    Without a turn the angle is 0, the axis z and the centre the origin; with one, the shift is along the axis
+    and the centre is the point of the axis nearest to the origin. `angles` (3,) are those of the turn about
+    x, then y, then z.
+    """
+
+    angle: float
+    axis: Floats
+    centre: Floats
+    shift: Floats
+    angles: Floats
+
+
+def screw_of(motion: Motion) -> Screw:
+    """Return a motion, of the plane z = 0 or of space, as a screw.
+
+    Its axis points to the positive side of its largest coordinate, and its angle may be negative.
+
+    Chasles' theorem; the axis is the part of the rotation that is not symmetric, or at half a turn the
+    longest column of R + 1.
+    """
+    turn, shift = np.eye(3), np.zeros(3)
+    shift[: len(motion.shift)] = motion.shift
+    if motion.turn:
+        turn[: len(motion.turn), : len(motion.turn)] = motion.turn
+    angles = np.array(
+        [np.arctan2(turn[2, 1], turn[2, 2]), -np.arcsin(np.clip(turn[2, 0], -1.0, 1.0)),
+         np.arctan2(turn[1, 0], turn[0, 0])]
+    )  # fmt: skip
+    if len(motion.turn) < 3:
+        angle, centre = motion.rotation
+        rest = np.zeros(3) if angle else shift
+        return Screw(angle, np.array([0.0, 0.0, 1.0]), np.append(centre, 0.0), rest, angles)
+    twice = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+    angle = float(np.arctan2(np.sqrt(twice @ twice), np.trace(turn) - 1.0))
+    if not angle:
+        return Screw(0.0, np.array([0.0, 0.0, 1.0]), np.zeros(3), shift, angles)
+    axis = twice
+    if angle > _NEARLY_HALF:
+        columns = turn + np.eye(3)
+        axis = columns[:, np.argmax((columns**2).sum(axis=0))]
+        axis = -axis if axis @ twice < 0 else axis
+    largest = axis[np.argmax(np.abs(axis))]
+    axis, angle = axis / np.copysign(np.sqrt(axis @ axis), largest), float(np.copysign(angle, largest))
+    along = (shift @ axis) * axis
+    centre = np.linalg.solve(np.eye(3) - turn + np.outer(axis, axis), shift - along)
+    return Screw(angle, axis, centre, along, angles)

@@ -1,0 +1,205 @@
+"""The boundary of a block of volume: six faces that share twelve edges.
+
+::
+
+    west, east (nj, nk)      i = 0, ni-1          a face runs along the directions of the block
+    south, north (ni, nk)    j = 0, nj-1          that it is no end of, in their order
+    bottom, top (ni, nj)     k = 0, nk-1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES, Block, face_of
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch, sides_of
+from meshonet.geometry.curves.cubic import cubic_spline
+from meshonet.geometry.errors import InputError
+
+FACES: tuple[Side, ...] = tuple(PLACES)
+"""West, east, south, north, bottom, top."""
+
+
+@dataclass(frozen=True, eq=False)
+class SixFaces:
+    """Nodes of the faces of a volume, in any unit of length; validates itself.
+
+    Parameters
+    ----------
+    west, east : (nj, nk, 3)
+    south, north : (ni, nk, 3)
+    bottom, top : (ni, nj, 3)
+    name : of the shape.
+    patches : the names of the sides, of `meshonet.geometry.blocks.grid.Grid`.
+    notes : what was done to the nodes, sentences for users.
+
+    Raises InputError: counts that do not go together; nodes of a shared edge that differ in any bit.
+    """
+
+    west: Floats
+    east: Floats
+    south: Floats
+    north: Floats
+    bottom: Floats
+    top: Floats
+    name: str = ""
+    patches: tuple[Patch, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        for side in FACES:
+            object.__setattr__(self, side, Block(getattr(self, side)).nodes)
+        for side, second in edges():
+            own, donor = self.edge(side, second), self.edge(second, side)
+            if len(own) != len(donor):
+                problem = f"{len(own)} nodes on {side} and {len(donor)} on {second} along their common edge"
+                raise InputError(problem, "give both as many")
+            if not np.array_equal(own, donor):
+                at = int(np.argmax((own != donor).any(axis=-1)))
+                gap = np.linalg.norm(own - donor, axis=-1).max()
+                problem = f"{side} and {second} are {gap:.3g} apart along their common edge"
+                raise InputError(problem, "give both the same nodes", place=place_of(own[at]))
+
+    @classmethod
+    def of_block(
+        cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = (), notes: tuple[str, ...] = ()
+    ) -> SixFaces:
+        """Return the outer faces of nodes (ni, nj, nk, 3)."""
+        west, east, south, north, bottom, top = (face_of(nodes, side) for side in FACES)
+        return cls(west, east, south, north, bottom, top, name, patches, notes)
+
+    @property
+    def counts(self) -> tuple[int, int, int]:
+        """Nodes along each direction."""
+        return self.bottom.shape[0], self.bottom.shape[1], self.west.shape[1]
+
+    @property
+    def faces(self) -> tuple[Floats, ...]:
+        """The six, in the order of `FACES`."""
+        return self.west, self.east, self.south, self.north, self.bottom, self.top
+
+    def edge(self, side: Side, second: Side) -> Floats:
+        """Return the nodes (n, 3) of a face where it meets a second one, a view."""
+        axis, end = PLACES[second]
+        own = PLACES[side][0]
+        along = axis if axis < own else axis - 1
+        return np.asarray(getattr(self, side)[(slice(None),) * along + (end,)])
+
+    @cached_property
+    def size(self) -> float:
+        """The diagonal of the box around all nodes."""
+        low = np.min([face.min(axis=(0, 1)) for face in self.faces], axis=0)
+        high = np.max([face.max(axis=(0, 1)) for face in self.faces], axis=0)
+        return float(np.linalg.norm(high - low))
+
+    def edges_along(self, axis: int) -> list[Floats]:
+        """Return the four edges (n, 3) along a direction.
+
+        They are at the (low, low), (high, low), (low, high) and (high, high) ends of the other two.
+        """
+        first, second = (
+            [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
+        )
+        return [self.edge(side, other) for other in second for side in first]
+
+    def grid(self, nodes: Floats, provenance: dict[str, object] | None = None) -> Grid:
+        """Return the grid of nodes (ni, nj, nk, 3) inside, with the patches of the faces."""
+        block = Block(nodes, finite=True)
+        patches = self.patches or sides_of(block.counts)
+        return Grid((block,), patches, (), self.name, provenance or {})
+
+    def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
+        """Return faces with other counts, by cubic splines through the nodes, spaced by the same laws.
+
+        Raises InputError: fewer than 2 nodes along a direction.
+        """
+        if min(counts) < 2:
+            raise InputError(f"{counts} nodes of a volume", "use at least 2 a direction", parameter="res")
+        if counts == self.counts:
+            return self
+        knots = [np.linspace(0.0, 1.0, n) for n in self.counts]
+        return replace(
+            self.at(knots, [np.linspace(0.0, 1.0, n) for n in counts]), patches=self._scaled(counts)
+        )
+
+    def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
+        """Return faces at other parameters: nodes are at `knots` along each direction, wanted at `places`.
+
+        Both rise from 0 to 1; corners are kept, and what is at an end of `places` stays on its edge.
+        """
+        made: dict[Side, Floats] = {}
+        for side in FACES:
+            first, second = (axis for axis in range(3) if axis != PLACES[side][0])
+            rows = cubic_spline(getattr(self, side), knots[first], places[first])
+            made[side] = np.moveaxis(
+                cubic_spline(np.moveaxis(rows, 1, 0), knots[second], places[second]), 0, 1
+            )
+        share_edges(made)
+        west, east, south, north, bottom, top = (made[side] for side in FACES)
+        return SixFaces(west, east, south, north, bottom, top, self.name, (), self.notes)
+
+    def _scaled(self, counts: tuple[int, int, int]) -> tuple[Patch, ...]:
+        """Return the patches where they cover whole sides; none where they do not."""
+        whole = len({patch.side for patch in self.patches}) == len(self.patches)
+        if not whole:
+            return ()
+        sides = {patch.side: patch for patch in sides_of(counts)}
+        return tuple(
+            replace(patch, start=0, stop=sides[patch.side].stop, across=None) for patch in self.patches
+        )
+
+
+def edges() -> Iterator[tuple[Side, Side]]:
+    """Yield the pairs of faces that share an edge."""
+    for side, second in combinations(FACES, 2):
+        if PLACES[side][0] != PLACES[second][0]:
+            yield side, second
+
+
+def share_edges(faces: dict[Side, Floats]) -> None:
+    """Give nodes of shared edges the same bits, those of the face that comes first."""
+    for side in FACES:
+        faces[side] = np.array(faces[side])
+    for side, second in edges():
+        own, axis = PLACES[second][0], PLACES[side][0]
+        source = face_of(faces[side], _local(side, own, PLACES[second][1]))
+        face_of(faces[second], _local(second, axis, PLACES[side][1]))[...] = source
+
+
+def _local(side: Side, axis: int, end: int) -> Side:
+    """Return the side of a face, itself a patch of two directions, at an end of a direction of the block."""
+    along = axis if axis < PLACES[side][0] else axis - 1
+    return next(name for name, place in PLACES.items() if place == (along, end))
+
+
+def place_of(node: Floats) -> str:
+    """Return the text ``x=0.1, y=0.2, z=0.3`` of a node (3,)."""
+    return ", ".join(f"{name}={value:.6g}" for name, value in zip("xyz", node, strict=True))
+
+
+def six_faces(grid: Grid) -> SixFaces:
+    """Return the boundary of a volume: the outer faces of one block, or six patches in any order.
+
+    Patches are matched by position; where shared edges differ by no more than a millionth of the size, nodes
+    of the second become those of the first, and a note says so.
+
+    Raises InputError: neither of both; patches that do not close, with the edge and its gap.
+    """
+    volumes = [block for block in grid.blocks if len(block.counts) == 3]
+    if len(grid.blocks) == 1 and volumes:
+        return SixFaces.of_block(volumes[0].nodes, name=grid.name, patches=grid.patches)
+    if volumes or len(grid.blocks) != 6:
+        what = f"{len(grid.blocks)} {'blocks' if volumes else 'surface patches'}"
+        raise InputError(
+            f"{what} where the six faces of a volume are needed", "give six patches, or one block"
+        )
+    from meshonet.geometry.blocks.six_patches import matched_patches
+
+    return matched_patches(grid)

@@ -1,0 +1,166 @@
+"""Six surface patches in any order and orientation, put together to the faces of a volume by position."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.six_faces import FACES, SixFaces, edges, place_of, share_edges
+from meshonet.geometry.errors import InputError
+from meshonet.geometry.polygon.corners import Indices
+
+TOLERANCE = 1e-6
+"""How far apart nodes of a shared edge may be, in the diagonal of the box around all."""
+_NEAR = 0.2  # how far apart corners that belong together may be, in the shortest side of a patch
+
+
+def matched_patches(grid: Grid) -> SixFaces:
+    """Return the faces of the volume that the six patches of `grid` close, each (n, m, 3).
+
+    Patches in the order west, east, south, north, bottom, top keep their places and directions; of others the
+    first becomes the bottom. The volume is right-handed.
+
+    Raises InputError: corners that do not meet in threes; edges of other counts, or farther apart than
+    `TOLERANCE`, with the patches and the place.
+    """
+    patches = [block.nodes for block in grid.blocks]
+    vertices = _vertices(patches)
+    first = 4 if all(_opposite(vertices, k) == k + 1 for k in (0, 2, 4)) else 0
+    faces, order = _arranged(patches, vertices, first, turned=False)
+    if _volume(faces) < 0:
+        faces, order = _arranged(patches, vertices, first, turned=True)
+    notes = _closed(faces, order)
+    west, east, south, north, bottom, top = (faces[side] for side in FACES)
+    return SixFaces(west, east, south, north, bottom, top, grid.name, (), notes)
+
+
+def _vertices(patches: list[Floats]) -> Indices:
+    """Return the number of the vertex, 0 to 7, at each corner (6, 2, 2) of the patches.
+
+    Raises InputError: corners do not meet in threes.
+    """
+    corners = np.array([patch[:: len(patch) - 1, :: patch.shape[1] - 1] for patch in patches])
+    shortest = min(_shortest(four.reshape(4, 3)) for four in corners)
+    points = corners.reshape(24, 3)
+    apart = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    label = (apart <= _NEAR * shortest).argmax(axis=1)
+    meeting = np.bincount(label, minlength=24)
+    wrong = np.flatnonzero(meeting[label] != 3)
+    if len(wrong):
+        at = int(wrong[0])
+        problem = f"{meeting[label[at]]} patches meet in this corner of patch {at // 4} where three have to"
+        remedy = "give the six faces of one volume, with all their corners"
+        raise InputError(problem, remedy, place=place_of(points[at]))
+    return np.searchsorted(np.flatnonzero(meeting), label).reshape(6, 2, 2)
+
+
+def _shortest(points: Floats) -> float:
+    """Return the least distance of different points of (4, 3)."""
+    first, second = np.triu_indices(4, 1)
+    return float(np.linalg.norm(points[first] - points[second], axis=1).min())
+
+
+def _opposite(vertices: Indices, patch: int) -> int:
+    """Return the patch without a vertex of `patch`; -1 if there is none."""
+    apart = [k for k in range(6) if not np.isin(vertices[k], vertices[patch]).any()]
+    return apart[0] if len(apart) == 1 else -1
+
+
+def _arranged(
+    patches: list[Floats], vertices: Indices, first: int, *, turned: bool
+) -> tuple[dict[Side, Floats], dict[Side, int]]:
+    """Return the faces with patch `first` as the bottom, its directions i and j, or `turned` j and i.
+
+    Also which patch each is. Raises InputError: the patches share vertices as no volume's do.
+    """
+    bottom = vertices[first].T if turned else vertices[first]
+    lattice = np.empty((2, 2, 2), dtype=np.intp)
+    lattice[:, :, 0] = bottom
+    for a, b in product(range(2), range(2)):
+        lattice[a, b, 1] = _above(vertices, first, int(bottom[a, b]))
+    faces: dict[Side, Floats] = {}
+    order: dict[Side, int] = {}
+    for side, (axis, end) in PLACES.items():
+        wanted = np.take(lattice, end, axis=axis)
+        fits = [
+            (number, nodes)
+            for number in range(6)
+            for nodes, corners in _turns(patches[number], vertices[number])
+            if np.array_equal(corners, wanted)
+        ]
+        if len(fits) != 1:
+            raise InputError(f"{len(fits)} of the patches fit as {side}", "give the six faces of one volume")
+        order[side], faces[side] = fits[0]
+    return faces, order
+
+
+def _above(vertices: Indices, first: int, vertex: int) -> int:
+    """Return the vertex that an edge joins to one of patch `first`, and that is not of that patch."""
+    joined = set()
+    for corners in np.delete(vertices, first, axis=0):
+        for a, b in np.argwhere(corners == vertex):
+            joined |= {int(corners[1 - a, b]), int(corners[a, 1 - b])}
+    above = joined - set(vertices[first].ravel().tolist())
+    if len(above) != 1:
+        raise InputError("the six patches are not the faces of a volume", "check which edges they share")
+    return above.pop()
+
+
+def _turns(nodes: Floats, corners: Indices) -> Iterator[tuple[Floats, NDArray[np.intp]]]:
+    """Yield a patch and its corners in all eight orientations."""
+    for swapped, a, b in product((False, True), (1, -1), (1, -1)):
+        patch, four = (nodes.swapaxes(0, 1), corners.T) if swapped else (nodes, corners)
+        yield patch[::a, ::b], four[::a, ::b]
+
+
+def _volume(faces: dict[Side, Floats]) -> float:
+    """Return the volume inside: negative where the directions are left-handed."""
+    total, centre = 0.0, np.mean([face.mean(axis=(0, 1)) for face in faces.values()], axis=0)
+    for side, (axis, end) in PLACES.items():
+        x = faces[side] - centre
+        first, second = x[1:, 1:] - x[:-1, :-1], x[:-1, 1:] - x[1:, :-1]
+        outwards = (-1.0 if end == 0 else 1.0) * (-1.0 if axis == 1 else 1.0)
+        middle = 0.25 * (x[1:, 1:] + x[:-1, :-1] + x[:-1, 1:] + x[1:, :-1])
+        total += outwards * float((middle * np.cross(first, second)).sum()) / 6.0
+    return total
+
+
+def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...]:
+    """Make shared edges equal, in place; return a note if that moved nodes.
+
+    Raises InputError: other counts, or a gap.
+    """
+    size = np.linalg.norm(np.ptp(np.concatenate([face.reshape(-1, 3) for face in faces.values()]), axis=0))
+    widest, where = 0.0, ""
+    for side, second in edges():
+        own, donor = (_edge(faces, *pair) for pair in ((side, second), (second, side)))
+        pair = f"patches {order[side]} and {order[second]} ({side} and {second})"
+        if len(own) != len(donor):
+            problem = f"{pair} have {len(own)} and {len(donor)} nodes along their common edge"
+            raise InputError(problem, "give both as many", place=place_of(own[0]))
+        gaps = np.linalg.norm(own - donor, axis=1)
+        at = int(gaps.argmax())
+        if gaps[at] > TOLERANCE * size:
+            problem = f"{pair} are {gaps[at]:.3g} apart along their common edge, at node {at}"
+            raise InputError(problem, "close the gap", place=place_of(own[at]))
+        if gaps[at] > widest:
+            widest, where = float(gaps[at]), pair
+    share_edges(faces)
+    return (
+        (f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal",)
+        if widest
+        else ()
+    )
+
+
+def _edge(faces: dict[Side, Floats], side: Side, second: Side) -> Floats:
+    """Return the nodes (n, 3) of a face where it meets a second one."""
+    axis, end = PLACES[second]
+    along = axis if axis < PLACES[side][0] else axis - 1
+    return faces[side][(slice(None),) * along + (end,)]

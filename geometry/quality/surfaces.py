@@ -1,0 +1,114 @@
+r"""Metrics of surface patches in space: quadrilaterals, each measured against its own normal at its centre.
+
+::
+
+        d ----- c        the normal is (c + b - a - d) x (c + d - a - b), the crossing of the two families of
+       /       /         grid lines at the centre; the Jacobian of a corner is the part of u x v along it
+      a ----- b
+
+So a cell does not change with the side of the surface it is looked at from. A corner at which an edge has no
+length, at a pole for instance, is left out. Definitions: `meshonet.geometry.quality.metrics`.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.errors import BadCell
+from meshonet.geometry.quality.metrics import NAMES
+
+_TINY, _LARGE = 1e-300, 1e30
+
+
+def quad_metrics(nodes: Floats) -> Floats:
+    """Return the metrics of `NAMES` of the cells of `nodes` (ni, nj, 3), (metrics, ni-1, nj-1).
+
+    `area_ratio` is that with the cells beside in the patch.
+    """
+    ring = _ring(nodes)
+    edges = np.roll(ring, -1, axis=0) - ring
+    before = np.roll(edges, 1, axis=0)
+    lengths = _length(edges)
+    product = lengths * np.roll(lengths, 1, axis=0)
+    scaled = _scaled_jacobians(ring)
+    cosine = np.divide(-_dot(before, edges), product, out=np.zeros_like(product), where=product > 0)
+    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    widest = np.where(scaled.min(axis=0) < 0, 360.0 - angle.max(axis=0), angle.max(axis=0))
+    narrowest = angle.min(axis=0)
+    along, across = edges[0] - edges[2], edges[1] - edges[3]
+    normal = np.cross(along, across)
+    area = 0.25 * _length(normal)  # as Verdict's for a flat cell
+    size = np.maximum(_length(along) * _length(across), _TINY)
+    crossing = np.degrees(np.arccos(np.clip(np.abs(_dot(along, across)) / size, 0.0, 1.0)))
+    aspect = lengths.max(axis=0) * lengths.sum(axis=0) / np.maximum(4.0 * area, _TINY)
+    values = {
+        "max_angle": widest,
+        "min_angle": narrowest,
+        "skewness": np.maximum(widest - 90.0, 90.0 - narrowest) / 90.0,
+        "scaled_jacobian": scaled.min(axis=0),
+        "aspect_ratio": np.minimum(aspect, _LARGE),
+        "orthogonality": crossing,
+        "area_ratio": _area_ratios(area),
+    }
+    return np.stack([values[name] for name in NAMES])
+
+
+def folded_quads(nodes: Floats) -> NDArray[np.int64]:
+    """Return (n, 2) indices of the cells of `nodes` (ni, nj, 3) with a corner turned against the cell."""
+    return np.argwhere(~(_scaled_jacobians(_ring(nodes)).min(axis=0) > 0)).astype(np.int64)
+
+
+def worst_quads(nodes: Floats, limit: int = 10) -> list[BadCell]:
+    """Return the folded cells of `nodes` (ni, nj, 3), `limit` at the most, least scaled Jacobian first."""
+    ring = _ring(nodes)
+    least, centre = _scaled_jacobians(ring).min(axis=0), ring.mean(axis=0)
+    places = folded_quads(nodes)
+    order = np.argsort(least[tuple(places.T)], kind="stable")[:limit]
+    cells = []
+    for i, j in places[order].tolist():
+        x, y, z = centre[i, j].tolist()
+        cells.append(BadCell(i, j, x, y, z=z))
+    return cells
+
+
+def areas(rows: Floats) -> Floats:
+    """Return the areas (m-1, n-1) of the cells of a patch in the plane or in space, nodes (m, n, 2 or 3)."""
+    first, second = rows[1:, 1:] - rows[:-1, :-1], rows[1:, :-1] - rows[:-1, 1:]
+    if rows.shape[-1] == 2:
+        return np.asarray(0.5 * np.abs(first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]))
+    return 0.5 * _length(np.cross(first, second))
+
+
+def _ring(nodes: Floats) -> Floats:
+    return np.stack([nodes[:-1, :-1], nodes[1:, :-1], nodes[1:, 1:], nodes[:-1, 1:]])
+
+
+def _scaled_jacobians(ring: Floats) -> Floats:
+    """Return the scaled Jacobians (4, ni-1, nj-1) of the corners of cells, 1 where there is no corner."""
+    edges = np.roll(ring, -1, axis=0) - ring
+    before = np.roll(edges, 1, axis=0)
+    normal = np.cross(edges[0] - edges[2], edges[1] - edges[3])
+    normal /= np.maximum(_length(normal), _TINY)[..., None]
+    jacobian = _dot(np.cross(before, edges), normal)
+    size = _length(before) * _length(edges)
+    least = np.divide(jacobian, size, out=np.ones_like(size), where=size > 0)
+    least[:, (size > 0).sum(axis=0) == 0] = 0.0
+    return least
+
+
+def _area_ratios(area: Floats) -> Floats:
+    padded = np.pad(area, 1, mode="edge")
+    beside: Sequence[Floats] = padded[:-2, 1:-1], padded[2:, 1:-1], padded[1:-1, :-2], padded[1:-1, 2:]
+    high, low = np.maximum.reduce(beside), np.minimum.reduce(beside)
+    own = np.maximum(area, _TINY)
+    return np.minimum(np.maximum(high / own, area / np.maximum(low, _TINY)).clip(1.0), _LARGE)
+
+
+def _dot(u: Floats, v: Floats) -> Floats:
+    return np.asarray((u * v).sum(axis=-1))
+
+
+def _length(u: Floats) -> Floats:
+    return np.asarray(np.sqrt(_dot(u, u)))

@@ -1,0 +1,237 @@
+#include <stdlib.h>
+#include <string.h>
+
+#include "geometry/tally.h"
+#include "row.h"
+#include "team.h"
+
+/* Volumes of a row of cells: the integral of the Jacobian of the trilinear map. With its centre's derivatives a, b, c,
+   the bilinear ones d (of j and k), e (k, i), f (i, j), it is 8 [abc] + 8/3 ([afe] + [fbd] + [edc]). */
+MESHONET_CLONES
+static void row_volumes(const SolidLines *lines, ptrdiff_t cells, double *restrict volumes)
+{
+    const SolidLines own = *lines;
+    MESHONET_INDEPENDENT
+    for (ptrdiff_t k = 0; k < cells; k++) {
+        const SolidEdges s = solid_edges(&own, k);
+        const Vector a = plus(plus(s.u[0][0], s.u[0][1]), plus(s.u[1][0], s.u[1][1]));
+        const Vector b = plus(plus(s.v[0][0], s.v[0][1]), plus(s.v[1][0], s.v[1][1]));
+        const Vector c = plus(plus(s.w[0][0], s.w[0][1]), plus(s.w[1][0], s.w[1][1]));
+        const Vector d = less(plus(s.v[0][1], s.v[1][1]), plus(s.v[0][0], s.v[1][0]));
+        const Vector e = less(plus(s.u[0][1], s.u[1][1]), plus(s.u[0][0], s.u[1][0]));
+        const Vector f = less(plus(s.u[1][0], s.u[1][1]), plus(s.u[0][0], s.u[0][1]));
+        /* 1/8 of each of these is the derivative by a coordinate that runs from -1 to 1 */
+        const double sides = triple(a, f, e) + triple(f, b, d) + triple(e, d, c);
+        volumes[k] = magnitude(triple(a, b, c) + sides * (1.0 / 3.0)) * (1.0 / 64.0);
+    }
+}
+
+typedef struct {
+    const SolidNodes *nodes;
+    double *volumes;
+} Volumes;
+
+static void volumes_of_rows(void *data, Member member)
+{
+    const Volumes *to = data;
+    const SolidNodes *nodes = to->nodes;
+    const ptrdiff_t nj = nodes->nj - 1;
+    ptrdiff_t first, last;
+    team_share((nodes->ni - 1) * nj, member, &first, &last);
+    for (ptrdiff_t row = first; row < last; row++) {
+        const ptrdiff_t i = row / nj, j = row % nj;
+        const SolidLines lines = solid_lines(nodes, i, j);
+        row_volumes(&lines, nodes->nk - 1, to->volumes + ((i + 1) * (nodes->nj + 1) + j + 1) * (nodes->nk + 1) + 1);
+    }
+}
+
+void solids_volumes(const SolidNodes *nodes, int threads, double *volumes)
+{
+    Volumes to = {nodes, volumes};
+    team_run(threads, volumes_of_rows, &to);
+}
+
+static ptrdiff_t chunks_of_plane(const SolidNodes *nodes) { return (nodes->nj - 1 + SOLID_ROWS - 1) / SOLID_ROWS; }
+
+ptrdiff_t solids_chunks(const SolidNodes *nodes) { return (nodes->ni - 1) * chunks_of_plane(nodes); }
+
+/* Scratch of one thread: inverse lengths at the lines of both ends of a row in j, its metrics and a row more. */
+typedef struct {
+    double *memory;
+    SolidLengths lengths;
+    double *metrics;
+} Scratch;
+
+static int scratch_made(Scratch *scratch, ptrdiff_t nk)
+{
+    double *at = scratch->memory = malloc((9 + SOLID_METRICS) * (size_t)nk * sizeof(double));
+    for (int a = 0; at && a < 2; a++) {
+        scratch->lengths.u[a] = at + a * nk;
+        scratch->lengths.v[a] = at + (2 + a) * nk;
+        for (int b = 0; b < 2; b++)
+            scratch->lengths.w[a][b] = at + (4 + 2 * a + b) * nk;
+    }
+    scratch->metrics = at + 8 * nk;
+    return at != NULL;
+}
+
+/* Inverse lengths of the edges of a row at j + b that are along i and k. */
+static void lengths_at(const SolidLines *lines, int b, ptrdiff_t nk, SolidLengths *to)
+{
+    solid_inverse_lengths(lines->at[0][b], lines->at[1][b], nk, to->u[b]);
+    for (int a = 0; a < 2; a++) {
+        const double *const *line = lines->at[a][b];
+        const double *const next[3] = {line[0] + 1, line[1] + 1, line[2] + 1};
+        solid_inverse_lengths(line, next, nk - 1, to->w[a][b]);
+    }
+}
+
+/* What was at j + 1 is at j in the next row. */
+static void lengths_moved(SolidLengths *lengths)
+{
+    SolidLengths old = *lengths;
+    for (int b = 0; b < 2; b++) {
+        lengths->u[b] = old.u[1 - b];
+        lengths->w[0][b] = old.w[0][1 - b];
+        lengths->w[1][b] = old.w[1][1 - b];
+    }
+}
+
+static void lengths_along_j(const SolidLines *lines, ptrdiff_t nk, SolidLengths *to)
+{
+    for (int a = 0; a < 2; a++)
+        solid_inverse_lengths(lines->at[a][0], lines->at[a][1], nk, to->v[a]);
+}
+
+static void measured_row(const SolidNodes *nodes, const SolidLines *lines, const SolidLengths *lengths,
+                         const double *volumes, ptrdiff_t i, ptrdiff_t j, ptrdiff_t stride, double *out)
+{
+    const ptrdiff_t line = nodes->nk + 1, beside[2] = {(nodes->nj + 1) * line, line};
+    const double *own = volumes + (i + 1) * beside[0] + (j + 1) * beside[1] + 1;
+    solid_row(lines, lengths, own, beside, nodes->nk - 1, stride, out);
+}
+
+static int64_t reserved(int64_t *held, int64_t count)
+{
+#ifdef _WIN32
+    int64_t before = *held;
+    *held += count;
+    return before;
+#else
+    return __atomic_fetch_add(held, count, __ATOMIC_RELAXED);
+#endif
+}
+
+/* Rank a row of metric values against the brackets, and keep those inside. */
+static void catch_row(const SolidRun *run, ptrdiff_t chunk, ptrdiff_t metric, const double *row, ptrdiff_t cells,
+                      double *room)
+{
+    for (ptrdiff_t m = metric * run->n_brackets; m < (metric + 1) * run->n_brackets; m++) {
+        int64_t *counts = run->counts + 4 * (chunk * SOLID_METRICS * run->n_brackets + m);
+        const ptrdiff_t n = values_catch(row, cells, run->brackets[2 * m], run->brackets[2 * m + 1], counts, room, cells);
+        if (!n)
+            continue;
+        const int64_t at = reserved(run->held + m, n);
+        if (at + n <= run->room)
+            memcpy(run->caught + m * run->room + at, room, (size_t)n * sizeof(double));
+    }
+}
+
+static void place(const double *row, double value, ptrdiff_t i, ptrdiff_t j, int64_t *where, ptrdiff_t cells)
+{
+    ptrdiff_t k = 0;
+    while (k < cells - 1 && row[k] != value)
+        k++;
+    where[0] = i;
+    where[1] = j;
+    where[2] = k;
+}
+
+/* Take the metrics of row (i, j) into what is known of its chunk. */
+static void take_row(const SolidRun *run, ptrdiff_t chunk, int fresh, ptrdiff_t i, ptrdiff_t j, double *rows)
+{
+    const ptrdiff_t cells = run->nodes.nk - 1;
+    for (ptrdiff_t metric = 0; metric < SOLID_METRICS; metric++) {
+        const double *row = rows + metric * cells;
+        double low, high, sum, *summary = run->summary + 3 * (chunk * SOLID_METRICS + metric);
+        int64_t *where = run->where + 6 * (chunk * SOLID_METRICS + metric);
+        values_reduce(row, cells, &low, &high, &sum);
+        if (fresh || low < summary[0]) {
+            summary[0] = low;
+            place(row, low, i, j, where, cells);
+        }
+        if (fresh || high > summary[2]) {
+            summary[2] = high;
+            place(row, high, i, j, where + 3, cells);
+        }
+        summary[1] = fresh ? sum : summary[1] + sum;
+        catch_row(run, chunk, metric, row, cells, rows + SOLID_METRICS * cells);
+        if (metric >= run->keep && metric < run->keep + run->n_kept) {
+            const ptrdiff_t at = ((metric - run->keep) * (run->nodes.ni - 1) + i) * (run->nodes.nj - 1) + j;
+            memcpy(run->kept + at * cells, row, (size_t)cells * sizeof(double));
+        }
+    }
+}
+
+static void run_chunk(const SolidRun *run, ptrdiff_t chunk, Scratch *scratch)
+{
+    const SolidNodes *nodes = &run->nodes;
+    const ptrdiff_t a_plane = chunks_of_plane(nodes), i = chunk / a_plane, first = chunk % a_plane * SOLID_ROWS;
+    const ptrdiff_t last = first + SOLID_ROWS < nodes->nj - 1 ? first + SOLID_ROWS : nodes->nj - 1;
+    for (ptrdiff_t j = first; j < last; j++) {
+        const SolidLines lines = solid_lines(nodes, i, j);
+        if (j == first)
+            lengths_at(&lines, 0, nodes->nk, &scratch->lengths);
+        else
+            lengths_moved(&scratch->lengths);
+        lengths_at(&lines, 1, nodes->nk, &scratch->lengths);
+        lengths_along_j(&lines, nodes->nk, &scratch->lengths);
+        measured_row(nodes, &lines, &scratch->lengths, run->volumes, i, j, nodes->nk - 1, scratch->metrics);
+        take_row(run, chunk, j == first, i, j, scratch->metrics);
+    }
+}
+
+typedef struct {
+    const SolidRun *run;
+    int failed; /* by any thread */
+} Task;
+
+static void run_chunks(void *data, Member member)
+{
+    Task *task = data;
+    Scratch scratch;
+    ptrdiff_t first, last;
+    if (!scratch_made(&scratch, task->run->nodes.nk)) {
+        task->failed = 1;
+        return;
+    }
+    team_share(solids_chunks(&task->run->nodes), member, &first, &last);
+    for (ptrdiff_t chunk = first; chunk < last; chunk++)
+        run_chunk(task->run, chunk, &scratch);
+    free(scratch.memory);
+}
+
+int solids_run(const SolidRun *run, int threads)
+{
+    Task task = {run, 0};
+    team_run(threads, run_chunks, &task);
+    return !task.failed;
+}
+
+int solids_rows(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n, double *values)
+{
+    const ptrdiff_t cells = nodes->nk - 1;
+    Scratch scratch;
+    if (!scratch_made(&scratch, nodes->nk))
+        return 0;
+    for (ptrdiff_t m = 0; m < n; m++) {
+        const ptrdiff_t i = rows[2 * m], j = rows[2 * m + 1];
+        const SolidLines lines = solid_lines(nodes, i, j);
+        lengths_at(&lines, 0, nodes->nk, &scratch.lengths);
+        lengths_at(&lines, 1, nodes->nk, &scratch.lengths);
+        lengths_along_j(&lines, nodes->nk, &scratch.lengths);
+        measured_row(nodes, &lines, &scratch.lengths, volumes, i, j, n * cells, values + m * cells);
+    }
+    free(scratch.memory);
+    return 1;
+}

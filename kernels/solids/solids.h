@@ -1,0 +1,66 @@
+/* Measures of the cells of a block of hexahedra, whose nodes are the planes x, y and z (ni, nj, nk). */
+#pragma once
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+    SOLID_MAX_ANGLE,
+    SOLID_MIN_ANGLE,
+    SOLID_SKEWNESS,
+    SOLID_DEVIATION,
+    SOLID_SCALED_JACOBIAN,
+    SOLID_JACOBIAN_RATIO,
+    SOLID_BEZIER_RATIO,
+    SOLID_ASPECT_RATIO,
+    SOLID_ORTHOGONALITY,
+    SOLID_VOLUME_RATIO,
+    SOLID_METRICS
+};
+
+typedef struct {
+    const double *at[3]; /* x, y, z */
+    ptrdiff_t ni, nj, nk;
+} SolidNodes;
+
+/* Which test a cell has to pass: all of its eight corner Jacobians are positive, or all of the 27 Bezier coefficients
+   of its Jacobian. Corners at which an edge has no length are left out, as long as others are left. */
+enum { SOLID_CORNERS, SOLID_BEZIER };
+
+/* Rows of cells, (ni-1, nj-1): how many cells of each do not pass. */
+void solids_folded(const SolidNodes *nodes, int test, int threads, int64_t *counts);
+
+/* Indices (i, j, k) of the cells that do not pass, in order, of rows whose count is not 0. */
+void solids_places(const SolidNodes *nodes, int test, const int64_t *counts, int64_t *places);
+
+/* Magnitudes of the volumes of the cells, inside an array (ni+1, nj+1, nk+1) with a layer around. */
+void solids_volumes(const SolidNodes *nodes, int threads, double *volumes);
+
+/* Cells are measured in chunks of SOLID_ROWS rows (i, j ...) of one i, results kept by chunk. */
+#define SOLID_ROWS 32
+ptrdiff_t solids_chunks(const SolidNodes *nodes);
+
+/* What one run over all cells takes and leaves. */
+typedef struct {
+    SolidNodes nodes;
+    const double *volumes; /* those of solids_volumes; the layer around has the neighbours', or the cells' own again */
+    double *summary;       /* (chunks, metrics, 3): min, sum, max */
+    int64_t *where;        /* (chunks, metrics, 2, 3): cell (i, j, k) of the min and of the max, first in order */
+    ptrdiff_t keep, n_kept; /* the first of the metrics whose values are kept, and how many are */
+    double *kept;          /* (n_kept, ni-1, nj-1, nk-1) */
+    ptrdiff_t n_brackets, room;
+    const double *brackets; /* (metrics, n_brackets, 2): pairs of values */
+    int64_t *counts;        /* (chunks, metrics, n_brackets, 4), zeros before; see values_catch */
+    double *caught;         /* (metrics, n_brackets, room): values between the two, in no order */
+    int64_t *held;          /* (metrics, n_brackets), zeros before: how many those are, also beyond the room */
+} SolidRun;
+
+/* Returns 0 when there is no memory. */
+int solids_run(const SolidRun *run, int threads);
+
+/* All metrics of `n` rows of cells (i, j) into (metrics, n, nk-1). Returns 0 when there is no memory. */
+int solids_rows(const SolidNodes *nodes, const double *volumes, const int64_t *rows, ptrdiff_t n, double *values);
+
+/* Grid lines through the nodes (i, j, k): how their steps grow, the larger over the smaller, and by how many degrees
+   they bend. For each plane i, axis and of these two the greatest, -1 without nodes, and the sum, (ni, 3, 2, 2), and
+   the node of the greatest, (ni, 3, 2, 3). Returns 0 when there is no memory. */
+int solids_lines(const SolidNodes *nodes, int threads, double *summary, int64_t *where);

@@ -1,0 +1,33 @@
+"""Options of grids in space."""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from meshonet_cli.options.groups import IO, VOLUME, option_of
+
+_option = option_of(VOLUME)
+
+# fmt: off
+Threads = Annotated[int | None, option_of(IO)(
+    "--threads", metavar="N", min=1, max=64,
+    help="Threads that work on one large grid; the grid is the same for any number. [default: all cores, "
+    "divided among --jobs]",
+)]
+Layers = Annotated[int | None, _option(
+    "--layers", metavar="N", min=3,
+    help="Nodes along the lines of a volume marched from a surface, the wall's included. [default: what "
+    "a growth of 1.2 needs]",
+)]
+
+
+@dataclass(frozen=True)
+class VolumeOptions:
+    """How a volume is marched from a surface."""
+
+    layers: Layers = None
+    symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(
+        "--symmetry", metavar="x|y|z|none",
+        help="Open edges of the surface lie in a plane of symmetry across this axis. [default: edges in one "
+        "plane across an axis are in a plane of symmetry, others, and all with none, are free]",
+    )] = None
+# fmt: on

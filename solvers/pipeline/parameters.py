@@ -1,0 +1,47 @@
+"""Requests from the parameters of the public functions, whoever's they are."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, TypeAlias
+
+from meshonet.geometry.spacing.sampling import Sampling
+from meshonet.solvers.pipeline.request import GridRequest
+
+Counts: TypeAlias = int | tuple[int, int] | tuple[int, int, int]
+"""Nodes along every direction, or along each of them."""
+
+
+def grid_request(method: str = "best", *, res: Counts | None = None, **parameters: Any) -> GridRequest:
+    """Return the request with the parameters, of the sampling, the request or the method.
+
+    `res`: nodes along xi, eta and, of volumes, zeta; one number for all. `parameters`: fields of `Sampling`
+    and `GridRequest`,
+    settings of the method; None leaves a setting out. ``wall_spacing`` is another name of ``first_cell``.
+    Raises InputError: as `GridRequest`, or a parameter that the method does not have.
+
+    >>> request = grid_request("winslow", res=(80, 40), topology="o", tol=1e-8)
+    >>> request.sampling.ni, request.sampling.topology, request.settings
+    (80, 'o', {'tol': 1e-08})
+    """
+    if "wall_spacing" in parameters:
+        parameters["first_cell"] = parameters.pop("wall_spacing")
+    sampling = sampling_of(res, parameters)
+    of_request = {name: parameters.pop(name) for name in REQUESTED if name in parameters}
+    settings = {name: value for name, value in parameters.items() if value is not None}
+    return GridRequest(sampling, method, settings, **of_request)
+
+
+def sampling_of(res: Counts | None, parameters: dict[str, Any]) -> Sampling:
+    """Return the sampling with counts `res` and its fields among `parameters`, which are taken out."""
+    counts: dict[str, Any] = {}
+    if res is not None:
+        counts = dict(zip(COUNTED, (res, res) if isinstance(res, int) else res, strict=False))
+    return Sampling(**counts, **{name: parameters.pop(name) for name in SAMPLED if name in parameters})
+
+
+COUNTED = ("ni", "nj", "nk")
+SAMPLED = tuple(each.name for each in fields(Sampling) if each.name not in (*COUNTED, "viscous"))
+REQUESTED = tuple(
+    each.name for each in fields(GridRequest) if each.name not in ("sampling", "method", "settings")
+)
