@@ -47,7 +47,7 @@ def layered(
     domain: Domain, loops: Sequence[int], settings: LayerSettings, *, stretches: Sequence[Stretch] = (),
     cells: int = 0, cell_size: float = 0.0, layout: Layout | None = None, timings: Timings | None = None,
 ) -> Layout:  # fmt: skip
-    """Return a fine layout of about so many cells, with layers at loops of a domain and at stretches of others.
+    """Return a fine layout of about so many cells, with layers at loops of a domain and stretches of others.
 
     Without `cells`, none away from walls is longer than `cell_size`. `layout` is to be taken instead of one
     that is found: of a domain like it outside layers like these, or of the whole of it.

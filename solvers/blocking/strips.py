@@ -166,9 +166,10 @@ def march_strip(domain: Domain, stretch: Stretch, first: float, thickness: float
     tangent[-1] = loop.tangent(np.array([end - _inside(loop)]))[0]
     room = GAP_PART * _gaps(domain, stretch, thickness, arcs, tangent)
     room[[0, -1]] = np.minimum(room[[0, -1]], _room_beyond(loop, stretch))
+    places = np.minimum(arcs, end - _inside(loop))  # the last is not yet what follows
     levels = fitted(
         loop.at(arcs), arcs, 4.0 * arcs[-1], room, thickness, first, ATTEMPTS,
-        place=lambda k: place(loop, min(float(arcs[k]), end - _inside(loop))), ends=_ways(loop, stretch, tangent),
+        place=lambda k: place(loop, float(places[k])), ends=_ways(loop, stretch, tangent),
     )  # fmt: skip
     strip = Strip(stretch, loop, arcs, levels)
     return _on_loop(strip)
