@@ -266,6 +266,7 @@ def volume_energy(
     x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
     gradient: Floats,
 ) -> tuple[float, float]: ...  # fmt: skip
+def volume_jacobians(x: Floats, over: tuple[float, float, float], threads: int, least: Floats) -> None: ...
 
 class VolumeDescent:
     def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...

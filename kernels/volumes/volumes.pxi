@@ -22,6 +22,7 @@ cdef extern from "volumes/energy.h":
     size_t volume_energy_room(const Functional3 *f) nogil
     double c_volume_energy "volume_energy"(const Functional3 *f, const double *x, double *g, double *smallest,
                                            double *room) nogil
+    void c_volume_jacobians "volume_jacobians"(const Functional3 *f, const double *x, double *least) nogil
 
 cdef extern from "volumes/descent.h":
     ctypedef struct Descent3:
@@ -109,6 +110,15 @@ def volume_energy(x, tuple over, tuple weights, double epsilon, int threads, gra
     with nogil:
         value = c_volume_energy(&f, nodes, g, &smallest, work)
     return value, smallest
+
+
+def volume_jacobians(x, tuple over, int threads, least):
+    """Fill least (n1-1, n2-1, n3-1) with the smallest corner Jacobian of each cell of the planes x (3, n1, n2, n3)."""
+    cdef Functional3 f = functional3(x.shape[1:], over, (0.5, 1.0, 2), 0.0, threads)
+    cdef Read nodes = reads(x, (3, f.n1, f.n2, f.n3))
+    cdef Written to = fills(least, (f.n1 - 1, f.n2 - 1, f.n3 - 1))
+    with nogil:
+        c_volume_jacobians(&f, nodes, to)
 
 
 cdef class VolumeDescent:
