@@ -64,6 +64,8 @@ def _meeting(
     blocks: Sequence[Block], tolerance: float, without: Sequence[tuple[int, Side, Range]]
 ) -> list[Connection]:
     cells = _cells(blocks, without)
+    if not len(cells.block):  # all is known
+        return []
     own, donor = _near(cells, tolerance)
     groups = list(_groups(cells, own, donor, tolerance))
     free = np.ones(len(cells.block), dtype=bool)

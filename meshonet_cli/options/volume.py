@@ -25,9 +25,9 @@ class VolumeOptions:
     """How a volume is marched from a surface."""
 
     layers: Layers = None
-    symmetry: Annotated[Literal["x", "y", "z"] | None, _option(
-        "--symmetry", metavar="x|y|z",
+    symmetry: Annotated[Literal["x", "y", "z", "none"] | None, _option(
+        "--symmetry", metavar="x|y|z|none",
         help="Open edges of the surface lie in a plane of symmetry across this axis. [default: edges in one "
-        "plane across an axis are in a plane of symmetry, others are free]",
+        "plane across an axis are in a plane of symmetry, others, and all with none, are free]",
     )] = None
 # fmt: on

@@ -17,7 +17,11 @@ from meshonet.formats.openfoam.write import write_grids as write_foam
 from meshonet.formats.registry import format_named
 from meshonet.formats.su2 import write_grids as write_su2
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.grid import Grid
+from meshonet.geometry.blocks.patches import Patch
+from meshonet.geometry.errors import InputError
 
 Make = Callable[[], Grid]
 FACES = [(0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)]
@@ -177,8 +181,6 @@ def test_gmsh_sees_hexahedra_groups_and_partners(make: Make, words: str, tmp_pat
 
 
 def test_a_surface_is_a_mesh_of_quads_with_edges(tmp_path: Path) -> None:
-    from meshonet.geometry.blocks.block import Block
-
     block = pipe().blocks[0]
     surface = Grid((Block(block.face("west")),), (), (), "patch")
     record = format_named("gmsh")
@@ -188,3 +190,40 @@ def test_a_surface_is_a_mesh_of_quads_with_edges(tmp_path: Path) -> None:
     n, m = surface.blocks[0].counts
     assert len(read.cells_dict["quad"]) == (n - 1) * (m - 1)
     np.testing.assert_array_equal(read.points, unstructured(surface).points)
+
+
+def poles() -> Grid:
+    """A ball without its heart: an O grid around an axis, whose two ends are lines."""
+    around, down, r = np.meshgrid(
+        np.linspace(0, 2 * np.pi, 9), np.linspace(0, np.pi, 7), np.linspace(1, 2, 4), indexing="ij"
+    )
+    nodes = np.stack(
+        [r * np.sin(down) * np.cos(around), r * np.sin(down) * np.sin(around), -r * np.cos(down)], axis=-1
+    )
+    nodes[-1] = nodes[0]
+    nodes[:, 0, :, :2] = nodes[:, -1, :, :2] = 0
+    whole = ((0, 6), (0, 3))
+    seam = Connection(0, "west", whole, 0, "east", whole, (1, 2))
+    patches = (Patch("wall", "bottom", 0, 8), Patch("far", "top", 0, 8))
+    return Grid((Block(nodes),), patches, (seam,), "ball")
+
+
+@pytest.mark.client("checkMesh")
+@pytest.mark.parametrize("words", ["ascii", "binary"])
+def test_cells_at_an_axis_are_prisms(words: str, tmp_path: Path) -> None:
+    write_foam(tmp_path / "case.foam", [poles()], options=frozenset({words}))
+    said = checked(tmp_path)
+    assert "prisms:        48\n" in said, said
+    assert "hexahedra:     96\n" in said
+    assert "***" not in said.replace(" ***High aspect ratio", "")
+    assert f"points:           {8 * 5 * 4 + 2 * 4}\n" in said
+    assert "south" not in (tmp_path / "constant" / "polyMesh" / "boundary").read_text()
+
+
+@pytest.mark.parametrize("name", ["su2", "gmsh"])
+def test_formats_of_hexahedra_refuse_an_axis_with_its_place(name: str, tmp_path: Path) -> None:
+    record = format_named(name)
+    assert record.write_grids is not None
+    told = "block 0, south, i=0, k=0, x=0, y=0, z=-1: a .* has hexahedra, and an edge along i has no length"
+    with pytest.raises(InputError, match=told):
+        record.write_grids(tmp_path / "g", [poles()])
