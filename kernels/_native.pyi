@@ -246,6 +246,19 @@ class DelaunayMesh:
     def nodes(self) -> tuple[Whole, Floats]: ...
     def triangles(self) -> tuple[Indices, Indices, Indices]: ...
 
+# hexes
+BRICK: tuple[int, int, int]
+
+class HexDescent:
+    def __init__(
+        self, nodes: Floats, bricks: Whole, lattices: NDArray[np.int32], moves: NDArray[np.bool_],
+        inverse: Floats, targets: NDArray[np.float32],
+        places: tuple[Indices, Indices, NDArray[np.int32], Floats], slides: tuple[Indices, Floats],
+        cells: float, threads: int,
+    ) -> None: ...  # fmt: skip
+    def weigh(self, shape: float, smoothness: float, epsilon: float = 0.0, size: float = 0.0) -> None: ...
+    def run(self, gain: float, most: int, renewal: int) -> tuple[float, float, int]: ...
+    def evaluate(self, gradient: Floats) -> tuple[float, float]: ...
 # surfaces
 def surface_march(
     levels: Floats, heights: Floats, graph: Any, settings: Sequence[float], threads: int
@@ -253,9 +266,6 @@ def surface_march(
 def respace_lines(
     marched: Floats, steps: Floats, fade: Floats, order: Indices, sweeps: int, lines: Floats, threads: int
 ) -> None: ...
-def find_folds(
-    lines: Floats, quads: Indices, threads: int
-) -> tuple[Floats, Floats, Indices, Indices, Indices]: ...
 
 # solids
 def solids_folded(nodes: Floats, test: int, threads: int, counts: Whole) -> None: ...
@@ -266,4 +276,22 @@ def solids_run(
     nodes: Floats, volumes: Floats, summary: Floats, where: Whole, keep: int, kept: Floats, brackets: Floats,
     counts: Whole, caught: Floats, held: Whole, threads: int,
 ) -> None: ...  # fmt: skip
+def solids_lines(nodes: Floats, threads: int, summary: Floats, where: Whole) -> None: ...
 def solids_rows(nodes: Floats, volumes: Floats, rows: Whole, values: Floats) -> None: ...
+
+# volumes
+def tfi_volume(
+    nodes: Floats, faces: tuple[Floats, ...], laws: tuple[Floats, Floats, Floats], threads: int,
+    spline: tuple[Floats, tuple[Indices, ...], tuple[Floats, ...]] | None = None,
+) -> None: ...  # fmt: skip
+def volume_energy(
+    x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float, threads: int,
+    gradient: Floats,
+) -> tuple[float, float]: ...  # fmt: skip
+
+class VolumeDescent:
+    def __init__(self, counts: tuple[int, ...], threads: int) -> None: ...
+    def run(
+        self, x: Floats, over: tuple[float, float, float], weights: tuple[float, float, int], epsilon: float,
+        most: int, renew: int, still: float, reach: float, gain: float,
+    ) -> tuple[float, float, int]: ...  # fmt: skip

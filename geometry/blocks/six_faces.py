@@ -17,9 +17,9 @@ from itertools import combinations
 import numpy as np
 
 from meshonet.geometry.arrays import Floats, Side
-from meshonet.geometry.blocks.block import PLACES, Block, face_of
+from meshonet.geometry.blocks.block import PLACES, Block, face_counts, face_of
 from meshonet.geometry.blocks.grid import Grid
-from meshonet.geometry.blocks.patches import Patch, sides_of
+from meshonet.geometry.blocks.patches import Patch
 from meshonet.geometry.curves.cubic import cubic_spline
 from meshonet.geometry.errors import InputError
 
@@ -72,7 +72,8 @@ class SixFaces:
         cls, nodes: Floats, *, name: str = "", patches: tuple[Patch, ...] = (), notes: tuple[str, ...] = ()
     ) -> SixFaces:
         """Return the outer faces of nodes (ni, nj, nk, 3)."""
-        return cls(*(face_of(nodes, side) for side in FACES), name=name, patches=patches, notes=notes)
+        west, east, south, north, bottom, top = (face_of(nodes, side) for side in FACES)
+        return cls(west, east, south, north, bottom, top, name, patches, notes)
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -103,13 +104,15 @@ class SixFaces:
 
         They are at the (low, low), (high, low), (low, high) and (high, high) ends of the other two.
         """
-        first, second = ([side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis)
+        first, second = (
+            [side for side in FACES if PLACES[side][0] == each] for each in range(3) if each != axis
+        )
         return [self.edge(side, other) for other in second for side in first]
 
     def grid(self, nodes: Floats, provenance: dict[str, object] | None = None) -> Grid:
         """Return the grid of nodes (ni, nj, nk, 3) inside, with the patches of the faces."""
         block = Block(nodes, finite=True)
-        patches = self.patches or sides_of(block.counts)
+        patches = self.patches or _sides(block.counts)
         return Grid((block,), patches, (), self.name, provenance or {})
 
     def resampled(self, counts: tuple[int, int, int]) -> SixFaces:
@@ -122,28 +125,35 @@ class SixFaces:
         if counts == self.counts:
             return self
         knots = [np.linspace(0.0, 1.0, n) for n in self.counts]
-        return replace(self.at(knots, [np.linspace(0.0, 1.0, n) for n in counts]), patches=self._scaled(counts))
+        return replace(
+            self.at(knots, [np.linspace(0.0, 1.0, n) for n in counts]), patches=self._scaled(counts)
+        )
 
     def at(self, knots: list[Floats], places: list[Floats]) -> SixFaces:
         """Return faces at other parameters: nodes are at `knots` along each direction, wanted at `places`.
 
         Both rise from 0 to 1; corners are kept, and what is at an end of `places` stays on its edge.
         """
-        made = {}
+        made: dict[Side, Floats] = {}
         for side in FACES:
             first, second = (axis for axis in range(3) if axis != PLACES[side][0])
             rows = cubic_spline(getattr(self, side), knots[first], places[first])
-            made[side] = np.moveaxis(cubic_spline(np.moveaxis(rows, 1, 0), knots[second], places[second]), 0, 1)
+            made[side] = np.moveaxis(
+                cubic_spline(np.moveaxis(rows, 1, 0), knots[second], places[second]), 0, 1
+            )
         share_edges(made)
-        return replace(self, **made, patches=())
+        west, east, south, north, bottom, top = (made[side] for side in FACES)
+        return SixFaces(west, east, south, north, bottom, top, self.name, (), self.notes)
 
     def _scaled(self, counts: tuple[int, int, int]) -> tuple[Patch, ...]:
         """Return the patches where they cover whole sides; none where they do not."""
         whole = len({patch.side for patch in self.patches}) == len(self.patches)
         if not whole:
             return ()
-        sides = {patch.side: patch for patch in sides_of(counts)}
-        return tuple(replace(patch, start=0, stop=sides[patch.side].stop, across=None) for patch in self.patches)
+        sides = {patch.side: patch for patch in _sides(counts)}
+        return tuple(
+            replace(patch, start=0, stop=sides[patch.side].stop, across=None) for patch in self.patches
+        )
 
 
 def edges() -> Iterator[tuple[Side, Side]]:
@@ -187,7 +197,14 @@ def six_faces(grid: Grid) -> SixFaces:
         return SixFaces.of_block(volumes[0].nodes, name=grid.name, patches=grid.patches)
     if volumes or len(grid.blocks) != 6:
         what = f"{len(grid.blocks)} {'blocks' if volumes else 'surface patches'}"
-        raise InputError(f"{what} where the six faces of a volume are needed", "give six patches, or one block")
+        raise InputError(
+            f"{what} where the six faces of a volume are needed", "give six patches, or one block"
+        )
     from meshonet.geometry.blocks.six_patches import matched_patches
 
     return matched_patches(grid)
+
+
+def _sides(counts: tuple[int, ...]) -> tuple[Patch, ...]:
+    """Return the sides of a block with `counts` nodes along its directions as patches of their names."""
+    return tuple(Patch(side, side, 0, face_counts(counts, side)[0] - 1) for side in PLACES)

@@ -36,7 +36,8 @@ def matched_patches(grid: Grid) -> SixFaces:
     if _volume(faces) < 0:
         faces, order = _arranged(patches, vertices, first, turned=True)
     notes = _closed(faces, order)
-    return SixFaces(**{side: faces[side] for side in FACES}, name=grid.name, notes=notes)
+    west, east, south, north, bottom, top = (faces[side] for side in FACES)
+    return SixFaces(west, east, south, north, bottom, top, grid.name, (), notes)
 
 
 def _vertices(patches: list[Floats]) -> Indices:
@@ -83,7 +84,8 @@ def _arranged(
     lattice[:, :, 0] = bottom
     for a, b in product(range(2), range(2)):
         lattice[a, b, 1] = _above(vertices, first, int(bottom[a, b]))
-    faces, order = {}, {}
+    faces: dict[Side, Floats] = {}
+    order: dict[Side, int] = {}
     for side, (axis, end) in PLACES.items():
         wanted = np.take(lattice, end, axis=axis)
         fits = [
@@ -150,7 +152,11 @@ def _closed(faces: dict[Side, Floats], order: dict[Side, int]) -> tuple[str, ...
         if gaps[at] > widest:
             widest, where = float(gaps[at]), pair
     share_edges(faces)
-    return (f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal",) if widest else ()
+    return (
+        (f"nodes of shared edges were up to {widest:.3g} apart ({where}) and are now equal",)
+        if widest
+        else ()
+    )
 
 
 def _edge(faces: dict[Side, Floats], side: Side, second: Side) -> Floats:

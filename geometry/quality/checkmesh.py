@@ -161,7 +161,7 @@ def _outside(grid: Grid) -> Iterator[Values]:
 def _outer(grid: Grid) -> Iterator[Values]:
     """Yield the faces of the outer boundary of many blocks."""
     for patch in grid.outer_patches():
-        rows = rows_beside(grid, patch.block, patch.side, (patch.start, patch.stop), 2)
+        rows = rows_beside(grid, patch.block, patch.side, ((patch.start, patch.stop),), 2)
         skew = _at_boundary(centroids(rows.swapaxes(0, 1))[:, 0], rows[0, :-1], rows[0, 1:])
         axis, end = patch.place
         at = [patch.start] * 2

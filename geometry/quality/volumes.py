@@ -56,9 +56,12 @@ def _folded_rows(nodes: Floats, test: int) -> NDArray[np.int64]:
     return rows
 
 
-def worst_solids(nodes: Floats, limit: int = 10) -> list[BadCell]:
-    """Return the folded cells of `nodes` (ni, nj, nk, 3), `limit` at most, least scaled Jacobian first."""
-    i, j, k = folded_solids(nodes)[:_MOST].T
+def worst_solids(nodes: Floats, limit: int = 10, test: int = CORNERS) -> list[BadCell]:
+    """Return cells of `nodes` (ni, nj, nk, 3) that do not pass a test, least scaled Jacobian first.
+
+    `limit` of them at most, with their centres.
+    """
+    i, j, k = folded_solids(nodes, test)[:_MOST].T
     points = {(a, b, c): nodes[i + a, j + b, k + c] for a in (0, 1) for b in (0, 1) for c in (0, 1)}
     least = np.ones(len(i))
     for a, b, c in points:

@@ -84,4 +84,6 @@ def check_sides(
     torn = np.flatnonzero((faces != valence - (opened > 0)) | (opened > 1))
     if len(torn):
         place = place_of(nodes, lattices, int(torn[0]))
-        raise InputError("parts of the surface touch in a single node", "join them, or part them", place=place)
+        raise InputError(
+            "parts of the surface touch in a single node", "join them, or part them", place=place
+        )

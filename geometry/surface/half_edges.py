@@ -19,6 +19,13 @@ def ends_of(quads: Indices) -> tuple[Indices, Indices]:
     return quads.ravel(), np.roll(quads, -1, axis=1).ravel()
 
 
+def open_sides(quads: Indices, twin: Indices) -> Indices:
+    """Return the corners (k, 4) of the quadrilaterals at open edges, the ends of the edge first."""
+    opened = np.flatnonzero(twin < 0)
+    around = (opened[:, None] % 4 + np.arange(4)) % 4
+    return np.asarray(quads[opened[:, None] // 4, around])
+
+
 def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the twin (4 m,) of each half-edge, -1 at open edges, and half-edges of edges of three or more.
 
@@ -39,8 +46,8 @@ def paired(quads: Indices, nodes: int) -> tuple[Indices, Indices]:
 def rings(quads: Indices, twin: Indices, nodes: int) -> tuple[Indices, Indices]:
     """Return the neighbours (n, w) in order around each node, -1 behind the last, and their number (n,).
 
-    All quadrilaterals are turned alike. The ring of a node at an open edge begins and ends with the neighbours
-    along open edges, and has a neighbour more than there are quadrilaterals; others close.
+    All quadrilaterals are turned alike. The ring of a node at an open edge begins and ends with the
+    neighbours along open edges, and has a neighbour more than there are quadrilaterals; others close.
     """
     first, last = ends_of(quads)
     edges = np.arange(len(first))

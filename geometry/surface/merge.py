@@ -19,7 +19,7 @@ def size_of(nodes: Floats) -> float:
 
 
 def near_pairs(points: Floats, distance: float) -> Indices:
-    """Return (m, 2) the pairs of `points` (n, 3), the lesser index first, at most so far apart along each axis.
+    """Return the pairs (m, 2) of `points` (n, 3) at most so far apart along each axis, lesser index first.
 
     Points are sorted along a slanted line, on which those far apart seldom meet.
     """
@@ -39,7 +39,7 @@ def near_pairs(points: Floats, distance: float) -> Indices:
 
 
 def merged(patches: Sequence[Floats], tolerance: float = TOLERANCE) -> tuple[Floats, tuple[Indices, ...]]:
-    """Return the table of nodes (n, 3) of `patches` (ni, nj, 3) and the number (ni, nj) of each of their nodes.
+    """Return the nodes (n, 3) of `patches` (ni, nj, 3) and the number (ni, nj) of each of their nodes.
 
     Edge nodes within `tolerance` times the size of the surface are one node, with the coordinates of the
     first of them; numbers ascend in the order in which nodes first appear.

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from meshonet.geometry.arrays import Floats
+from meshonet.geometry.arrays import Floats, distinct
 from meshonet.geometry.polygon.corners import Indices
 
 NEARLY_CLOSED = 0.3
@@ -24,10 +24,11 @@ def turned_alike(
     first, _ = half_edges
     edges = np.flatnonzero(twin > np.arange(len(twin)))
     across = twin[edges]
-    alike = np.where(first[edges] != first[across], 1, -1)
-    links = {(int(a), int(b), int(s)) for a, b, s in zip(patch[edges], patch[across], alike, strict=True)}
+    alike = first[edges] != first[across]
+    links = distinct((patch[edges] * count + patch[across]) * 2 + alike)
     near: list[list[tuple[int, int]]] = [[] for _ in range(count)]
-    for a, b, sign in links:
+    for link in links.tolist():
+        (a, b), sign = divmod(link // 2, count), 1 if link % 2 else -1
         near[a].append((b, sign))
         near[b].append((a, sign))
     component, signs, parts = [-1] * count, [1] * count, 0
@@ -69,6 +70,4 @@ def outward_sign(nodes: Floats, quads: Indices, flat: Sequence[int]) -> int | No
 
 
 def _cross(u: Floats, v: Floats) -> Floats:
-    return np.stack(
-        [u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1
-    )
+    return np.stack([u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1)

@@ -25,26 +25,25 @@ class Plane:
         return f"{'xyz'[self.axis]} = {self.value:.6g}"
 
 
-def planes_of(nodes: Floats, edges: Indices, used: Indices) -> tuple[Plane, ...]:
-    """Return the planes normal to an axis that `edges` (k, 2) lie in, with the nodes `used` on one side.
+def planes_of(nodes: Floats, sides: Indices) -> tuple[Plane, ...]:
+    """Return the planes normal to an axis that open edges lie in, with all of the surface on one side.
 
-    A plane has at least `FEWEST` edges.
+    `sides` (k, 4) are the faces at open edges, the edge's nodes first. A plane has at least `FEWEST` edges.
     """
-    slack = FLAT * size_of(nodes)
     planes: list[Plane] = []
-    if not len(edges):
+    if not len(sides):
         return ()
+    size = size_of(nodes)
     for axis in range(3):
-        along = nodes[used, axis]
-        ends = nodes[edges, axis]
-        for value in (float(along.min()), float(along.max())):
-            inside = (np.abs(ends - value) <= slack).all(axis=1)
+        for value in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
+            inside = edges_in(nodes, sides, Plane(axis, value), FLAT * size)
             if inside.sum() >= FEWEST:
-                exact = float(np.median(ends[inside]))
-                planes.append(Plane(axis, 0.0 if abs(exact) <= 1e-12 * size_of(nodes) else exact))
+                exact = float(np.median(nodes[sides[inside, :2], axis]))
+                planes.append(Plane(axis, 0.0 if abs(exact) <= 1e-12 * size else exact))
     return tuple(planes)
 
 
-def edges_in(nodes: Floats, edges: Indices, plane: Plane, slack: float) -> Indices:
-    """Return which (k,) of `edges` (k, 2) lie in a plane, to `slack`."""
-    return np.asarray((np.abs(nodes[edges, plane.axis] - plane.value) <= slack).all(axis=1))
+def edges_in(nodes: Floats, sides: Indices, plane: Plane, slack: float) -> Indices:
+    """Return which (k,) of the edges of `sides` (k, 4) lie in a plane, to `slack`, but their faces do not."""
+    near = np.abs(nodes[sides, plane.axis] - plane.value) <= slack
+    return np.asarray(near[:, :2].all(axis=1) & ~near[:, 2:].all(axis=1))

@@ -25,7 +25,7 @@ from meshonet.geometry.surface.checks import (
     check_sides,
     place_of,
 )
-from meshonet.geometry.surface.half_edges import ends_of, paired, rings
+from meshonet.geometry.surface.half_edges import ends_of, open_sides, paired, rings
 from meshonet.geometry.surface.merge import merged, size_of
 from meshonet.geometry.surface.orient import outward_sign, turned_alike
 from meshonet.geometry.surface.planes import Plane, planes_of
@@ -66,9 +66,14 @@ class Surface:
         return quads_of(self.lattices)
 
     @property
+    def open_sides(self) -> Indices:
+        """(k, 4) corners of the quadrilaterals at edges that no other one has, the ends of the edge first."""
+        return open_sides(self.quads, self.twin)
+
+    @property
     def open_edges(self) -> Indices:
         """(k, 2) nodes of edges that belong to one quadrilateral."""
-        return np.stack(ends_of(self.quads), axis=1)[self.twin < 0]
+        return self.open_sides[:, :2]
 
     def place(self, node: int) -> str:
         """Return where a node is: patch, i, j, x, y, z."""
@@ -98,7 +103,7 @@ def surface_of(grid: Grid) -> Surface:
     check_quads(nodes, lattices, quads)
     twin, crowded = paired(quads, len(nodes))
     check_manifold(nodes, lattices, ends_of(quads)[0][crowded])
-    check_gaps(nodes, lattices, np.stack(ends_of(quads), axis=1)[twin < 0])
+    check_gaps(nodes, lattices, open_sides(quads, twin)[:, :2])
     lattices, quads, planes, notes = _turned(nodes, lattices, quads, twin)
     twin, _ = paired(quads, len(nodes))
     ring, valence = rings(quads, twin, len(nodes))
@@ -131,8 +136,8 @@ def _turned(
     for part in range(max(component) + 1):
         members = [k for k, c in enumerate(component) if c == part]
         own = np.isin(patch, members)
-        edges = np.stack(ends_of(quads), axis=1)[(twin < 0) & np.repeat(own, 4)]
-        flat = planes_of(nodes, edges, np.unique(quads[own]))
+        mine = np.flatnonzero(twin < 0)
+        flat = planes_of(nodes, open_sides(quads, twin)[own[mine // 4]])
         planes += [plane for plane in flat if plane not in planes]
         sign = outward_sign(nodes, alike[own], sorted({plane.axis for plane in flat}))
         if sign is None:

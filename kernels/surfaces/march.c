@@ -2,7 +2,10 @@
 
    The volume of a step is its length times the area around a node, smoothed over neighbours, by and by from the wall
    on, and drawn to the mean: V <- f V + (1 - f) mean V, f = (1 + (1 - blend)^(level - 1))/2. Its height is volume over
-   area. step.c has the equations of a step. */
+   area. step.c has the equations of a step.
+
+   Fronts that spread, or are smoothed, come less far than the steps are long: what a step comes to, on average over the
+   surface, is measured, and the next one is made as much longer. */
 #include "march.h"
 #include "solve.h"
 #include <math.h>
@@ -10,6 +13,7 @@
 #include <string.h>
 
 static const double FAR_POWER = 0.15;
+static const double LEAST_YIELD = 0.3;
 
 typedef struct {
     Solver solver;
@@ -24,7 +28,8 @@ typedef struct {
 typedef struct {
     Solver solver; /* a copy, with pointers that are swapped alike by all threads */
     double *volume, *other;
-    double gone, last, shortest; /* distance so far, the step before, the least reach */
+    double gone, last, shortest; /* mean distance so far, the step before, the least reach */
+    double yield;                /* mean distance that a step came to, over its length */
     ptrdiff_t first, end;        /* chunks of this thread */
     Member member;
 } Runner;
@@ -90,29 +95,54 @@ static void heights_chunk(const Step *step, const double *volume, double length,
             step->change[d * rows + i] *= again;
 }
 
+/* Move to the next level; returns the distances times the areas, which are added to `areas`. */
 MESHONET_CLONES
-static void advance_chunk(const Step *step, ptrdiff_t first, ptrdiff_t last)
+static double advance_chunk(const Step *step, double *areas, ptrdiff_t first, ptrdiff_t last)
 {
     const ptrdiff_t rows = step->graph->nodes + step->graph->ghosts;
-    for (int d = 0; d < 3; d++) {
-        double *restrict x = step->x + d * rows;
-        const double *restrict change = step->change + d * rows;
-        for (ptrdiff_t i = first; i < last; i++)
-            x[i] += change[i];
+    double *restrict x = step->x;
+    const double *restrict dx = step->change, *restrict dy = dx + rows, *restrict dz = dy + rows;
+    double swept = 0.0, area = 0.0;
+    for (ptrdiff_t i = first; i < last; i++) {
+        x[i] += dx[i], x[rows + i] += dy[i], x[2 * rows + i] += dz[i];
+        swept += step->area[i] * sqrt(dx[i] * dx[i] + dy[i] * dy[i] + dz[i] * dz[i]);
+        area += step->area[i];
     }
+    *areas = area;
+    return swept;
 }
 
-/* One step towards `goal` on the way to a level; returns iterations, negative where it diverged. */
-static int take_step(const March *m, Runner *r, double goal, ptrdiff_t level)
+/* Add the step to the level; how far it came is kept for the next one. */
+static void advance(Runner *r, double length)
+{
+    double *sums = r->solver.sums;
+    const ptrdiff_t chunks = r->solver.chunks;
+    for (ptrdiff_t c = r->first; c < r->end; c++) {
+        ptrdiff_t first, last;
+        chunk_range(&r->solver, c, &first, &last);
+        sums[2 * chunks + c] = advance_chunk(&r->solver.step, sums + 3 * chunks + c, first, last);
+    }
+    team_wait(r->member);
+    double swept = 0.0, area = 0.0;
+    for (ptrdiff_t c = 0; c < chunks; c++)
+        swept += sums[2 * chunks + c], area += sums[3 * chunks + c];
+    r->gone += swept / area;
+    r->yield = fmin(fmax(swept / area / length, LEAST_YIELD), 1.0);
+    r->last = length;
+}
+
+/* One step of the way `left` to a level, which becomes less; returns iterations, negative where it diverged. */
+static int take_step(const March *m, Runner *r, double *left, ptrdiff_t level)
 {
     const SurfaceMarch *set = m->settings;
     Solver *solver = &r->solver;
     Step *step = &solver->step;
     measure(r);
-    const double left = goal - r->gone;
-    double length = fmin(left, set->longest * r->shortest);
-    if (left > length && left - length < 0.3 * length)
-        length = 0.5 * left;
+    const double whole = *left / r->yield;
+    double length = fmin(whole, set->longest * r->shortest);
+    if (whole > length && whole - length < 0.3 * length)
+        length = 0.5 * whole;
+    *left = whole > length ? *left - length * r->yield : 0.0;
     if (!(length > 0.0) || !(length < INFINITY))
         return -1;
     const double part = set->ramp > 0 ? fmin(1.0, (double)(level - 1) / (double)set->ramp) : 1.0;
@@ -131,17 +161,10 @@ static int take_step(const March *m, Runner *r, double goal, ptrdiff_t level)
     }
     team_wait(r->member);
     const int iterations = solve_step(solver, r->member);
-    for (ptrdiff_t c = r->first; c < r->end; c++) {
-        ptrdiff_t first, last;
-        chunk_range(solver, c, &first, &last);
-        advance_chunk(step, first, last);
-    }
     if (rule.first)
         step->before = m->solver.step.before;
     swap(&step->along, &step->before);
-    r->gone = left > length ? r->gone + length : goal;
-    r->last = length;
-    team_wait(r->member);
+    advance(r, length);
     return iterations;
 }
 
@@ -161,12 +184,12 @@ static void keep_level(const March *m, const Runner *r, ptrdiff_t level)
 static void run(void *data, Member member)
 {
     const March *m = data;
-    Runner r = {.solver = m->solver, .volume = m->volume, .other = m->other, .member = member};
+    Runner r = {.solver = m->solver, .volume = m->volume, .other = m->other, .member = member, .yield = 1.0};
     team_share(r.solver.chunks, member, &r.first, &r.end);
     ptrdiff_t steps = 0, iterations = 0, level = 1;
     for (int fine = 1; fine && level <= m->count; level++) {
-        while (fine && r.gone < m->heights[level - 1]) {
-            const int taken = take_step(m, &r, m->heights[level - 1], level);
+        for (double left = m->heights[level - 1] - (level > 1 ? m->heights[level - 2] : 0.0); fine && left > 0.0;) {
+            const int taken = take_step(m, &r, &left, level);
             steps++, iterations += taken < 0 ? -taken : taken;
             fine = taken >= 0 && steps < m->settings->most * m->count;
         }

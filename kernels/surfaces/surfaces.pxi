@@ -37,16 +37,6 @@ cdef extern from "surfaces/lines.h":
         double *lines
     int c_respace_lines "respace_lines"(const Lines *lines, int threads) nogil
 
-cdef extern from "surfaces/folds.h":
-    ctypedef struct Folds:
-        double *corner
-        double *quality
-        ptrdiff_t *level
-        ptrdiff_t *folded
-        ptrdiff_t *doubtful
-    void c_find_folds "find_folds"(const double *lines, ptrdiff_t nodes, ptrdiff_t levels, const ptrdiff_t *quads,
-                                   ptrdiff_t count, const Folds *folds, int threads) nogil
-
 
 def surface_march(levels, heights, graph, settings, int threads):
     """Fill `levels` (count + 1, 3, n) from level 0; return how many were made, the steps and the iterations.
@@ -86,20 +76,3 @@ def respace_lines(marched, steps, fade, order, ptrdiff_t sweeps, lines, int thre
         failed = c_respace_lines(&l, threads)
     if failed:
         raise MemoryError
-
-
-def find_folds(lines, quads, int threads):
-    """Return what is worst above each of `quads` (m, 4): corner, quality, level, folded, doubtful (``folds.h``).
-
-    `lines` are (3, n, levels).
-    """
-    cdef ptrdiff_t n = lines.shape[1], levels = lines.shape[2], m = len(quads)
-    corner, quality = np.empty(m), np.empty(m)
-    level, folded, doubtful = (np.empty(m, dtype=np.intp) for _ in range(3))
-    cdef Folds f = Folds(fills(corner, (m,)), fills(quality, (m,)), <ptrdiff_t *>reads_indices(level, (m,)),
-                         <ptrdiff_t *>reads_indices(folded, (m,)), <ptrdiff_t *>reads_indices(doubtful, (m,)))
-    cdef Read px = reads(lines, (3, n, levels))
-    cdef const ptrdiff_t *corners = reads_indices(quads, (m, 4))
-    with nogil:
-        c_find_folds(px, n, levels, corners, m, &f, threads)
-    return corner, quality, level, folded, doubtful

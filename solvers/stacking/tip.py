@@ -25,7 +25,7 @@ from meshonet.geometry.blocks.connection import Connection
 CORE = 0.5
 """Part of the thickness that the core reaches across."""
 _CLEAR = 1.3
-_NOSE, _EDGE = 0.35, 1.5
+_NOSE, _EDGE = 0.35, 0.4
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pytest
 from space_grids import lattice, pipe, sphere_patches, turned
 
 from meshonet.geometry.arrays import Floats
-from meshonet.geometry.blocks.block import Block
+from meshonet.geometry.blocks.block import PLACES, Block
 from meshonet.geometry.blocks.connection import Connection
 from meshonet.geometry.blocks.equal_nodes import with_equal_nodes
 from meshonet.geometry.blocks.find_connections import find_connections
@@ -111,6 +111,9 @@ def test_parts_known_to_be_boundaries_are_left_out() -> None:
     blocks = [Block(lattice((a, a + 1, 3), (0, 1, 5), (0, 1, 3))) for a in (0, 1)]
     found = find_connections(blocks, without=[(1, "west", ((0, 2), (0, 2)))])
     assert [c.range for c in found] == [((2, 4), (0, 2))]
+    whole = [(0, side, ((0, 2), (0, 2))) for side in PLACES]
+    cube = Block(lattice(*[(0, 1, 3)] * 3))
+    assert find_connections([cube], without=whole) == ()
 
 
 def test_patches_of_a_closed_surface_share_all_edges() -> None:

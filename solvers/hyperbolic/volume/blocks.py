@@ -1,4 +1,4 @@
-"""The grid of a volume marched from a surface: a block a patch, bottom on the wall, named sides, connections."""
+"""The grid of a volume marched from a surface: a block a patch, its sides named or connected."""
 
 from __future__ import annotations
 
@@ -45,10 +45,14 @@ class _Outer(NamedTuple):
     stop: int
 
 
-def volume_grid(surface: Surface, lines: Floats, in_plane: Indices) -> Grid:
-    """Return the grid of `lines` (3, n, levels), of which `in_plane` (k,) open edges bound a plane of symmetry."""
-    blocks = tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
-    top = lines.shape[2] - 1
+def blocks_of(surface: Surface, lines: Floats) -> tuple[Block, ...]:
+    """Return a block for each patch of a surface, of `lines` (3, n, levels)."""
+    return tuple(Block(np.moveaxis(lines[:, lattice], 0, -1)) for lattice in surface.lattices)
+
+
+def volume_grid(surface: Surface, blocks: tuple[Block, ...], in_plane: Indices) -> Grid:
+    """Return the grid of `blocks` on a surface; `in_plane` says which (k,) open edges lie in planes."""
+    top = blocks[0].counts[2] - 1
     runs, outer = _runs(surface, in_plane)
     connections = tuple(_connection(run, top) for run in runs)
     patches = []

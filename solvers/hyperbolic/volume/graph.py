@@ -10,13 +10,13 @@
         :                                   :
         B                                   B
 
-The first group (red) is nobody's neighbour among itself; `kernels/surfaces/graph.h` says what is made of that.
+Nodes of the first group (red) are no neighbours of each other; ``kernels/surfaces/graph.h`` has the arrays.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,16 +44,22 @@ class Seen:
 
     def mirrored(self, plane: Plane) -> Seen:
         """Return it on the other side of a plane."""
-        sign, shift = list(self.sign), list(self.shift)
+        sign, shift = np.array(self.sign), np.array(self.shift)
         sign[plane.axis] *= -1.0
         shift[plane.axis] = 2.0 * plane.value - shift[plane.axis]
-        return replace(self, sign=tuple(sign), shift=tuple(shift))
+        return Seen(self.base, self.own, _triple(sign), _triple(shift))
 
     def opposite(self, splay: float) -> Seen:
         """Return what lies opposite it, 1 + `splay` times as far."""
         far = 1.0 + splay
-        sign, shift = tuple(-far * s for s in self.sign), tuple(-far * t for t in self.shift)
-        return Seen(self.base, 1.0 + far, sign, shift)  # type: ignore[arg-type]
+        return Seen(
+            self.base, 1.0 + far, _triple(-far * np.array(self.sign)), _triple(-far * np.array(self.shift))
+        )
+
+
+def _triple(values: Floats) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""Volumes marched from surfaces of many patches, for boundary layers; the height of first cells is met exactly.
+"""Volumes marched from surfaces of many patches; the height of first cells is met exactly.
 
 ::
 
@@ -6,25 +6,28 @@
                          ^                                                         |
                          +--------------- other smoothing, smaller steps ----------+
 
-The equations stand in ``kernels/surfaces/step.c``; `meshonet.solvers.hyperbolic.volume.settings` has what is tried
-while cells are folded.
+The equations stand in ``kernels/surfaces/step.c``, what is tried while cells are folded in
+`meshonet.solvers.hyperbolic.volume.settings`.
 """
 
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.block import Block
 from meshonet.geometry.errors import BadCell, NoValidGridError
 from meshonet.geometry.polygon.corners import Indices
+from meshonet.geometry.quality.volumes import BEZIER, count_folded_solids, worst_solids
 from meshonet.geometry.surface.planes import Plane
 from meshonet.geometry.surface.surface import Surface
 from meshonet.geometry.threads import thread_count
-from meshonet.kernels._native import find_folds, respace_lines, surface_march
-from meshonet.solvers.hyperbolic.volume.blocks import volume_grid
+from meshonet.kernels._native import respace_lines, surface_march
+from meshonet.solvers.hyperbolic.volume.blocks import blocks_of, volume_grid
 from meshonet.solvers.hyperbolic.volume.graph import MarchGraph, march_graph
 from meshonet.solvers.hyperbolic.volume.settings import ATTEMPTS, Smoothing, VolumeMarch
 from meshonet.solvers.hyperbolic.volume.symmetry import (
@@ -35,18 +38,18 @@ from meshonet.solvers.hyperbolic.volume.symmetry import (
 )
 from meshonet.solvers.solution import Solution
 
+__all__ = ["VolumeMarch", "march_surface"]
+
 FADE = 12.0  # cells over which what first cells needed fades away along a line
 SWEEPS = 10  # of the smoothing of steps along lines
-_WORST = 10
+WORST = 10
 
 
 class _Volume(NamedTuple):
-    """Lines (3, n, levels) of a march, how far it came, and what is worst above each face of the surface."""
+    """Blocks of a march, how many cells it came from the wall, and how many of all are folded."""
 
-    lines: Floats
+    blocks: tuple[Block, ...]
     made: int
-    corner: Floats
-    level: Indices
     folded: int
 
 
@@ -57,28 +60,19 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     Sides in planes of symmetry are patches ``symmetry``, free ones ``free``; all others are connected. First
     cells are as high as asked, along every line.
 
-    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; what differs from it is in ``kernels/surfaces/step.c``.
+    Chan and Steger, Appl. Math. Comput. 51 (1992) 181; ``kernels/surfaces/step.c`` has what differs.
 
-    Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay folded,
-    by their corners or a Bezier coefficient of their Jacobian.
+    Raises InputError: settings that no march can meet; NoValidGridError with the worst cells: cells stay
+    folded, by their corners or a Bezier coefficient of their Jacobian.
     """
     begun = time.perf_counter()
     planes, inside = symmetry_planes(surface, settings.symmetry)
     nodes = in_planes(surface, planes, inside)
     steps = settings.steps(surface.size)
-    best: _Volume | None = None
-    tries = 0
-    for tries, smoothing in enumerate(ATTEMPTS, start=1):
-        graph = march_graph(surface, planes, inside, smoothing.splay)
-        volume = _marched(surface, graph, nodes, steps, smoothing)
-        if best is None or (volume.made, -volume.folded) > (best.made, -best.folded):
-            best = volume
-        if volume.made == len(steps) and not volume.folded:
-            break
-    else:
-        raise _refusal(surface, best, len(steps))
-    _keep_planes(volume.lines, surface, planes, inside)
-    grid = volume_grid(surface, volume.lines, inside.any(axis=0))
+    volume, tries = _best(surface, planes, inside, nodes, steps)
+    if volume.made < len(steps) or volume.folded:
+        raise _refusal(volume, len(steps))
+    grid = volume_grid(surface, volume.blocks, np.any(inside, axis=0))
     notes = [*surface.notes, planes_note(planes, settings.symmetry), free_edges_note(surface, inside)]
     if tries > 1:
         notes.append(f"{tries} marches were made: others left folded cells")
@@ -91,27 +85,47 @@ def march_surface(surface: Surface, settings: VolumeMarch) -> Solution:
     )
 
 
-def _marched(
+def _best(
+    surface: Surface, planes: tuple[Plane, ...], inside: Indices, nodes: Floats, steps: Floats
+) -> tuple[_Volume, int]:
+    """Return the first volume without folded cells, or that which comes closest, and how many were tried."""
+    best: _Volume | None = None
+    for tries, smoothing in enumerate(ATTEMPTS, start=1):
+        graph = march_graph(surface, planes, inside, smoothing.splay)
+        lines = _respaced(march_levels(surface, graph, nodes, steps, smoothing), graph, steps)
+        _keep_planes(lines, surface, planes, inside)
+        made = lines.shape[2] - 1
+        blocks = blocks_of(surface, lines) if made else ()
+        folded = sum(count_folded_solids(block.nodes, BEZIER) for block in blocks)
+        volume = _Volume(blocks, made, folded)
+        if made == len(steps) and not folded:
+            return volume, tries
+        if best is None or (made, -folded) > (best.made, -best.folded):
+            best = volume
+    return best or volume, len(ATTEMPTS)
+
+
+def march_levels(
     surface: Surface, graph: MarchGraph, nodes: Floats, steps: Floats, smoothing: Smoothing
-) -> _Volume:
-    """March as far as it goes, move nodes along their lines, and test the cells."""
-    threads = thread_count()
+) -> Floats:
+    """Return the levels (made + 1, 3, n) of a march by `steps` (m,) as far as it goes, nodes as in `graph`."""
     levels = np.empty((len(steps) + 1, 3, len(nodes)))
     levels[0] = nodes[graph.order].T
     numbers = smoothing.numbers(0.5 * surface.size)
-    made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, threads)
-    levels, steps = levels[: made + 1], steps[:made]
-    lines = np.empty((3, len(nodes), made + 1))
-    if made > 1 and np.isfinite(levels[-1]).all():
-        fade = np.exp(-np.arange(made) / FADE)
-        respace_lines(levels, steps, fade, graph.order, SWEEPS, lines, threads)
-    else:
+    made, _, _ = surface_march(levels, np.cumsum(steps), graph, numbers, thread_count())
+    return levels[: made + 1]
+
+
+def _respaced(levels: Floats, graph: MarchGraph, steps: Floats) -> Floats:
+    """Return the lines (3, n, levels) of a march, nodes moved along them so that first cells are exact."""
+    made = len(levels) - 1
+    lines = np.empty((3, levels.shape[2], made + 1))
+    if made < 2:
         lines[:, graph.order] = np.moveaxis(levels, 0, -1)
-    if made == 0:
-        none = np.zeros(len(surface.quads))
-        return _Volume(lines, 0, none, none.astype(np.intp), 0)
-    corner, _, level, folded, doubtful = find_folds(lines, surface.quads, threads)
-    return _Volume(lines, made, corner, level, int(np.maximum(folded, doubtful).sum()))
+        return lines
+    fade = np.exp(-np.arange(made) / FADE)
+    respace_lines(levels, steps[:made], fade, graph.order, SWEEPS, lines, thread_count())
+    return lines
 
 
 def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], inside: Indices) -> None:
@@ -121,24 +135,22 @@ def _keep_planes(lines: Floats, surface: Surface, planes: tuple[Plane, ...], ins
         lines[plane.axis, edges[flags]] = plane.value
 
 
-def _refusal(surface: Surface, volume: _Volume | None, cells: int) -> NoValidGridError:
-    assert volume is not None
+def _refusal(volume: _Volume, cells: int) -> NoValidGridError:
     if volume.made < cells:
         problem = f"the march stops after {volume.made} of {cells} cells from the wall"
     else:
-        problem = f"{volume.folded} of {cells * len(volume.corner)} cells are folded"
-    remedy = f"after {len(ATTEMPTS)} tries with other smoothing; give a nearer {{far_field}}, or smoother patches"
-    return NoValidGridError(f"{problem} {remedy}", _worst(surface, volume))
+        columns = sum((block.counts[0] - 1) * (block.counts[1] - 1) for block in volume.blocks)
+        problem = f"{volume.folded} of {cells * columns} cells are folded"
+    remedy = (
+        f"after {len(ATTEMPTS)} tries with other smoothing; give a nearer {{far_field}}, or smoother patches"
+    )
+    return NoValidGridError(f"{problem} {remedy}", _worst(volume.blocks))
 
 
-def _worst(surface: Surface, volume: _Volume) -> list[BadCell]:
-    """Return the worst cells, one of a column."""
-    cells = []
-    first = np.cumsum([0, *((k.shape[0] - 1) * (k.shape[1] - 1) for k in surface.lattices)])
-    for quad in np.argsort(volume.corner, kind="stable")[:_WORST].tolist():
-        patch = int(np.searchsorted(first, quad, side="right")) - 1
-        i, j = divmod(quad - int(first[patch]), surface.lattices[patch].shape[1] - 1)
-        k = int(volume.level[quad])
-        centre = volume.lines[:, surface.quads[quad], k : k + 2].mean(axis=(1, 2))
-        cells.append(BadCell(i, j, float(centre[0]), float(centre[1]), patch, k, float(centre[2])))
-    return cells
+def _worst(blocks: tuple[Block, ...]) -> list[BadCell]:
+    """Return folded cells, those with the least corners first, of each block in turn."""
+    cells: list[BadCell] = []
+    for number, block in enumerate(blocks):
+        worst = worst_solids(block.nodes, WORST, BEZIER)
+        cells += [replace(cell, block=number) for cell in worst]
+    return cells[:WORST]

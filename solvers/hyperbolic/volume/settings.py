@@ -1,4 +1,4 @@
-"""What a march from a surface is asked for, and the smoothing that is tried in turn while cells are folded."""
+"""What a march from a surface is asked for, and the smoothing that is tried in turn."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class VolumeMarch:
             raise InputError(f"{self.symmetry!r} is no axis", "use x, y, z or none", parameter="symmetry")
 
     def steps(self, size: float) -> Floats:
-        """Return the steps (layers - 1,) of a march from a surface of that size: the first cell, then growing.
+        """Return the steps (layers - 1,) of a march from a surface of that size.
 
         Raises InputError: too few layers for the growth, or for any.
         """
@@ -62,7 +62,8 @@ class VolumeMarch:
             raise InputError(problem, "give a larger {far_field} or a smaller {first_cell}")
         needed = 1 + max(cells_for_growth(self.first_cell, far, self.growth or GROWTH), FEWEST - 1)
         if self.layers is not None and self.growth is not None and self.layers < needed:
-            problem = f"{self.layers} layers from {self.first_cell:.4g} to {far:.4g} grow by more than {self.growth:g}"
+            away = f"{self.layers} layers from {self.first_cell:.4g} to {far:.4g}"
+            problem = f"{away} grow by more than {self.growth:g}"
             raise InputError(problem, f"give {needed} {{layers}} or a larger {{growth}}")
         cells = (needed if self.layers is None else self.layers) - 1
         first = min(self.first_cell, far / cells)
@@ -72,8 +73,8 @@ class VolumeMarch:
 class Smoothing(NamedTuple):
     """Numbers of ``kernels/surfaces/march.h`` in its order, but for the size, which stands between them."""
 
-    explicit: float = 1.0
-    implicit: float = 2.0
+    explicit: float = 0.4
+    implicit: float = 1.5
     theta: float = 1.0
     sharp: float = -0.5
     longest: float = 3.0
@@ -93,9 +94,9 @@ class Smoothing(NamedTuple):
 
 ATTEMPTS = (
     Smoothing(),
-    Smoothing(sweeps=60),
-    Smoothing(theta=0.0, longest=1.0),
-    Smoothing(theta=0.0, longest=0.5, sweeps=30),
+    Smoothing(explicit=1.0, implicit=2.0),
+    Smoothing(explicit=1.0, implicit=2.0, sweeps=60),
+    Smoothing(explicit=1.0, implicit=2.0, theta=0.0, longest=0.5, sweeps=60),
     Smoothing(explicit=2.0, implicit=4.0, theta=0.0, longest=0.5, sweeps=60),
 )
 """Tried in turn while cells are folded."""

@@ -21,29 +21,32 @@ def symmetry_planes(surface: Surface, axis: str | None) -> tuple[tuple[Plane, ..
 
     Raises InputError: no open edge lies across the axis.
     """
-    edges, nodes = surface.open_edges, surface.nodes
+    sides, nodes = surface.open_sides, surface.nodes
     if axis in (None, "none"):
         planes, slack = (surface.planes if axis is None else ()), FLAT * surface.size
     else:
         planes, slack = tuple(p for p in surface.planes if "xyz"[p.axis] == axis), FLAT * surface.size
         if not planes:
-            planes, slack = _named(nodes, edges, "xyz".index(str(axis)), ROUGH * surface.size), ROUGH * surface.size
+            planes, slack = (
+                _named(nodes, sides, "xyz".index(str(axis)), ROUGH * surface.size),
+                ROUGH * surface.size,
+            )
         if not planes:
             problem = f"no open edge of the surface lies in a plane across {axis}"
             raise InputError(problem, "leave {symmetry} out, or name another axis", parameter="symmetry")
-    inside = np.zeros((len(planes), len(edges)), dtype=bool)
+    inside = np.zeros((len(planes), len(sides)), dtype=bool)
     for k, plane in enumerate(planes):
-        inside[k] = edges_in(nodes, edges, plane, slack)
+        inside[k] = edges_in(nodes, sides, plane, slack)
     return planes, inside
 
 
-def _named(nodes: Floats, edges: Indices, axis: int, slack: float) -> tuple[Plane, ...]:
+def _named(nodes: Floats, sides: Indices, axis: int, slack: float) -> tuple[Plane, ...]:
     """Return planes at the ends of the surface along an axis that open edges lie in, to `slack`."""
     planes = []
     for end in (float(nodes[:, axis].min()), float(nodes[:, axis].max())):
-        inside = edges_in(nodes, edges, Plane(axis, end), 2.0 * slack)
+        inside = edges_in(nodes, sides, Plane(axis, end), 2.0 * slack)
         if inside.any():
-            planes.append(Plane(axis, float(np.median(nodes[edges[inside], axis]))))
+            planes.append(Plane(axis, float(np.median(nodes[sides[inside, :2], axis]))))
     return tuple(planes)
 
 
@@ -69,7 +72,7 @@ def free_edges_note(surface: Surface, inside: Indices) -> str:
 
 
 def planes_note(planes: tuple[Plane, ...], named: str | None) -> str:
-    """Return a sentence on the planes of symmetry that were found, empty without such or if they were named."""
+    """Return a sentence on the planes of symmetry that were taken for such, empty if they were named."""
     if not planes or named is not None:
         return ""
     return "open edges are in a plane of symmetry at " + " and ".join(str(plane) for plane in planes)

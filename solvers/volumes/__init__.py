@@ -1,0 +1,1 @@
+"""Volumes inside six faces."""

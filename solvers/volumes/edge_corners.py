@@ -1,0 +1,70 @@
+"""Corners of cells that lie in two faces at once: no inner node can open them."""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats, Side
+from meshonet.geometry.blocks.block import PLACES
+from meshonet.geometry.blocks.six_faces import SixFaces, edges, place_of
+from meshonet.geometry.errors import InputError
+
+
+def check_corners(faces: SixFaces) -> None:
+    """Raise InputError, with the node, where `faces` fold a cell whatever its inner nodes are.
+
+    At a node of an edge of the volume the three edges of a cell that meet there lie in the two faces. If
+    their Jacobian is not positive the cell is folded.
+    """
+    worst, total, negative = [], 0, 0
+    for side, second in edges():
+        scaled = _jacobians(faces, side, second)
+        bad = ~(scaled > 0)
+        total, negative = total + scaled.size, negative + int(bad.sum())
+        if bad.any():
+            segment, end = np.unravel_index(int(np.where(bad, scaled, 1.0).argmin()), scaled.shape)
+            worst.append((float(scaled[segment, end]), side, second, int(segment + end)))
+    if not worst:
+        return
+    if negative == total:
+        raise InputError("the volume is left-handed", "reverse one of its directions")
+    least, side, second, at = min(worst)
+    node = faces.edge(side, second)[at]
+    index = _index(faces, side, second, at)
+    at_node = ", ".join(f"{name}={number}" for name, number in zip("ijk", index, strict=True))
+    problem = (
+        f"{side} and {second} fold the cells along their common edge at {at_node} (scaled Jacobian "
+        f"{least:.3g}, {negative} such corners), whatever the nodes inside are"
+    )
+    raise InputError(problem, "change the faces there", place=place_of(node))
+
+
+def _jacobians(faces: SixFaces, side: Side, second: Side) -> Floats:
+    """Return the scaled corner Jacobians (n - 1, 2) at both ends of the segments of an edge."""
+    (axis, end), (other, far) = PLACES[side], PLACES[second]
+    edge = faces.edge(side, second)
+    # off the edge, in each of the two faces, along the direction that the other face is an end of
+    vectors = {other: _inwards(faces, side, other, far), axis: _inwards(faces, second, axis, end)}
+    along = ({0, 1, 2} - {axis, other}).pop()
+    step = np.diff(edge, axis=0)
+    values = []
+    for part in (slice(None, -1), slice(1, None)):
+        three = [step if each == along else vectors[each][part] for each in range(3)]
+        sizes = np.prod([np.linalg.norm(vector, axis=1) for vector in three], axis=0)
+        jacobian = (np.cross(three[0], three[1]) * three[2]).sum(axis=1)
+        values.append(np.divide(jacobian, sizes, out=np.zeros_like(sizes), where=sizes > 0))
+    return np.stack(values, axis=1)
+
+
+def _inwards(faces: SixFaces, side: Side, axis: int, end: int) -> Floats:
+    """Return the steps (n, 3), in the direction `axis`, between the first two rows of a face at one end."""
+    local = axis if axis < PLACES[side][0] else axis - 1
+    rows = np.moveaxis(getattr(faces, side), local, 0)
+    return np.asarray(rows[1] - rows[0] if end == 0 else rows[-1] - rows[-2])
+
+
+def _index(faces: SixFaces, side: Side, second: Side, at: int) -> list[int]:
+    """Return i, j, k of a node of an edge."""
+    index = [at, at, at]
+    for name in (side, second):
+        axis, end = PLACES[name]
+        index[axis] = 0 if end == 0 else faces.counts[axis] - 1
+    return index

@@ -1,0 +1,67 @@
+"""A volume grid at any resolution from a coarse one, by splines of what it differs from the interpolation.
+
+    x = T(fine faces) + S (x_c - T(coarse faces))
+
+with T the transfinite interpolation in the parameters of the nodes and S tricubic splines on the coarse
+grid's uniform knots: the difference is smooth, and the faces' own detail is in T.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.solvers.volumes.interpolate import Spline, interpolate
+from meshonet.solvers.volumes.laws import Laws, uniform_laws
+
+
+def evaluate(coarse: Floats, coarse_faces: SixFaces, faces: SixFaces, laws: Laws) -> Floats:
+    """Return nodes (3, ni, nj, nk) inside `faces`, at the parameters `laws`, each law four times.
+
+    `coarse` (3, mi, mj, mk) are those inside `coarse_faces`, of equal steps in the same parameters.
+    """
+    start = interpolate(coarse_faces, uniform_laws(coarse_faces.counts))
+    spline = spline_of(coarse - np.moveaxis(start, -1, 0), tuple(law[0] for law in laws))
+    return np.moveaxis(interpolate(faces, laws, spline), -1, 0)
+
+
+def spline_of(values: Floats, places: tuple[Floats, ...]) -> Spline:
+    """Return the spline through `values` (3, mi, mj, mk) on uniform knots, at `places` (n,) a direction."""
+    coefficients = values
+    for axis in range(3):
+        matrix = coefficient_matrix(values.shape[axis + 1])
+        coefficients = np.moveaxis(np.tensordot(matrix, coefficients, axes=(1, axis + 1)), 0, axis + 1)
+    reached = [_reached(m, place) for m, place in zip(values.shape[1:], places, strict=True)]
+    weights = tuple(weight for _, weight in reached[:2]), np.ascontiguousarray(reached[2][1].T)
+    return Spline(np.ascontiguousarray(coefficients), tuple(f for f, _ in reached), (*weights[0], weights[1]))
+
+
+@lru_cache(maxsize=16)
+def coefficient_matrix(m: int) -> Floats:
+    """Return the matrix (m + 2, m) from values at m >= 2 uniform knots to coefficients of cubic B-splines.
+
+    The third derivative is continuous at the second and the last but one knot ("not a knot"). de Boor, A
+    Practical Guide to Splines (1978), chapter XIII.
+    """
+    system = np.zeros((m + 2, m + 2))
+    for row in range(m):
+        system[row, row : row + 3] = 1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0
+    if m > 3:
+        system[m, :5] = system[m + 1, -5:] = 1.0, -4.0, 6.0, -4.0, 1.0
+    elif m == 3:  # a parabola
+        system[m, :4] = system[m + 1, 1:] = -1.0, 3.0, -3.0, 1.0
+    else:  # a straight line
+        system[m, :3] = system[m + 1, 1:] = 1.0, -2.0, 1.0
+    return np.asarray(np.linalg.solve(system, np.eye(m + 2, m)))
+
+
+def _reached(m: int, places: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """Return of places (n,) from 0 to 1 the first of four coefficients that count, and weights (n, 4)."""
+    at = places * (m - 1)
+    first = np.clip(at.astype(np.intp), 0, m - 2)
+    t = at - first
+    s = 1.0 - t
+    middle = 4.0 - 6.0 * t**2 + 3.0 * t**3, 4.0 - 6.0 * s**2 + 3.0 * s**3
+    return first, np.stack([s**3, *middle, t**3], axis=1) / 6.0

@@ -1,0 +1,51 @@
+"""What variational volumes minimise: open angles, even cells, lengths that change gradually.
+
+With u, v, w the edges along xi, eta and zeta at a corner of a cell, each over the mean length of its
+direction, J = det(u, v, w) and l the lengths of the edges of one family::
+
+    E = mean over the corners of cells of
+            (1-q) (|u × v|² + |v × w|² + |w × u|²) / (3J) + q (|u|² |v|² |w|² / J²)^p
+      + β mean of the squares of (n_e - 1) Δ_e log l, all three families, along all three directions e
+
+The first term is the discrete form of Winslow's functional: infinite at J = 0, so that a descent keeps a
+valid grid valid. The second is 1/sin² of the corner's solid angle, to the power p; the third tells equal
+cells from stripes of alternating ones. Folded grids are minimised with χ = (J + √(J² + ε²)) / 2 > 0 in place
+of J.
+
+Ivanenko, Charakch'yan, USSR Comput. Maths. Math. Phys. 28 (1988) 126-133 (the barrier); Garanzha, Comput.
+Maths. Math. Phys. 40 (2000) 1617-1637 (regularisation).
+"""
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Weights of the terms: `shape` q, `smoothness` β, `power` p (1 or 2)."""
+
+    shape: float = 0.9
+    smoothness: float = 2e-3
+    power: int = 2
+
+
+OPTIMAL = Weights()
+"""What grids are made with."""
+UNFOLDING = Weights(0.02, power=1)
+"""About Winslow's functional, which unfolds the most."""
+OPENING = Weights(0.3, power=1), Weights(0.9, power=1)
+"""The way from there to `OPTIMAL`: cells that are nearly flat get stuck otherwise."""
+
+
+def inverse_lengths(planes: Floats) -> tuple[float, float, float]:
+    """Return 1 / root mean square step of the four edges along each direction of planes (3, ni, nj, nk)."""
+    lengths = []
+    for axis in range(3):
+        rows = np.moveaxis(planes, axis + 1, -1)
+        edges = np.stack([rows[:, a, b] for a, b in product((0, -1), (0, -1))])
+        lengths.append(float(np.sqrt((np.diff(edges, axis=-1) ** 2).sum(axis=1).mean())))
+    return 1.0 / lengths[0], 1.0 / lengths[1], 1.0 / lengths[2]

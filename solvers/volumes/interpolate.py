@@ -1,0 +1,43 @@
+"""Nodes inside six faces by transfinite interpolation, with a spline added where one is given."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.threads import thread_count
+from meshonet.kernels._native import tfi_volume
+from meshonet.solvers.volumes.laws import Laws
+
+
+@dataclass(frozen=True, eq=False)
+class Spline:
+    """A tensor product of cubic B-splines over the nodes of a volume.
+
+    Parameters
+    ----------
+    coefficients : (3, m1, m2, m3)
+    first : for each direction the first (n,) of the four coefficients that reach a node.
+    weights : of these four, (n, 4) along xi and eta, (4, n) along zeta.
+    """
+
+    coefficients: Floats
+    first: tuple[NDArray[np.intp], ...]
+    weights: tuple[Floats, ...]
+
+
+def interpolate(
+    faces: SixFaces, laws: Laws, spline: Spline | None = None, out: Floats | None = None
+) -> Floats:
+    """Return nodes (ni, nj, nk, 3), planar: the Boolean sum of the three directions at `laws`, plus `spline`.
+
+    `out` (3, ni, nj, nk) takes them where fresh memory, which costs as much as the nodes, is not wanted.
+    Gordon and Hall, Int. J. Numer. Methods Eng. 7 (1973) 461-477.
+    """
+    planes = np.empty((3, *faces.counts)) if out is None else out
+    sides = tuple(np.moveaxis(face, -1, 0) for face in faces.faces)
+    added = None if spline is None else (spline.coefficients, spline.first, spline.weights)
+    tfi_volume(planes, sides, laws, thread_count(), added)
+    return np.moveaxis(planes, 0, -1)

@@ -1,0 +1,46 @@
+"""Unfold the folded cells of a volume on windows around them, whose faces stay."""
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.quality.measure import folded_cells
+from meshonet.solvers.volumes.descent import Descent
+from meshonet.solvers.volumes.functional import OPENING, OPTIMAL, UNFOLDING
+from meshonet.solvers.volumes.windows import windows
+
+MARGINS = 5, 8, 11, 14
+"""Nodes around a group of folded cells that windows reach, round by round while cells stay folded."""
+ROUNDS, ROUND = 20, 8
+"""Rounds of unfolding in a window at the most, and iterations of each."""
+LIFT, OPEN, LAST = 15, 8, 10
+"""Iterations of the stages that open what has been unfolded."""
+ENOUGH = 0.02
+"""Smallest Jacobian from which on the whole functional is of use in a window."""
+
+
+def repair(planes: Floats) -> int:
+    """Unfold cells of planes (3, ni, nj, nk) in place; return how many stay folded."""
+    nodes = np.moveaxis(planes, 0, -1)
+    bad = folded_cells(nodes)
+    if min(planes.shape[1:]) < 3:
+        return len(bad)
+    for margin in MARGINS:
+        if len(bad) == 0:
+            break
+        for window in windows(bad, margin, planes.shape[1:]):
+            part = np.ascontiguousarray(planes[:, window[0], window[1], window[2]])
+            if min(part.shape[1:]) > 2:
+                _unfold(part)
+                planes[:, window[0], window[1], window[2]] = part
+        bad = folded_cells(nodes)
+    return len(bad)
+
+
+def _unfold(part: Floats) -> None:
+    """Unfold a window and open its cells, in place."""
+    descent = Descent(part)
+    if descent.unfold(descent.smallest, ROUNDS, ROUND) <= 0.0:
+        return
+    descent.run(UNFOLDING, LIFT)
+    if descent.run(OPENING[0], OPEN) > ENOUGH:
+        descent.run(OPTIMAL, LAST)

@@ -1,0 +1,29 @@
+"""Six faces in, transfinite interpolation out."""
+
+import time
+from typing import get_args
+
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.algebraic.tfi import Blending
+from meshonet.solvers.solution import Solution
+from meshonet.solvers.volumes.interpolate import interpolate
+from meshonet.solvers.volumes.laws import arc_laws, uniform_laws
+
+
+def tfi(faces: SixFaces, *, blending: Blending = "arclength") -> Solution:
+    """Fill a volume between its faces, each a smooth weight of itself.
+
+    With `blending` ``arclength`` a node's parameters are the arc lengths of the edges around it, blended, so
+    that nodes crowd inside where they do along the edges; ``linear`` goes by node numbers. Folds are possible
+    wherever faces are bent.
+
+    Raises InputError: an edge of no length; an unknown `blending`.
+    """
+    begun = time.perf_counter()
+    if blending not in get_args(Blending):
+        remedy = "use " + "/".join(get_args(Blending))
+        raise InputError(f"blending {blending!r} is not known", remedy, parameter="blending")
+    laws = arc_laws(faces) if blending == "arclength" else uniform_laws(faces.counts)
+    grid = faces.grid(interpolate(faces, laws), {"method": "tfi", "blending": blending})
+    return Solution(grid, "tfi", seconds={"grid": time.perf_counter() - begun})

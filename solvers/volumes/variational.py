@@ -1,0 +1,127 @@
+"""Six faces in, variational volume out: an optimum on few nodes, evaluated at all, and mended there."""
+
+import time
+from typing import Literal
+
+import numpy as np
+
+from meshonet.geometry.arrays import Floats
+from meshonet.geometry.blocks.six_faces import SixFaces
+from meshonet.geometry.errors import InputError
+from meshonet.solvers.solution import Outcome, Solution
+from meshonet.solvers.volumes.descent import FLAT, Descent
+from meshonet.solvers.volumes.edge_corners import check_corners
+from meshonet.solvers.volumes.evaluate import evaluate
+from meshonet.solvers.volumes.functional import OPTIMAL
+from meshonet.solvers.volumes.interpolate import interpolate
+from meshonet.solvers.volumes.laws import Laws, arc_laws, mean_laws, uniform_laws
+from meshonet.solvers.volumes.repair import repair
+
+COARSE = 33
+"""Nodes along a direction on which the optimum is found, unless chosen."""
+SPARE = 41
+"""Nodes along a direction up to which the faces' own take the place of coarse ones."""
+EVEN = 1.5
+"""Ratio of steps along edges, longest to shortest of a direction, up to which nodes count as evenly spaced."""
+COARSEST = 11  # a copy of no more nodes along each direction is solved from the interpolation
+ITERATIONS = 30, 20, 40
+"""At the most: on coarser levels, on the last but one, on the last."""
+FEW = 20
+"""Nodes a direction of levels up to which flat cells are opened first: finer ones start from open cells."""
+LEAST = 5
+
+
+def variational(
+    faces: SixFaces, *, max_cycles: int | None = None, coarse: int | Literal["auto"] | None = "auto"
+) -> Solution:
+    """Minimise the functional of `meshonet.solvers.volumes.functional` over the nodes inside `faces`.
+
+    The optimum is found on at most `coarse` nodes a direction, evenly spaced in the mean arc length of the
+    edges ("auto": 33; None: as many as the faces have), from coarser copies, and evaluated at the nodes of
+    the faces by splines; folds that this leaves at faces are unfolded on windows. `max_cycles` are
+    iterations on the finest level that is solved.
+
+    Raises InputError: faces that fold cells whatever is inside, with the node, before any work; an edge of no
+    length; settings not positive.
+    """
+    begun = time.perf_counter()
+    _check(max_cycles, coarse)
+    check_corners(faces)
+    laws = mean_laws(arc_laws(faces))
+    optimum_faces = _coarse_faces(faces, laws, coarse)
+    planes, iterations = optimum(optimum_faces, max_cycles)
+    solved = time.perf_counter()
+    if optimum_faces is not faces:
+        planes = evaluate(planes, optimum_faces, faces, laws)
+    evaluated = time.perf_counter()
+    folded = repair(planes)
+    facts = {"method": "variational", "shape": OPTIMAL.shape, "smoothness": OPTIMAL.smoothness}
+    counts = "x".join(map(str, optimum_faces.counts))
+    grid = faces.grid(np.moveaxis(planes, 0, -1), {**facts, "cycles": iterations, "coarse": counts})
+    done = time.perf_counter()
+    spent = {"optimum": solved - begun, "evaluation": evaluated - solved, "repair": done - evaluated}
+    outcome = Outcome.FOLDED if folded else Outcome.DONE
+    return Solution(grid, "variational", cycles=iterations, seconds=spent, outcome=outcome)
+
+
+def optimum(faces: SixFaces, most: int | None = None) -> tuple[Floats, int]:
+    """Return the optimum inside evenly spaced `faces`, (3, ni, nj, nk), and iterations on the finest level.
+
+    Coarser copies come first, the coarsest from the interpolation. A grid that could not be unfolded is
+    returned as it is.
+    """
+    levels = [faces]
+    while max(levels[-1].counts) > COARSEST:
+        levels.append(levels[-1].resampled(_halved(levels[-1].counts)))
+    last, count = levels[-1], 0
+    planes = np.ascontiguousarray(np.moveaxis(interpolate(last, uniform_laws(last.counts)), -1, 0))
+    for depth in range(len(levels) - 1, -1, -1):
+        if levels[depth] is not last:
+            finer = levels[depth]
+            planes = np.ascontiguousarray(evaluate(planes, last, finer, uniform_laws(finer.counts)))
+            last = finer
+        limit = ITERATIONS[max(len(ITERATIONS) - 1 - depth, 0)]
+        count = _settle(planes, most if depth == 0 and most is not None else limit)
+    return planes, count
+
+
+def _settle(planes: Floats, most: int) -> int:
+    """Minimise over planes in place, unfolded first; return the iterations."""
+    if min(planes.shape[1:]) < 3:
+        return 0
+    descent = Descent(planes)
+    smallest = descent.smallest
+    folded = smallest <= 0.0
+    if folded:
+        repair(planes)
+        smallest = descent.unfold(descent.smallest)
+    if 0.0 < smallest < FLAT and (folded or max(planes.shape) <= FEW):
+        descent.open()
+    if smallest > 0.0:
+        descent.run(OPTIMAL, most)
+    return descent.iterations
+
+
+def _halved(counts: tuple[int, int, int]) -> tuple[int, int, int]:
+    """Return the counts of every second node, of directions that have more than `COARSEST`."""
+    ni, nj, nk = (n // 2 + 1 if n > COARSEST else n for n in counts)
+    return ni, nj, nk
+
+
+def _coarse_faces(faces: SixFaces, laws: Laws, coarse: int | Literal["auto"] | None) -> SixFaces:
+    """Return the faces that the optimum is found inside: `faces` themselves where they are few and even."""
+    most = max(faces.counts) if coarse is None else COARSE if coarse == "auto" else coarse
+    spare = SPARE if coarse == "auto" else most
+    steps = [np.diff(law[0]) for law in laws]
+    if max(faces.counts) <= spare and all(step.max() <= EVEN * step.min() for step in steps):
+        return faces
+    counts = [n if n <= spare else most for n in faces.counts]
+    places = [np.linspace(0.0, 1.0, max(n, LEAST)) for n in counts]
+    return faces.at([law[0] for law in laws], places)
+
+
+def _check(max_cycles: int | None, coarse: int | Literal["auto"] | None) -> None:
+    if max_cycles is not None and max_cycles < 1:
+        raise InputError(f"{max_cycles} cycles", "use at least 1", parameter="max_cycles")
+    if isinstance(coarse, int) and coarse < LEAST:
+        raise InputError(f"{coarse} coarse nodes", f"use at least {LEAST}", parameter="coarse")
