@@ -101,7 +101,8 @@ may have repeats, commas or D exponents. `--from plot3d:fortran,big` or `--plot3
 the same words choose the variant to write. A grid of several blocks gets a neutral map beside the file,
 `NAME.nmf`, and a map of that name is read with any file: its types, or the names in its comments, become
 names of patches. `single` omits the count of blocks, `planes` writes the coordinates of one k after the
-other, and `span-i` repeats the grid in z along its first index. iblank is reported but not kept.
+other, and `span-i` has the third direction of volumes as the first index of the file. iblank is reported
+but not kept. Of a block of 2 GiB or more there is no Fortran record: write `plot3d:binary`.
 
 ## HDF5
 
@@ -128,13 +129,23 @@ donor's direction that runs along it, counted from 1, negative when reversed; `t
 
 ## Three-dimensional files
 
-Blocks of a file are volumes, or patches of a surface where they have one plane of nodes. Only where all of them
-are slices at the same places, one plane with a constant coordinate or two identical planes, do they make a
-plane grid. What `--extrude` made comes back as the plane grid where the file has room to say so. Left-handed
-volumes get i reversed.
+What a file of structured blocks holds, its blocks decide together:
+
+1. Files of this program say it themselves (`.vts`, `.vtm`, `.vtk`, CGNS, HDF5).
+2. A block is a *slice* if it is one plane of nodes in which a coordinate is constant, or a layer one cell
+   thick: two planes that are copies of each other, shifted along one coordinate. Where all blocks are slices
+   across the same coordinate at the same places, the file holds a grid in the plane. That coordinate and the
+   index across are left out.
+3. Else a block with one plane of nodes, along any index, is a patch of a surface, any other one a volume.
+
+Left-handed volumes get i reversed, and so do the ranges that the file has for them. Surface patches stay
+as they are. Volumes that touch are one grid; all patches of surface of a file are one grid, whether they
+touch or not, so that gaps can be told of. Where a file does not say what is joined, parts of faces of volumes
+and of edges of patches whose nodes coincide are, as in the plane.
 
 `--extrude` repeats blocks, patches and interfaces in z, between a `back` and a `front` that are symmetry planes.
-The same grid goes into every format, with its blocks where the format keeps blocks.
+The same grid goes into every format, with its blocks where the format keeps blocks. It is read as plane again
+from files that hold names; Plot3D files of more than one layer of cells are volumes.
 
 **CGNS.** Zones of three indices, or of two for a surface (cell dimension 2, physical 3), each kind of grid in a
 base of its own; interfaces with `Transform` and, for periodic sides, centre, angles about x, y, z in turn, and
