@@ -110,7 +110,9 @@ def connection_of(pair: Pair, lattices: Sequence[Lattice]) -> Connection | None:
         return None
     orientation = []
     if any(pair.partner[axis] not in there.axes for axis in here.axes):
-        problem = f"an interface of blocks {pair.own.block + 1} and {pair.donor.block + 1} has faces across it"
+        problem = (
+            f"an interface of blocks {pair.own.block + 1} and {pair.donor.block + 1} has faces across it"
+        )
         raise InputError(problem, "join faces whose directions lie on each other")
     for axis, way in zip(here.axes, here.ways, strict=True):
         place = there.axes.index(pair.partner[axis])
