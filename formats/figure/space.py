@@ -52,7 +52,8 @@ def draw_in_space(grid: Grid, colouring: Colouring | None, view: View) -> Figure
     blocks = tuple(Block(nodes) for nodes in flat)
     plane = Grid(blocks, name=f"{grid.name}   {where}".strip())
     if colouring:
-        colouring = replace(colouring, values=tuple(sheet.values for sheet in sheets))
+        shown = tuple(sheet.values for sheet in sheets if sheet.values is not None)
+        colouring = replace(colouring, values=shown)
     return draw(plane, colouring, flat_box(view.zoom), view.every)
 
 
@@ -216,7 +217,7 @@ def _triad(ax: Axes, axes: Floats, corner: tuple[float, float]) -> None:
     """Draw where x, y and z point, in a corner of the picture."""
     extent = ax.get_window_extent()
     x, y = (abs(55 - part * size) for part, size in zip(corner, (extent.width, extent.height), strict=True))
-    place = {"xycoords": "axes pixels", "textcoords": "axes pixels"}
+    place: dict[str, Any] = {"xycoords": "axes pixels", "textcoords": "axes pixels"}
     for k, name in enumerate("xyz"):
         right, up = axes[0, k], axes[1, k]
         tip = x + 38 * right, y + 38 * up
