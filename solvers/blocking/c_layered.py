@@ -212,7 +212,7 @@ def _whole(sheets: Sheets, outside: Layout) -> Layout:
     layout = replace(layout, mesh=on_loops(layout.mesh, sliding))
     if near is not None:
         layout = attach(layout, domain, [near.rows(layout.mesh, heights_inside(layout, 0))])
-    return _exact(finished(_conforming(layout), sheets.settings), sheets.settings.first)
+    return _exact(finished([_conforming(layout)], sheets.settings), sheets.settings.first)
 
 
 def _conforming(layout: Layout) -> Layout:
