@@ -34,7 +34,7 @@ def read_grids(source: Source) -> Iterator[Grid]:
 
 
 def read_block(source: Source) -> tuple[list[Floats], Facts]:
-    """Return x, y, z (ni, nj, nk) each of a ``.vts`` file and what it says of them; raises as `read_grids`."""
+    """Return x, y, z (ni, nj, nk) each and what the file says of them; raises as `read_grids`."""
     raw = source.buffer()
     root, start, end = _parsed(raw)
     dataset = _child(root, "StructuredGrid")
@@ -57,7 +57,6 @@ def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
 
     tag = raw.find(b"<AppendedData")
     start = end = len(raw)
-    head = raw
     if tag >= 0:
         mark = raw.find(b"_", raw.find(b">", tag))
         if mark < 0 or raw.find(b">", tag) < 0:
@@ -65,7 +64,7 @@ def _parsed(raw: bytes | mmap) -> tuple[Element, int, int]:
         start, end = mark + 1, raw.rfind(b"</AppendedData")
         if end < start:
             raise InputError("its appended data has no end", CUT)
-        head = raw[:start] + raw[end:]
+    head = raw[:start] + raw[end:]
     if b"<!" in head.replace(b"<!--", b"") or b"\0" in head:
         # a document type can define entities that expand without bound; no VTK file has one
         raise InputError("its XML has a document type or zero bytes", "write the file again")

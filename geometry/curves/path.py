@@ -42,9 +42,9 @@ _PARTS = 16  # of an interval in the table of arc length
 class SplinePath:
     """The cubic spline through `points` (n, 3), its curvature continuous.
 
-    A closed one repeats its first point. It is parametrised by the lengths of its chords; at the ends of an open one the last intervals are
-    parabolas. Raises InputError: fewer than two points (closed: four with the repeated one), a point twice in
-    a row, values that are not finite.
+    A closed one repeats its first point. It is parametrised by the lengths of its chords; at the ends of an
+    open one the last intervals are parabolas. Raises InputError: fewer than two points (closed: four with the
+    repeated one), a point twice in a row, values that are not finite.
 
     >>> SplinePath(np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]])).length
     3.0

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -73,16 +74,25 @@ class Section:
 
     @property
     def placement(self) -> Floats:
-        """Chord, twist in radians, x, y and both of `about` (6,), as they are interpolated between sections."""
+        """Chord, twist in radians, x, y and both of `about` (6,), which are interpolated in z."""
         return np.array([self.chord, math.radians(self.twist), self.x, self.y, *self.about])
 
 
-def placed(unit: Floats, placement: Floats) -> Floats:
+class Fade(NamedTuple):
+    """How much nodes take part in scale and twist: `weight` (n,), 1 is fully; others have the `chord`."""
+
+    weight: Floats
+    chord: float
+
+
+def placed(unit: Floats, placement: Floats, fade: Fade | None = None) -> Floats:
     """Return nodes (..., n, 2) of unit sections scaled, twisted and moved by placements (..., 6).
 
     See `Section.placement`; leading axes broadcast.
     """
     chord, twist, x, y, about_x, about_y = (placement[..., k, None] for k in range(6))
+    if fade is not None:
+        chord, twist = fade.chord + (chord - fade.chord) * fade.weight, twist * fade.weight
     away_x, away_y = unit[..., 0] - about_x, unit[..., 1] - about_y
     c, s = np.cos(twist), np.sin(twist)
     return np.stack(

@@ -11,7 +11,7 @@ import numpy as np
 from meshonet.geometry.arrays import Floats
 from meshonet.geometry.curves.monotone import monotone_through
 from meshonet.geometry.errors import InputError
-from meshonet.geometry.sections.section import Section, placed
+from meshonet.geometry.sections.section import Fade, Section, placed
 
 Kind: TypeAlias = Literal["wing", "blade", "duct"]
 Tip: TypeAlias = Literal["round", "flat", "open"]
@@ -76,14 +76,16 @@ class Stack:
         """The longest chord."""
         return max(section.chord for section in self.sections)
 
-    def lofted(self, unit: Floats, z: Floats) -> Floats:
+    def lofted(self, unit: Floats, z: Floats, weight: Floats | None = None) -> Floats:
         """Return nodes (m, n, 3) at the heights `z` (m,) from those of the sections, `unit` (sections, n, 2).
 
         Shape, chord, twist and place are interpolated each by itself, so that sections between two that are
-        twisted apart are as long as these.
+        twisted apart are as long as these. Nodes of no `weight` (n,) are not twisted, and are as far apart as
+        in a section of the longest chord.
         """
+        fade = None if weight is None else Fade(weight, self.chord)
         placements = np.stack([section.placement for section in self.sections])
-        planes = placed(self.between_sections(unit, z), self.between_sections(placements, z))
+        planes = placed(self.between_sections(unit, z), self.between_sections(placements, z), fade)
         heights = np.broadcast_to(z[:, None, None], (*planes.shape[:2], 1))
         return np.concatenate([planes, heights], axis=-1)
 

@@ -19,8 +19,8 @@ _sampling, _volume = o.option_of(o.SAMPLING), o.option_of(o.VOLUME)
 def sweep(
     files: Annotated[list[str], typer.Argument(
         metavar="OUTLINE... PATH", show_default=False,
-        help="Cross-sections: circle:RADIUS, a file with a closed curve, a domain, a layout or a planar grid. "
-        "Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
+        help="Cross-sections: circle:RADIUS, or a file with a closed curve, a domain, a layout or a planar "
+        "grid. Then the path of all: a file of points x y z, one a line, or lines and arcs in TOML.",
     )],
     output: o.Output,
     printing: o.PrintOptions,

@@ -37,11 +37,23 @@ def make_stack(stack: Stack, request: StackRequest | None = None) -> Result:
     request = request or StackRequest()
     seconds: dict[str, float] = {}
     with limited_to(request.threads):
-        solution = _wing(stack, request, seconds)
+        make = _wing if stack.kind == "wing" else _loft
+        solution = make(stack, request, seconds)
         return judged(
             solution, seconds, percentiles=request.percentiles, allow_invalid=request.allow_invalid,
             remedy=_REMEDY,
         )  # fmt: skip
+
+
+def _loft(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:
+    """Return the volume between the planar grids of a blade's or a duct's sections."""
+    begun = time.perf_counter()
+    from meshonet.solvers.pipeline.lofts import blade_volume, duct_volume
+
+    grid, notes = (blade_volume if stack.kind == "blade" else duct_volume)(stack, request)
+    seconds["grid"] = time.perf_counter() - begun
+    note = request.note(stack.chord)
+    return Solution(grid, "loft", notes=(*notes, note) if note else notes)
 
 
 def _wing(stack: Stack, request: StackRequest, seconds: dict[str, float]) -> Solution:

@@ -13,7 +13,8 @@ r"""The inside of a circle in five blocks: a core, and a ring of four around it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,7 +27,8 @@ from meshonet.geometry.errors import InputError
 from meshonet.geometry.spacing.growth import LARGEST, cells_for_growth, growing_steps
 
 DEFAULT_CELLS = 320
-_CORE, _BEND = 0.55, 0.25
+CORE, _BEND = 0.55, 0.25
+"""Size of the core in sizes of the section, and how far its sides are bent from lines, 0, to arcs, 1."""
 _GROWTH = 1.2
 _LEAST = 2
 _TURNS = (((1, 0), (0, 1)), ((0, -1), (1, 0)), ((-1, 0), (0, -1)), ((0, 1), (-1, 0)))
@@ -65,19 +67,19 @@ class Disc:
 
     def rows(self, side: int) -> int:
         """Return the rows of the ring when the core has `side` cells along each side."""
-        width = (1.0 - _CORE) * self.radius
-        even = max(_LEAST, round(width / (self._edge(side))))
-        if self.first_cell is None:
-            return even
-        return max(even, cells_for_growth(self.first_cell, width, self.growth or _GROWTH))
+        edge = 0.25 * np.pi * (1.0 + CORE) * self.radius / side
+        return ring_rows((1.0 - CORE) * self.radius, edge, self.first_cell, self.growth)
 
     def side(self) -> int:
         """Return the cells along a side of the core with which all cells are nearest to those wanted."""
         sides = range(_LEAST, 2 + int(np.sqrt(self.cells)))
         return min(sides, key=lambda n: abs(n * n + 4 * n * self.rows(n) - self.cells))
 
-    def _edge(self, side: int) -> float:
-        return 0.25 * np.pi * (1.0 + _CORE) * self.radius / side
+
+def ring_rows(width: float, edge: float, first: float | None, growth: float | None) -> int:
+    """Return the rows of a ring `width` wide whose cells are `edge` long, and may begin with a first height."""
+    even = max(_LEAST, round(width / edge))
+    return even if first is None else max(even, cells_for_growth(first, width, growth or _GROWTH))
 
 
 def butterfly(disc: Disc) -> Grid:
@@ -85,34 +87,42 @@ def butterfly(disc: Disc) -> Grid:
     side = disc.side()
     rows = disc.rows(side)
     u = np.linspace(-1.0, 1.0, side + 1)
-    arc = np.stack([np.cos(0.25 * np.pi * u), np.sin(0.25 * np.pi * u)], axis=1)
-    straight = np.stack([np.ones(side + 1), u], axis=1) / np.sqrt(2.0)
-    inner = disc.radius * _CORE * ((1.0 - _BEND) * straight + _BEND * arc)
-    inner[0, 1], inner[-1, 1] = -inner[0, 0], inner[-1, 0]
-    outer = disc.radius * arc
-    along = _towards_core(disc, rows)
-    ring = outer[:, None] + along[:, None] * (inner[:, None] - outer[:, None])
-    ring[:, 0], ring[:, -1] = outer, inner
-    rings = [np.ascontiguousarray(ring @ np.array(turn).T) for turn in _TURNS]
+    arc = disc.radius * np.stack([np.cos(0.25 * np.pi * u), np.sin(0.25 * np.pi * u)], axis=1)
+    arcs = [arc @ np.array(turn).T for turn in _TURNS]
+    first = None if disc.first_cell is None else disc.first_cell / ((1.0 - CORE) * disc.radius)
+    return replace(filled(arcs, rows, first), name="circle")
+
+
+def filled(arcs: Sequence[Floats], rows: int, first: float | None = None) -> Grid:
+    """Return the five blocks inside a closed curve, its wall named ``wall``.
+
+    `arcs` are its nodes (n, 2) on the east, north, west and south, counter-clockwise, that meet in corners of
+    blocks. The ring has `rows` cells across, of which the first is as high as `first` says, in widths of the
+    ring; None makes them equal.
+    """
+    side, middle = len(arcs[0]) - 1, np.concatenate([arc[:-1] for arc in arcs]).mean(axis=0)
+    t = np.linspace(0.0, 1.0, side + 1)[:, None]
+    along = _towards_core(rows, first)
+    rings = []
+    for arc in arcs:
+        lines = (1.0 - t) * arc[0] + t * arc[-1]
+        inner = middle + CORE * ((1.0 - _BEND) * lines + _BEND * arc - middle)
+        ring = arc[:, None] + along[:, None] * (inner[:, None] - arc[:, None])
+        ring[:, 0], ring[:, -1] = arc, inner
+        rings.append(ring)
     for k in range(4):  # the diagonals are those of the ring before, bitwise
         rings[(k + 1) % 4][0] = rings[k][-1]
     east, north, west, south = (each[:, -1] for each in rings)
     core = _between(south, east, north[::-1], west[::-1])
-    return Grid(
-        (Block(core), *map(Block, rings)),
-        tuple(Patch("wall", "south", 0, side, block=k) for k in range(1, 5)),
-        _connections(side, rows),
-        name="circle",
-    )
+    patches = tuple(Patch("wall", "south", 0, side, block=k) for k in range(1, 5))
+    return Grid((Block(core), *map(Block, rings)), patches, _connections(side, rows))
 
 
-def _towards_core(disc: Disc, rows: int) -> Floats:
+def _towards_core(rows: int, first: float | None) -> Floats:
     """Return places (rows + 1,) from the wall, 0, to the core, 1."""
-    if disc.first_cell is None:
+    if first is None:
         return np.linspace(0.0, 1.0, rows + 1)
-    width = (1.0 - _CORE) * disc.radius  # on the axes; a little more towards the corners of the core
-    steps = growing_steps(min(disc.first_cell / width, 1.0 / rows), 1.0, rows)
-    along = np.concatenate([[0.0], np.cumsum(steps)])
+    along = np.concatenate([[0.0], np.cumsum(growing_steps(min(first, 1.0 / rows), 1.0, rows))])
     along[-1] = 1.0
     return along
 

@@ -69,7 +69,9 @@ def test_a_planar_grid_is_swept_as_it_is(meshonet: Meshonet) -> None:
 
 
 def test_several_sections_go_along_one_path(meshonet: Meshonet) -> None:
-    done = meshonet("sweep", "circle:0.5", "circle:0.3", "path.csv", "--cells", "60", "-o", "{index}.h5", "-q")
+    done = meshonet(
+        "sweep", "circle:0.5", "circle:0.3", "path.csv", "--cells", "60", "-o", "{index}.h5", "-q"
+    )
     assert done.code == 0, done.err
     assert {path.name for path in Path().glob("*.h5")} == {"0.h5", "1.h5"}
 

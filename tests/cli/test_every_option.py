@@ -25,6 +25,7 @@ from command_line import Meshonet, dataset, duct, wave
 
 from meshonet.formats.registry import read_grids, read_shapes
 from meshonet.geometry.blocks.boundary import Boundary
+from meshonet.geometry.blocks.grid import Grid
 from meshonet_cli.app import application
 
 TORCH = importlib.util.find_spec("torch") is not None
@@ -163,6 +164,8 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--metric": ("grid.h5 -o made.png -q", "OPTION skewness", "bytes"),
         "--zoom": ("grid.h5 -o made.png -q", "OPTION .5,1.5,0,.5", "bytes"),
         "--every": ("grid.h5 -o made.png -q", "OPTION 5", "bytes"),
+        "--slice": ("cube.vts -o made.png -q", "OPTION z=1.5", "bytes"),
+        "--seen-from": ("cube.vts -o made.png -q", "OPTION 30,60", "bytes"),
     },
     "layout": PRINTING | DOMAINS | {
         "--json": ("step.wkt -o made.json", "OPTION", "prints"),
@@ -205,7 +208,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--reynolds": (f"{WING} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 2e5", "nodes"),
         "--growth": (f"wing.toml --around 49 --span 9 {MADE}", "OPTION 1.3", "nodes"),
         "--fail-on": (f"{WING} {MADE}", "OPTION max_angle>90.5", "code"),
-        "--allow-invalid": (f"folded.toml --tip flat --around 49 --span 9 {MADE}", "OPTION", "code"),
+        "--allow-invalid": (f"moon.toml --around 49 --span 9 {MADE}", "OPTION", "code"),
     },
     "sweep": {
         "--json": (f"{PIPE} -o made.h5", "OPTION", "prints"),
@@ -231,7 +234,7 @@ EFFECTS: dict[str, dict[str, Effect]] = {
         "--reynolds": (f"{PIPE} --y-plus 90 --reynolds 1e5 {MADE}", "OPTION 2e5", "nodes"),
         "--growth": (f"{PIPE} --first-cell .001 {MADE}", "OPTION 1.5", "nodes"),
         "--fail-on": (f"{PIPE} {MADE}", "OPTION max_angle>90.5", "code"),
-        "--allow-invalid": (f"turned.vts path.csv {MADE}", "OPTION", "code"),
+        "--allow-invalid": (f"folded.h5 path.csv {MADE}", "OPTION", "code"),
     },
     "models": {
         "--json": ("", "OPTION", "out"),
@@ -267,7 +270,6 @@ chord = 0.5
 z = {}
 """
 ELSEWHERE = {
-
     ("models", "--debug"): "shipped models do not fail; test_cli_models breaks one",
     ("train", "--initial"): "test_the_quad_operator_learns_around_bodies_from_a_model_that_is_there",
     ("train", "--patience"): "test_patience_ends_a_run",
@@ -313,7 +315,15 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "hump.csv").write_text("0,0\n1,0.3\n2,0\n2,1\n0,1\n")
     for name, span in (("wing", 2), ("short", 1)):
         (folder / f"{name}.toml").write_text(SECTIONS.format(span))
+    moon = SECTIONS.format(1).replace("naca:0012", "moon.csv")
+    (folder / "moon.toml").write_text(f'kind = "duct"\n{moon}')
+    t = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
+    angle, radius = 1.57 + 1.37 * np.cos(t), 0.8 + 0.2 * np.sin(t)
+    moon_points = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+    np.savetxt(folder / "moon.csv", moon_points, delimiter=",")
     (folder / "path.csv").write_text("0 0 0\n9 0 0\n18 3 0\n")
+    cube = np.stack(np.meshgrid(*[np.arange(4.0)] * 3, indexing="ij"), axis=-1)
+    Grid.from_nodes(cube).write(folder / "cube.vts")
     shape = np.loadtxt(Path(__file__).parents[2] / "examples" / "naca2412.dat", skiprows=1) * 40
     (folder / "large.dat").write_text("large\n" + "\n".join(f"{x} {y}" for x, y in shape))
     for name in THERE:
@@ -330,6 +340,7 @@ def inputs(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "sample-boundary --family arch --count 8 --res 17 --split interpolation -o edges.h5",
             "solve-pde edges.h5 -o arches.h5",
             "layout tall.wkt -o tall.json",
+            "tfi wave.h5 --allow-invalid -o folded.h5",
         ):
             assert run([*words.split(), "-q"]) == 0
         if TORCH:

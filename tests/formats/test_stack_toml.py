@@ -57,7 +57,9 @@ def test_files_of_sections_are_looked_for_beside_the_stack(tmp_path):
     angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
     points = np.stack([np.cos(angle), 0.2 * np.sin(angle)], axis=1)
     np.savetxt(tmp_path / "deep" / "ellipse.csv", points, delimiter=",")
-    stack = read(tmp_path / "deep", ROOT.replace("naca:2412", "ellipse.csv").replace("airfoil", "outline") + TIP)
+    stack = read(
+        tmp_path / "deep", ROOT.replace("naca:2412", "ellipse.csv").replace("airfoil", "outline") + TIP
+    )
     assert stack.sections[0].frame[1] == pytest.approx(2.0)
 
 

@@ -91,7 +91,10 @@ def test_a_round_tip_is_as_high_as_half_the_thickness_and_smooth_at_its_edge():
 def test_an_open_wing_has_one_patch_between_two_planes_of_symmetry():
     grid, _ = wing_surface(stack(tip="open"), SETTINGS)
     assert len(grid.blocks) == 1
-    assert [(patch.name, patch.side) for patch in grid.patches] == [("symmetry", "south"), ("symmetry", "north")]
+    assert [(patch.name, patch.side) for patch in grid.patches] == [
+        ("symmetry", "south"),
+        ("symmetry", "north"),
+    ]
 
 
 def test_thin_trailing_edges_are_opened_with_a_note_and_blunt_ones_stay():
